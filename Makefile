@@ -1,0 +1,121 @@
+# Everything a developer or a new user runs. Each target makes what it needs: .venv, the installed package, the C builds.
+# Needed beforehand: a C11 compiler, make, Python >= 3.11 with its headers and the venv module.
+
+PYTHON ?= python3
+VENV   := .venv
+BUILD  := build
+PY     := $(VENV)/bin/python
+PIP    := $(PY) -m pip --disable-pip-version-check --quiet
+
+# The venv's meson, ninja and numpy-config come before any other.
+export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
+
+# What the installed package and the C tests are made from. The lists are kept in files that change only when a list
+# does, so that a removed file counts as a change too.
+SOURCES := $(sort $(shell find csrc python -type f \( -name '*.[ch]' -o -name '*.py' -o -name '*.pyi' -o -name py.typed \
+             -o -name '*.csv' -o -name meson.build \)) meson.build meson.options pyproject.toml)
+C_TESTS := $(sort $(wildcard tests/c/*))
+C_FILES  = $(wildcard csrc/*.[ch] tests/c/*.[ch])
+
+# $(call keep,text) writes a target that holds the text, unless it holds it already.
+keep = @echo '$(1)' | cmp -s - $@ || { mkdir -p $(@D); echo '$(1)' >$@; }
+
+# $(call requirements,build) or $(call requirements,test): that list of pyproject.toml, one requirement a line.
+requirements = $(PY) -c 'import sys, tomllib; p = tomllib.load(open("pyproject.toml", "rb")); \
+  lists = p["project"]["optional-dependencies"] | {"build": p["build-system"]["requires"]}; \
+  print(*lists[sys.argv[1]], sep="\n")' $(1)
+
+# The C files compile without a warning under gcc, and under clang where it is installed.
+COMPILERS := lint $(if $(shell command -v clang),lint-clang)
+
+# The sanitizers' libraries must be in the process first, and the C++ library whose exceptions they watch with them.
+SANITIZERS = $(foreach library,libasan.so libubsan.so libstdc++.so.6,$(shell cc -print-file-name=$(library)))
+
+.PHONY: demo test ctest pytest asan bench lint verify clean always
+
+# Two pip runs on one environment do not mix, and pytest has the last word.
+.NOTPARALLEL:
+
+demo: $(VENV)/package
+	$(PY) examples/motor.py
+
+test: ctest pytest
+
+pytest: $(VENV)/package $(VENV)/test
+	$(PY) -m pytest -m "not slow"
+
+ctest: $(BUILD)/ctest/build.ninja
+	meson compile -C $(BUILD)/ctest
+	meson test -C $(BUILD)/ctest --print-errorlogs
+
+# The C tests, then the Python tests that call the core themselves, both against code built with both sanitizers. The
+# Python tests use a sanitized copy of the package; the interpreter's own leaks do not count.
+CORE_TESTS = $(shell grep -lE 'bearingdyn(\.| import )core' tests/test_*.py)
+
+asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
+	meson compile -C $(BUILD)/asan
+	meson test -C $(BUILD)/asan --print-errorlogs
+	meson install -C $(BUILD)/asan --quiet
+	LD_PRELOAD="$(SANITIZERS)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 \
+	  PYTHONMALLOC=malloc PYTHONPATH=$(BUILD)/asan/site \
+	  $(PY) -m pytest -m "not slow" $(CORE_TESTS)
+
+bench: $(VENV)/package $(VENV)/test
+	$(PY) benchmarks/transient.py --json
+
+lint: $(VENV)/package $(VENV)/lint $(COMPILERS:%=$(BUILD)/%/build.ninja)
+	ruff check
+	ruff format --check
+	clang-format --dry-run -Werror $(C_FILES)
+	mypy
+	stubtest bearingdyn._core
+	set -e; for build in $(COMPILERS); do meson compile -C $(BUILD)/$$build; done
+
+# The slow tests, and VERIFICATION.md anew: case, source, expected, computed, error.
+verify: $(VENV)/package $(VENV)/test
+	$(PY) -m pytest -m slow
+	$(PY) tests/verification.py
+
+clean:
+	rm -rf $(VENV) $(BUILD) out .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	find python tests examples benchmarks notebooks -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+
+# The environment. Its build tools stand outside pip's isolated builds, so that rebuilding is incremental and
+# the C tests use the same Meson, Ninja and NumPy as the package.
+$(VENV)/tools: pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
+	$(PY) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
+	$(call requirements,build) >$(VENV)/requirements.txt
+	$(PIP) install --requirement $(VENV)/requirements.txt
+	@touch $@
+
+$(VENV)/package: $(SOURCES) $(BUILD)/sources.list $(VENV)/tools
+	$(PIP) install --no-build-isolation --config-settings=build-dir=$(BUILD)/package .
+	@touch $@
+
+$(VENV)/test $(VENV)/lint: $(VENV)/%: $(VENV)/tools
+	$(call requirements,$*) >$(VENV)/requirements.txt
+	$(PIP) install --requirement $(VENV)/requirements.txt
+	@touch $@
+
+# The C builds: configured here, brought up to date by `meson compile`.
+configure = meson setup $(if $(wildcard $@),--reconfigure) $(@D)
+
+$(BUILD)/ctest/build.ninja: $(VENV)/tools $(BUILD)/tests.list
+	$(configure) -Dctests=true
+
+$(BUILD)/asan/build.ninja: $(VENV)/tools $(BUILD)/tests.list
+	$(configure) -Dctests=true -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lundef=false \
+	  --prefix=$(CURDIR)/$(BUILD)/asan -Dpython.platlibdir=site -Dpython.purelibdir=site
+
+$(BUILD)/lint/build.ninja: $(VENV)/tools $(BUILD)/tests.list
+	$(configure) -Dctests=true -Dwerror=true
+
+$(BUILD)/lint-clang/build.ninja: $(VENV)/tools $(BUILD)/tests.list
+	CC=clang $(configure) -Dctests=true -Dwerror=true
+
+$(BUILD)/sources.list: always
+	$(call keep,$(SOURCES))
+
+$(BUILD)/tests.list: always
+	$(call keep,$(C_TESTS))

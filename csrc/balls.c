@@ -1,0 +1,165 @@
+/* The balls of one bearing: from raceway coefficients to indentations, and back to summed forces.
+ *
+ * A ball per lane where balls are independent, a coefficient per lane where they are summed. */
+#include "balls.h"
+
+#include <math.h>
+
+#include "ehl.h"
+#include "lanes.h"
+
+/* Basis functions of every ball. */
+void BD_NAMED(bd_bearing_turn)(const bd_bearing *bearing, bd_bearing_work *work, double psi)
+{
+    const bd_bearing_data *data = &bearing->data;
+    const size_t balls = (size_t)bearing->balls, coefs = (size_t)bearing->coefs;
+    const double cos_psi = cos(psi), sin_psi = sin(psi);
+
+    for (size_t first = 0; first < balls; first += BD_WIDTH) {
+        lanes spacing_cos = LANES(bearing->spacing_cos + first);
+        lanes spacing_sin = LANES(bearing->spacing_sin + first);
+        lanes c1 = cos_psi * spacing_cos - sin_psi * spacing_sin;
+        lanes s1 = sin_psi * spacing_cos + cos_psi * spacing_sin;
+        lanes c = {0}, s = {0};
+        int order = 0;
+
+        /* by rotation from order to order; a fall (from radial to axial) starts again from order 0 */
+        for (size_t k = 0; k < (size_t)data->n_coefs; k++) {
+            const int wanted = data->order[k];
+            const double n = (double)wanted;
+            if (k == 0 || wanted < order) {
+                order = 0;
+                c = (lanes){0} + 1.0;
+                s = (lanes){0};
+            }
+            for (; order < wanted; order++) {
+                lanes next = c * c1 - s * s1;
+                s = s * c1 + c * s1;
+                c = next;
+            }
+            LANES_AT(work->phi + k * balls + first) = data->sine[k] ? s : c;
+            LANES_AT(work->dphi + k * balls + first) = data->sine[k] ? n * c : -n * s;
+        }
+    }
+    for (size_t k = 0; k < (size_t)data->n_coefs; k++)
+        for (size_t j = 0; j < (size_t)data->n_balls; j++) {
+            work->phi_ball[j * coefs + k] = work->phi[k * balls + j];
+            work->dphi_ball[j * coefs + k] = work->dphi[k * balls + j];
+        }
+}
+
+/* Indentation of every ball and its rate (delta = Lambda - A, written without cancellation). */
+BD_INLINE void indent(const bd_bearing *bearing, bd_bearing_work *work, const double *restrict z,
+                      const double *restrict z_rate, double cage_speed)
+{
+    const bd_bearing_data *data = &bearing->data;
+    const size_t balls = (size_t)bearing->balls, n_coefs = (size_t)data->n_coefs;
+    const size_t n_radial = (size_t)data->n_radial;
+    const double x0 = data->x0, y0 = data->y0, A = data->A, e0 = data->e0;
+
+    for (size_t first = 0; first < balls; first += BD_WIDTH) {
+        /* relative motion of the groove centres: dX, dY, their slopes in psi, and their own rates */
+        const double *phi = work->phi + first, *dphi = work->dphi + first;
+        lanes dX = {0}, dY = {0}, turn_X = {0}, turn_Y = {0}, X_rate = {0}, Y_rate = {0};
+        size_t k = 0;
+        for (; k < n_radial; k++, phi += balls, dphi += balls) {
+            dY += LANES(phi) * z[k];
+            turn_Y += LANES(dphi) * z[k];
+            Y_rate += LANES(phi) * z_rate[k];
+        }
+        for (; k < n_coefs; k++, phi += balls, dphi += balls) {
+            dX += LANES(phi) * z[k];
+            turn_X += LANES(dphi) * z[k];
+            X_rate += LANES(phi) * z_rate[k];
+        }
+        turn_X *= cage_speed;
+        turn_Y *= cage_speed;
+        X_rate += turn_X;
+        Y_rate += turn_Y;
+
+        lanes X = x0 + dX, Y = y0 + dY, square = X * X + Y * Y, length;
+        lanes_sqrt(&square, &length);
+        lanes tilt = 1.0 / length, sine_a = X * tilt, cosine_a = Y * tilt;
+        lanes stretch = dX * (2.0 * x0 + dX) + dY * (2.0 * y0 + dY) + e0;
+
+        LANES_AT(work->sine_a + first) = sine_a;
+        LANES_AT(work->cosine_a + first) = cosine_a;
+        LANES_AT(work->tilt + first) = tilt;
+        LANES_AT(work->delta + first) = stretch / (length + A) + LANES(bearing->absent + first);
+        LANES_AT(work->rate + first) = sine_a * X_rate + cosine_a * Y_rate;
+        LANES_AT(work->turn + first) = (cosine_a * X_rate - sine_a * Y_rate) * tilt;
+        LANES_AT(work->turning + first) = sine_a * turn_X + cosine_a * turn_Y;
+    }
+}
+
+/* radial for a lane's coefficient below n_radial, else axial: masks of the kinds in one group. */
+BD_INLINE void kind_masks(int n_radial, int first, lane_mask *radial)
+{
+    for (int k = 0; k < BD_WIDTH; k++)
+        (*radial)[k] = first + k < n_radial ? -1 : 0;
+}
+
+/* Indent, press, and sum over the balls. */
+void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work, const double *z,
+                      const double *z_rate, double cage_speed, double *restrict g)
+{
+    const bd_bearing_data *data = &bearing->data;
+    const int coefs = bearing->coefs;
+
+    indent(bearing, work, z, z_rate, cage_speed);
+    BD_NAMED(bd_ehl_contacts)(&data->contact, bearing->balls, work->delta, work->rate, work->force,
+                    work->stiffness, work->damping);
+
+    for (int first = 0; first < coefs; first += BD_WIDTH) {
+        const double *phi = work->phi_ball + first;
+        lanes radial = {0}, axial = {0};
+        lane_mask is_radial;
+        kind_masks(data->n_radial, first, &is_radial);
+        for (int j = 0; j < data->n_balls; j++, phi += coefs) {
+            radial += LANES(phi) * (work->force[j] * work->cosine_a[j]);
+            axial += LANES(phi) * (work->force[j] * work->sine_a[j]);
+        }
+        LANES_AT(g + first) = LANES_WHERE(is_radial, radial) + LANES_WHERE(~is_radial, axial);
+    }
+}
+
+/* Tangents of that sum. */
+void BD_NAMED(bd_bearing_tangent)(const bd_bearing *bearing, const bd_bearing_work *work, double cage_speed,
+                        int stride, double *restrict K, double *restrict C)
+{
+    const bd_bearing_data *data = &bearing->data;
+    const int coefs = bearing->coefs, n_coefs = data->n_coefs, n_radial = data->n_radial;
+
+    for (int first = 0; first < coefs; first += BD_WIDTH) {
+        lane_mask is_radial;
+        kind_masks(n_radial, first, &is_radial);
+        for (int k = 0; k < n_coefs; k++) {
+            LANES_AT(K + (size_t)k * (size_t)stride + first) = (lanes){0};
+            LANES_AT(C + (size_t)k * (size_t)stride + first) = (lanes){0};
+        }
+        for (int j = 0; j < data->n_balls; j++) {
+            const double *all = work->phi_ball + (size_t)j * (size_t)coefs;
+            const double s = work->sine_a[j], c = work->cosine_a[j];
+            lanes phi = LANES(all + first);
+            lanes dphi = cage_speed * LANES(work->dphi_ball + (size_t)j * (size_t)coefs + first);
+
+            /* v: gradient of the indentation; w: its partner along the race; p: d(rate)/dz at fixed
+             * z_rate, because the normal turns and the race runs past the ball */
+            lanes v = LANES_WHERE(is_radial, c * phi) + LANES_WHERE(~is_radial, s * phi);
+            lanes w = LANES_WHERE(is_radial, -s * phi) + LANES_WHERE(~is_radial, c * phi);
+            lanes p = LANES_WHERE(is_radial, c * dphi) + LANES_WHERE(~is_radial, s * dphi);
+            p += work->turn[j] * w;
+
+            lanes across = work->stiffness[j] * v + work->damping[j] * p;
+            lanes along = (work->force[j] * work->tilt[j]) * w;
+            lanes viscous = work->damping[j] * v;
+            for (int k = 0; k < n_coefs; k++) {
+                const double v_k = all[k] * (k < n_radial ? c : s);
+                const double w_k = all[k] * (k < n_radial ? -s : c);
+                LANES_AT(K + (size_t)k * (size_t)stride + first) += v_k * across + w_k * along;
+                LANES_AT(C + (size_t)k * (size_t)stride + first) += v_k * viscous;
+            }
+        }
+    }
+}
+

@@ -1,0 +1,93 @@
+#include "bearing.h"
+
+#include "kernels.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A gap no displacement of the linear theory closes: keeps padding lanes out of contact. */
+static const double no_ball = -1e6;
+
+size_t bd_bearing_work_size(const bd_bearing_data *data)
+{
+    size_t balls = (size_t)BD_PADDED(data->n_balls), coefs = (size_t)BD_PADDED(data->n_coefs);
+    return 2 * (size_t)data->n_coefs * balls + 2 * balls * coefs + 10 * balls;
+}
+
+size_t bd_bearing_constants(const bd_bearing_data *data)
+{
+    return 3 * (size_t)BD_PADDED(data->n_balls);
+}
+
+void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *constants)
+{
+    const double pi = 3.14159265358979323846;
+    int balls = BD_PADDED(data->n_balls);
+    double *spacing_cos = constants, *spacing_sin = constants + balls, *absent = constants + 2 * balls;
+
+    for (int j = 0; j < balls; j++) {
+        double angle = 2.0 * pi * (double)j / (double)data->n_balls;
+        bool real = j < data->n_balls;
+        spacing_cos[j] = real ? cos(angle) : 0.0;
+        spacing_sin[j] = real ? sin(angle) : 0.0;
+        absent[j] = real ? 0.0 : no_ball;
+    }
+    bearing->data = *data;
+    bearing->balls = balls;
+    bearing->coefs = BD_PADDED(data->n_coefs);
+    bearing->spacing_cos = spacing_cos;
+    bearing->spacing_sin = spacing_sin;
+    bearing->absent = absent;
+}
+
+void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, double *memory)
+{
+    size_t balls = (size_t)bearing->balls, coefs = (size_t)bearing->coefs;
+    size_t by_ball = (size_t)bearing->data.n_coefs * balls;
+    double **parts[] = {&work->sine_a, &work->cosine_a, &work->delta,     &work->rate,    &work->turn,
+                        &work->tilt,   &work->turning,  &work->force, &work->stiffness, &work->damping};
+
+    work->phi = memory;
+    work->dphi = work->phi + by_ball;
+    work->phi_ball = work->dphi + by_ball;
+    work->dphi_ball = work->phi_ball + balls * coefs;
+    memory = work->dphi_ball + balls * coefs;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++, memory += balls)
+        *parts[i] = memory;
+}
+
+bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const double *z_rate,
+                            double angle, double cage_speed, double *g, double *K, double *C,
+                            double *loads)
+{
+    size_t coefs = (size_t)BD_PADDED(data->n_coefs), n = (size_t)data->n_coefs;
+    size_t constants = bd_bearing_constants(data), scratch = bd_bearing_work_size(data);
+    double *memory = calloc(constants + scratch + 3 * coefs + 2 * n * coefs, sizeof *memory);
+    if (!memory)
+        return BD_NO_MEMORY;
+    double *padded_z = memory + constants + scratch, *padded_rate = padded_z + coefs;
+    double *padded_g = padded_rate + coefs, *padded_K = padded_g + coefs;
+    double *padded_C = padded_K + n * coefs;
+    const bd_kernels *kernels = bd_kernels_for(BD_ISA_BEST);
+    bd_bearing bearing;
+    bd_bearing_work work;
+
+    bd_bearing_setup(&bearing, data, memory);
+    bd_bearing_work_carve(&bearing, &work, memory + constants);
+    memcpy(padded_z, z, n * sizeof *z);
+    memcpy(padded_rate, z_rate, n * sizeof *z_rate);
+    kernels->turn(&bearing, &work, angle);
+    kernels->force(&bearing, &work, padded_z, padded_rate, cage_speed, padded_g);
+    kernels->tangent(&bearing, &work, cage_speed, (int)coefs, padded_K, padded_C);
+
+    memcpy(g, padded_g, n * sizeof *g);
+    for (size_t k = 0; k < n; k++) {
+        memcpy(K + k * n, padded_K + k * coefs, n * sizeof *K);
+        memcpy(C + k * n, padded_C + k * coefs, n * sizeof *C);
+    }
+    memcpy(loads, work.force, (size_t)data->n_balls * sizeof *loads);
+    free(memory);
+    return BD_OK;
+}

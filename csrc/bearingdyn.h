@@ -1,0 +1,305 @@
+/* bearingdyn.h - the C core: a linear structure, viscoelastic layers and ball bearings in time and frequency.
+ *
+ * The core knows arrays, balls, branches and time; nothing of materials, meshes, files or units (any
+ * consistent set serves; the Python side uses SI).
+ *
+ *     M a + (C + Omega G) v + (K + Omega N) x + sum_l L_l sum_i s_li + B^T g(B x, B v, t) = f(t)   (1)
+ *
+ *   M, C, K    symmetric, n x n; G skew (gyroscopic), N skew (circulatory: damping that turns), per rad/s
+ *   L_l        factor of a layer's deviatoric matrix, H = L L^T (paper eqs 16, 25); y = L^T x
+ *   s_li       stress of Maxwell branch i in the layer's coordinates (paper eqs 8-11)
+ *   B          rows: relative (inner minus outer) Fourier coefficients of the raceways
+ *   g          force of the balls on those coefficients (paper eqs 1-4)
+ *
+ * Who owns what: bd_model is immutable after creation and may be shared by threads without a lock.
+ * A state is one flat array of doubles that resumes a march bit for bit. bd_work is scratch for one
+ * thread and one time step. Nothing here prints, exits, keeps globals, or allocates inside the march.
+ *
+ * Symbols that collide between fields, settled here:
+ *   G       gyroscopic matrix of the system; a branch's shear modulus is `modulus`
+ *   kappa   deflection coefficient of the two contacts of a ball in series (paper eq 2)
+ *   beta, gamma  Newmark's; the bearing's gamma = D cos(alpha)/dm stays in Python
+ *   c       viscous damping of a contact;  C  viscous damping matrix
+ *   tau     relaxation time of a branch;   t_c  damping time of a load-tied contact
+ *   omega   angular frequency of an excitation; speed  turning speed of the shaft (rad/s)
+ */
+#ifndef BEARINGDYN_H
+#define BEARINGDYN_H
+
+#include <stddef.h>
+
+#include "lapack.h"
+
+/* ---------------------------------------------------------------- status */
+
+/* 0 is success, < 0 fatal, > 0 a stop that is no error. */
+#define BD_STATUS_LIST(X)                                                                          \
+    X(BD_OK, 0, "success")                                                                         \
+    X(BD_INTERRUPTED, 1, "interrupted by the user")                                                \
+    X(BD_NO_MEMORY, -1, "out of memory")                                                           \
+    X(BD_BAD_SHAPE, -2, "an array has the wrong shape")                                            \
+    X(BD_BAD_VALUE, -3, "a value is outside its domain")                                           \
+    X(BD_SINGULAR, -4, "the effective mass matrix is singular")                                    \
+    X(BD_SINGULAR_MASS, -5, "the mass matrix is singular")                                         \
+    X(BD_NO_CONVERGENCE, -6, "Newton's iteration on the bearing forces did not converge")          \
+    X(BD_NOT_FINITE, -7, "the response is no longer finite")                                       \
+    X(BD_SINGULAR_DYNAMIC, -8, "the dynamic stiffness is singular")
+
+#define BD_STATUS_ENUM(name, value, text) name = (value),
+typedef enum bd_status { BD_STATUS_LIST(BD_STATUS_ENUM) } bd_status;
+#undef BD_STATUS_ENUM
+
+/* Returned: one line of English for a status, without a full stop. */
+const char *bd_status_text(bd_status status);
+
+/* ---------------------------------------------------------------- vector width */
+
+/* Arrays inside the core are padded to whole lanes, the padding held at zero, so that kernels have
+ * no remainder loops and the order of every sum is the same whatever the instruction set. */
+enum { BD_LANES = 8 };
+#define BD_PADDED(n) (((n) + BD_LANES - 1) / BD_LANES * BD_LANES)
+
+/* The hot kernels are compiled for each instruction set and chosen at run time. Contraction to FMA is
+ * off and lanes never mix, so that all of them give the same bits. */
+typedef enum bd_isa { BD_ISA_BEST, BD_ISA_BASE, BD_ISA_AVX2, BD_ISA_AVX512 } bd_isa;
+
+/* ---------------------------------------------------------------- Maxwell history (maxwell.c) */
+
+/* Weights of one branch for one step: S(n+1) = decay S(n) + old ydot(n) + now ydot(n+1). */
+typedef struct bd_branch_weights {
+    double decay; /* E = exp(-dt/tau) */
+    double old;   /* 2 tau modulus [(1 - E) - q] */
+    double now;   /* 2 tau modulus q,  q = 1 - (1 - E) tau/dt */
+} bd_branch_weights;
+
+/* Given:    dt > 0, tau > 0, modulus >= 0
+ * Returned: the weights, exact for a strain rate linear in the step, to a few units of round-off for
+ *           any dt/tau > 0
+ * Reference: paper eqs (10), (11), written for the full branch stress so that they stay exact when
+ *           dt changes and restart exactly. */
+bd_branch_weights bd_maxwell_weights(double dt, double tau, double modulus);
+
+/* Deviatoric stress of a material point under a given strain rate, paper eq (9) without its
+ * volumetric part: 2 G0 e + 2 eta0 edot + sum of branches, from e = 0 and S = 0.
+ * Given:    rate (n_times x n_components) linear between samples, dt (n_times - 1) each > 0
+ * Returned: stress (n_times x n_components)
+ * Notes:    work is scratch of bd_maxwell_stress_work_size doubles */
+size_t bd_maxwell_stress_work_size(int n_components, int n_branches);
+void bd_maxwell_stress(int n_times, int n_components, const double *rate, const double *dt, double G0,
+                       double eta0, int n_branches, const double *modulus, const double *tau,
+                       double *stress, double *work);
+
+/* ---------------------------------------------------------------- EHL contact (ehl.c) */
+
+/* F = kappa (delta + h0)^1.5 + c(delta) ddelta/dt, never tensile: paper eq (1). */
+
+typedef enum bd_damping_law {
+    BD_DAMPING_CONSTANT, /* c while in contact (paper section 4.1) */
+    BD_DAMPING_TABLE,    /* c(delta), piecewise linear, its ends held */
+    BD_DAMPING_LOAD      /* c = t_c dQ/ddelta: vanishes where contact is lost */
+} bd_damping_law;
+
+typedef struct bd_contact {
+    double kappa, h0; /* N/m^1.5; sum of both films, m */
+    bd_damping_law law;
+    double c; /* N s/m (constant) or t_c in s (load) */
+    int n_table;
+    const double *table_delta, *table_c; /* (n_table) increasing; N s/m */
+} bd_contact;
+
+/* ---------------------------------------------------------------- ball bearing (bearing.c) */
+
+/* Each race's groove-centre displacement is a Fourier series in the azimuth, radial and axial. The
+ * kernel sees coefficients inner minus outer, all radial ones before all axial ones. A rigid ring has
+ * radial cos 1, sin 1 and axial cos 0, cos 1, sin 1; a flexible ring just has more. */
+typedef struct bd_bearing_data {
+    int n_balls, n_coefs, n_radial;
+    const int *order; /* (n_coefs) */
+    const int *sine;  /* (n_coefs) 0: cos(order psi), 1: sin(order psi) */
+    double x0, y0;    /* axial and radial distance of the groove centres at the origin */
+    double A;         /* their distance with the ball just touching, (fi + fo - 1) D */
+    double e0;        /* x0^2 + y0^2 - A^2, formed without cancellation */
+    bd_contact contact;
+    double cage_ratio; /* cage speed over shaft speed */
+    double angle0;     /* azimuth of the first ball at zero shaft angle */
+} bd_bearing_data;
+
+typedef struct bd_bearing bd_bearing;           /* as kept in a model */
+typedef struct bd_bearing_work bd_bearing_work; /* scratch of one bearing */
+
+/* BD_OK, or what is wrong with a description. */
+bd_status bd_bearing_check(const bd_bearing_data *data);
+
+/* Doubles of scratch one bearing needs. */
+size_t bd_bearing_work_size(const bd_bearing_data *data);
+
+/* ---------------------------------------------------------------- model (model.c) */
+
+typedef struct bd_layer_data {
+    int rank, n_branches;
+    const double *L;             /* (n x rank) row-major */
+    const double *modulus, *tau; /* (n_branches) */
+} bd_layer_data;
+
+typedef enum bd_load_kind {
+    BD_LOAD_CONSTANT, /* p_cos */
+    BD_LOAD_HARMONIC, /* p_cos cos(omega t) + p_sin sin(omega t) */
+    BD_LOAD_ROTATING, /* speed^2 (p_cos cos(theta) + p_sin sin(theta)), theta the shaft angle */
+    BD_LOAD_SAMPLED   /* p_cos times a table, linear between samples, its ends held */
+} bd_load_kind;
+
+typedef struct bd_load_data {
+    bd_load_kind kind;
+    double omega;
+    const double *p_cos, *p_sin; /* (n) */
+    int n_samples;
+    const double *time, *value; /* (n_samples) */
+} bd_load_data;
+
+typedef enum bd_channel_kind {
+    BD_CHANNEL_DISPLACEMENT, /* row . x */
+    BD_CHANNEL_VELOCITY,     /* row . v */
+    BD_CHANNEL_ACCELERATION, /* row . a */
+    BD_CHANNEL_FORCE,        /* bearing's force on coefficient `index` */
+    BD_CHANNEL_BALL,         /* load of ball `index` */
+    BD_CHANNEL_LOADED        /* number of loaded balls */
+} bd_channel_kind;
+
+typedef struct bd_channel_data {
+    bd_channel_kind kind;
+    const double *row; /* (n) for the first three kinds */
+    int bearing, index;
+} bd_channel_data;
+
+typedef struct bd_model_data {
+    int n, n_layers, n_bearings, n_loads, n_channels;
+    const double *M, *C, *G, *K, *N; /* (n x n) row-major */
+    const bd_layer_data *layers;
+    const bd_bearing_data *bearings;
+    const double *const *B; /* per bearing (n_coefs x n) row-major */
+    const bd_load_data *loads;
+    const bd_channel_data *channels;
+} bd_model_data;
+
+typedef struct bd_model bd_model;
+
+/* Given:    a description; every array is copied, nothing of it is kept
+ * Returned: a model in one allocation, or NULL and *status
+ * Notes:    coordinates that neither M, C, G, K, N nor a layer couples fall into blocks, found here;
+ *           bearings couple blocks only through their few coefficients. */
+bd_model *bd_model_create(const bd_model_data *data, bd_status *status);
+
+/* Safe on NULL. */
+void bd_model_free(bd_model *model);
+
+int bd_model_blocks(const bd_model *model);
+int bd_model_channels(const bd_model *model);
+int bd_model_coefs(const bd_model *model);
+int bd_model_layers(const bd_model *model);
+int bd_model_size(const bd_model *model);
+
+/* ---------------------------------------------------------------- state and march (newmark.c) */
+
+typedef struct bd_scheme {
+    double dt, beta, gamma; /* Newmark; 1/4 and 1/2 conserve energy */
+    double speed;           /* rad/s of the shaft */
+    double tolerance;       /* of a bearing's force against the largest, per step */
+    int max_iterations;
+    int audit;  /* nonzero: energies and work are integrated */
+    bd_isa isa; /* of the kernels; one that this machine lacks is a BD_BAD_VALUE */
+} bd_scheme;
+
+/* What the audit integrates. Turning feeds in what the cage drives the balls with and what the shaft drives its own
+ * damping with:
+ *   load + turning - (linear + branch + contact) = change of (kinetic + elastic + stored + indentation) */
+typedef struct bd_energy {
+    double kinetic, elastic, stored, indentation; /* now, J */
+    double load, turning, linear, branch, contact; /* work since the start, J */
+    double throughput;                            /* integral of |power of loads and turning|, J */
+    double power[5];                              /* at the present time, in the order of the works, W */
+} bd_energy;
+
+typedef struct bd_report {
+    bd_status status;
+    long long steps;      /* done in this call */
+    long long iterations; /* bearing evaluations in this call */
+    long long refreshes;  /* of Newton's matrix in this call */
+    double t, residual;   /* at the end; relative residual of the last step */
+    int bearing;          /* with the largest residual, -1 without */
+} bd_report;
+
+/* A state is a flat array of doubles: exactly what resumes a march bit for bit. */
+size_t bd_state_size(const bd_model *model);
+
+/* Views of a state's parts; vectors are padded and in the model's block order. */
+typedef struct bd_state {
+    double *clock;      /* (4) time origin, steps since, dt of those steps, 1 if Newton's inverse is set */
+    double *x, *v, *a;  /* (n_padded) */
+    double *y_rate;     /* (rank_padded) layer rates L^T v */
+    double *stress;     /* branch stresses, layer by layer, branch by branch */
+    double *g;          /* (coefs_padded) bearing forces of the last step: Newton starts from them */
+    double *inverse;    /* (coefs_padded^2) Newton's frozen inverse */
+    bd_energy *energy;
+} bd_state;
+
+bd_state bd_state_view(const bd_model *model, double *flat);
+
+/* Given:    x, v (n) in the caller's order, start time
+ * Returned: a state with branches at rest (relaxed), without acceleration: see bd_start */
+void bd_state_set(const bd_model *model, double *flat, double t, const double *x, const double *v);
+
+/* Returned: x, v, a (n) in the caller's order; any may be NULL */
+void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v, double *a);
+
+typedef struct bd_work bd_work;
+bd_work *bd_work_create(const bd_model *model); /* NULL: out of memory */
+void bd_work_free(bd_work *work);               /* safe on NULL */
+
+/* Factors the effective mass S = M + gamma dt (C + C_ve + speed G) + beta dt^2 (K + speed N) block by block and
+ * forms the operators of a step. LAPACK is used here and nowhere in the march. */
+bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
+                     bd_work *work);
+
+/* The acceleration that satisfies (1) at the state's own displacement, velocity and branch stress. */
+bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
+                   bd_work *work, double *flat);
+
+/* n_steps of the scheme prepared in work.
+ * Given:    decimate >= 1: a row of channels is kept each time the state's step count is a multiple;
+ *           record has room for n_steps/decimate + 1 rows of n_channels
+ * Returned: rows written; report
+ * Notes:    allocates nothing, calls no LAPACK. On failure the state is that of the last good step. */
+long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work, double *flat,
+                   long long n_steps, long long decimate, double *record, bd_report *report);
+
+/* Force and tangents of one bearing by itself, rows padded to the caller's n_coefs.
+ * Returned: g (n_coefs), K and C (n_coefs x n_coefs row-major) = dg/dz, dg/dzdot, loads (n_balls) */
+bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const double *z_rate,
+                            double angle, double cage_speed, double *g, double *K, double *C,
+                            double *loads);
+
+/* ---------------------------------------------------------------- harmonic response (harmonic.c) */
+
+typedef struct bd_harmonic_data {
+    double speed;           /* rad/s, for G and N */
+    int n_omega, n_in, n_out;
+    const double *omega;    /* (n_omega) rad/s */
+    const double *modulus;  /* (n_omega x n_layers) complex G*, re and im interleaved */
+    const double *bearing_K, *bearing_C; /* (coefs x coefs) row-major, linearised bearings */
+    const double *force;    /* (n_in x n) */
+    const double *row;      /* (n_out x n) */
+} bd_harmonic_data;
+
+typedef struct bd_harmonic_work bd_harmonic_work;
+bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmonic_data *data);
+void bd_harmonic_work_free(bd_harmonic_work *work);
+
+/* Response at frequencies first .. first + count - 1.
+ * Returned: response (n_omega x n_out x n_in) complex interleaved, those rows written
+ * Notes:    each block of the structure is solved by itself and the blocks are joined through the few
+ *           bearing coefficients; at omega = 0, where a free block is singular, all is solved as one.
+ * Reference: paper eq (20), with G' (omega) in its deviatoric part. */
+bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const bd_lapack *lapack,
+                      bd_harmonic_work *work, int first, int count, double *response);
+
+#endif

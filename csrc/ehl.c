@@ -1,0 +1,67 @@
+#include "ehl.h"
+
+#include "lanes.h"
+
+/* c(delta) and its slope from a table, ends held. */
+static double table_damping(const bd_contact *contact, double delta, double *slope)
+{
+    const double *x = contact->table_delta, *c = contact->table_c;
+    int last = contact->n_table - 1;
+    *slope = 0.0;
+    if (delta <= x[0])
+        return c[0];
+    if (delta >= x[last])
+        return c[last];
+    int i = 0;
+    while (delta > x[i + 1])
+        i++;
+    *slope = (c[i + 1] - c[i]) / (x[i + 1] - x[i]);
+    return c[i] + *slope * (delta - x[i]);
+}
+
+/* Given:    n contacts (whole lanes): indentation delta and its rate
+ * Returned: force     F = max(0, kappa (delta+h0)^1.5 + c(delta) rate), 0 where delta + h0 <= 0
+ *           stiffness dF/ddelta at fixed rate, damping dF/drate; all zero where F is clipped
+ * Notes:    a film cannot pull, hence the clip
+ * Reference: paper eq (1). */
+void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *restrict delta,
+                     const double *restrict rate, double *restrict force, double *restrict stiffness,
+                     double *restrict damping)
+{
+    const double kappa = contact->kappa, h0 = contact->h0;
+
+    for (int first = 0; first < n; first += BD_WIDTH) {
+        lanes d = LANES(delta + first), r = LANES(rate + first);
+        lanes s = d + h0, root, c = {0}, slope = {0}; /* slope: dc/ddelta */
+
+        /* elastic part: root of what film and solids are compressed by, zero out of contact */
+        lane_mask touching = LANES_POSITIVE(s);
+        s = LANES_WHERE(touching, s);
+        lanes_sqrt(&s, &root);
+
+        switch (contact->law) {
+        case BD_DAMPING_CONSTANT:
+            c = LANES_WHERE(touching, c + contact->c);
+            break;
+        case BD_DAMPING_LOAD:
+            c = (contact->c * 1.5 * kappa) * root;
+            slope = LANES_WHERE(touching, (contact->c * 0.75 * kappa) / root);
+            break;
+        case BD_DAMPING_TABLE:
+            for (int j = 0; j < BD_WIDTH; j++) {
+                double slope_j;
+                c[j] = table_damping(contact, d[j], &slope_j);
+                slope[j] = slope_j;
+            }
+            c = LANES_WHERE(touching, c);
+            break;
+        }
+
+        /* total force; a film cannot pull */
+        lanes total = kappa * (root * s) + c * r;
+        lane_mask loaded = LANES_POSITIVE(total);
+        LANES_AT(force + first) = LANES_WHERE(loaded, total);
+        LANES_AT(stiffness + first) = LANES_WHERE(loaded, 1.5 * kappa * root + slope * r);
+        LANES_AT(damping + first) = LANES_WHERE(loaded, c);
+    }
+}

@@ -1,0 +1,93 @@
+/* The audit: where the energy is, and which power changes it. Written from the physics of each element, not from
+ * the scheme, so that a mistake in the march does not cancel here. */
+#include <math.h>
+#include <string.h>
+
+#include "work.h"
+
+/* half x^T A x of a block-diagonal matrix, and A x into `product`. */
+static double quadratic(const bd_model *model, const double *A, const double *x, double *product)
+{
+    double sum = 0.0;
+    for (int b = 0; b < model->n_blocks; b++) {
+        const bd_block *block = &model->blocks[b];
+        const size_t n = (size_t)block->n;
+        for (size_t i = 0; i < n; i++) {
+            double row = 0.0;
+            for (size_t j = 0; j < n; j++)
+                row += A[block->matrix + i * n + j] * x[(size_t)block->offset + j];
+            product[(size_t)block->offset + i] = row;
+            sum += 0.5 * row * x[(size_t)block->offset + i];
+        }
+    }
+    return sum;
+}
+
+void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state, double t,
+                     bd_energy *energy)
+{
+    double load = 0.0, turning = 0.0, branch = 0.0, contact = 0.0, stored = 0.0, indentation = 0.0;
+
+    energy->kinetic = quadratic(model, model->M, state->v, work->loss);
+    energy->elastic = quadratic(model, model->K, state->x, work->loss);
+    double linear = 2.0 * quadratic(model, model->C, state->v, work->loss);
+
+    /* the circulatory force -speed N x: the shaft turns damping material through its own deflection */
+    quadratic(model, model->N, state->x, work->loss);
+    for (int i = 0; i < model->n_padded; i++)
+        turning -= work->scheme.speed * work->loss[i] * state->v[i];
+
+    bd_load_factors(model, work->scheme.speed, t, work->load_factor);
+    for (int k = 0; k < model->n_loads; k++)
+        for (int i = 0; i < model->n_padded; i++)
+            load += (work->load_factor[2 * k] * model->loads[k].p_cos[i] +
+                     work->load_factor[2 * k + 1] * model->loads[k].p_sin[i]) *
+                    state->v[i];
+
+    /* a branch is a spring 2 G and a dashpot 2 G tau in series, under the stress S */
+    for (int l = 0; l < model->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        for (int i = 0; i < layer->n_branches; i++) {
+            const double *S = state->stress + layer->stress + (size_t)i * (size_t)layer->padded;
+            double square = 0.0;
+            if (!(layer->modulus[i] > 0.0))
+                continue;
+            for (int r = 0; r < layer->rank; r++)
+                square += S[r] * S[r];
+            stored += 0.5 * square / (2.0 * layer->modulus[i]);
+            branch += square / (2.0 * layer->modulus[i] * layer->tau[i]);
+        }
+    }
+
+    for (int b = 0; b < model->n_bearings; b++) {
+        const bd_bearing_data *data = &model->bearings[b].data;
+        const bd_bearing_work *balls = &work->bearings[b];
+        for (int j = 0; j < data->n_balls; j++) {
+            double s = fmax(balls->delta[j] + data->contact.h0, 0.0);
+            double elastic = data->contact.kappa * s * sqrt(s);
+            indentation += 0.4 * elastic * s;
+            contact += (balls->force[j] - elastic) * balls->rate[j];
+            turning += balls->force[j] * balls->turning[j];
+        }
+    }
+
+    energy->stored = stored;
+    energy->indentation = indentation;
+    memcpy(energy->power, (double[]){load, turning, linear, branch, contact}, sizeof energy->power);
+}
+
+void bd_energy_step(const bd_model *model, bd_work *work, const bd_state *state, double t)
+{
+    bd_energy *energy = state->energy;
+    double *works[] = {&energy->load, &energy->turning, &energy->linear, &energy->branch,
+                       &energy->contact};
+    const double half = 0.5 * work->scheme.dt;
+    double before[5];
+
+    memcpy(before, energy->power, sizeof before);
+    bd_energy_rates(model, work, state, t, energy);
+    for (int i = 0; i < 5; i++)
+        *works[i] += half * (before[i] + energy->power[i]);
+    energy->throughput +=
+        half * (fabs(before[0] + before[1]) + fabs(energy->power[0] + energy->power[1]));
+}

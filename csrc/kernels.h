@@ -1,0 +1,42 @@
+/* kernels.h - inside the core: the hot loops, once per instruction set.
+ *
+ * ehl.c, balls.c and step.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
+ * functions carry the name as a suffix, and each set ends in one table of pointers. Nothing else of
+ * the core depends on the instruction set. */
+#ifndef BD_KERNELS_H
+#define BD_KERNELS_H
+
+#include "model.h"
+#include "work.h"
+
+#define BD_JOIN_(a, b) a##_##b
+#define BD_JOIN(a, b) BD_JOIN_(a, b)
+#ifdef BD_ISA
+#define BD_NAMED(name) BD_JOIN(name, BD_ISA)
+#endif
+
+struct bd_kernels {
+    /* balls.c: basis functions at the first ball's azimuth psi (rad) */
+    void (*turn)(const bd_bearing *bearing, bd_bearing_work *work, double psi);
+    /* balls.c: forces at coefficients z, z_rate (padded): g = sum F v; ball quantities stay in work */
+    void (*force)(const bd_bearing *bearing, bd_bearing_work *work, const double *z,
+                  const double *z_rate, double cage_speed, double *g);
+    /* balls.c: K = dg/dz and C = dg/dz_rate at the last force, n_coefs rows of (padded) stride */
+    void (*tangent)(const bd_bearing *bearing, const bd_bearing_work *work, double cage_speed,
+                    int stride, double *K, double *C);
+    /* step.c: predictors, trial branch stresses, and the acceleration without the bearings */
+    void (*predict)(const bd_model *model, bd_work *work, const bd_state *state);
+    /* step.c: bearing coefficients and rates that the structure would have without the bearings */
+    void (*observe)(const bd_model *model, bd_work *work);
+    /* step.c: z and z_rate that go with the bearing forces guessed */
+    void (*displace)(const bd_model *model, bd_work *work);
+    /* step.c: guess += share * inverse (force - guess) */
+    void (*correct)(const bd_model *model, bd_work *work, double share, const double *inverse);
+    /* step.c: completes the acceleration and makes the trial state the state */
+    void (*commit)(const bd_model *model, bd_work *work, bd_state *state);
+};
+
+/* The kernels of an instruction set, or NULL where this build or machine lacks it. */
+const bd_kernels *bd_kernels_for(bd_isa isa);
+
+#endif

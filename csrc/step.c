@@ -1,0 +1,133 @@
+/* The linear algebra of one step; the order of the calls is in newmark.c. */
+#include "balls.h"
+#include "dense.h"
+#include "maxwell.h"
+
+/* Predictors, trial branch stresses and the acceleration without the bearings. */
+static void predict(const bd_model *model, bd_work *work, const bd_state *state)
+{
+    const bd_scheme *scheme = &work->scheme;
+    const double dt = scheme->dt, in_x = (0.5 - scheme->beta) * dt * dt;
+    const double in_v = (1.0 - scheme->gamma) * dt;
+
+    for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
+        lanes a = LANES(state->a + i), v = LANES(state->v + i);
+        LANES_AT(work->x + i) = LANES(state->x + i) + dt * v + in_x * a;
+        LANES_AT(work->v + i) = v + in_v * a;
+        LANES_AT(work->a + i) = (lanes){0};
+    }
+    for (int i = 0; i < model->ranks; i += BD_WIDTH)
+        LANES_AT(work->history + i) = (lanes){0};
+
+    const bd_branch_weights *weights = work->weights;
+    for (int b = 0; b < model->n_blocks; b++) {
+        const bd_block *block = &model->blocks[b];
+        const double *columns = work->step + work->step_at[b];
+        double *a = work->a + block->offset;
+        const size_t square = (size_t)block->padded * (size_t)block->n;
+
+        columns_add(block->padded, block->n, columns, block->padded, work->x + block->offset, a);
+        columns += square;
+        columns_add(block->padded, block->n, columns, block->padded, work->v + block->offset, a);
+        columns += square;
+        for (int l = block->layer; l < block->layer + block->n_layers; l++) {
+            const bd_layer *layer = &model->layers[l];
+            double *history = work->history + layer->offset;
+            for (int i = 0; i < layer->n_branches; i++) {
+                size_t at = layer->stress + (size_t)i * (size_t)layer->padded;
+                maxwell_trial(layer->padded, *weights++, state->stress + at,
+                              state->y_rate + layer->offset, work->trial + at, history);
+            }
+            columns_add(block->padded, layer->rank, columns, block->padded, history, a);
+            columns += (size_t)layer->rank * (size_t)block->padded;
+        }
+    }
+    columns_add(model->n_padded, 2 * model->n_loads, work->SP, model->n_padded, work->load_factor,
+                work->a);
+}
+
+/* Bearing coefficients and rates that the structure would have without the bearings. */
+static void observe(const bd_model *model, bd_work *work)
+{
+    const bd_scheme *scheme = &work->scheme;
+    const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
+
+    for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
+        lanes a = LANES(work->a + i);
+        LANES_AT(work->x_new + i) = LANES(work->x + i) + in_x * a;
+        LANES_AT(work->v_new + i) = LANES(work->v + i) + in_v * a;
+    }
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+        LANES_AT(work->z_linear + k) = LANES_AT(work->z_rate_linear + k) = (lanes){0};
+    columns_add_two(model->coefs, model->n_padded, model->B, model->coefs, work->x_new, work->v_new,
+                    work->z_linear, work->z_rate_linear);
+}
+
+/* z and z_rate that go with the bearing forces guessed. */
+static void displace(const bd_model *model, bd_work *work)
+{
+    const bd_scheme *scheme = &work->scheme;
+    const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
+
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+        LANES_AT(work->Wg + k) = (lanes){0};
+    columns_add(model->coefs, model->coefs, work->W, model->coefs, work->guess, work->Wg);
+    for (int k = 0; k < model->coefs; k += BD_WIDTH) {
+        lanes Wg = LANES(work->Wg + k);
+        LANES_AT(work->z + k) = LANES(work->z_linear + k) - in_x * Wg;
+        LANES_AT(work->z_rate + k) = LANES(work->z_rate_linear + k) - in_v * Wg;
+    }
+}
+
+/* guess += share * inverse (force - guess); returns through `change` what force and guess differed. */
+static void correct(const bd_model *model, bd_work *work, double share, const double *inverse)
+{
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+        LANES_AT(work->change + k) = share * (LANES(work->force + k) - LANES(work->guess + k));
+    columns_add(model->coefs, model->coefs, inverse, model->coefs, work->change, work->guess);
+}
+
+/* Completes the acceleration and makes the trial state the state. */
+static void commit(const bd_model *model, bd_work *work, bd_state *state)
+{
+    const bd_scheme *scheme = &work->scheme;
+    const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
+
+    for (int k = 0; k < model->coefs; k += BD_WIDTH) {
+        LANES_AT(state->g + k) = LANES(work->guess + k);
+        LANES_AT(work->change + k) = -LANES(work->guess + k);
+    }
+    columns_add(model->n_padded, model->coefs, work->SB, model->n_padded, work->change, work->a);
+    for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
+        lanes a = LANES(work->a + i);
+        LANES_AT(state->a + i) = a;
+        LANES_AT(state->x + i) = LANES(work->x + i) + in_x * a;
+        LANES_AT(state->v + i) = LANES(work->v + i) + in_v * a;
+    }
+
+    const bd_branch_weights *weights = work->weights;
+    for (int l = 0; l < model->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        const bd_block *block = &model->blocks[layer->block];
+        double *rate = state->y_rate + layer->offset;
+        for (int r = 0; r < layer->padded; r += BD_WIDTH)
+            LANES_AT(rate + r) = (lanes){0};
+        columns_add(layer->padded, block->n, layer->L, layer->padded, state->v + block->offset, rate);
+        for (int i = 0; i < layer->n_branches; i++) {
+            size_t at = layer->stress + (size_t)i * (size_t)layer->padded;
+            maxwell_commit(layer->padded, *weights++, work->trial + at, rate, state->stress + at);
+        }
+    }
+}
+
+extern const bd_kernels BD_NAMED(bd_kernels);
+const bd_kernels BD_NAMED(bd_kernels) = {
+    .turn = BD_NAMED(bd_bearing_turn),
+    .force = BD_NAMED(bd_bearing_force),
+    .tangent = BD_NAMED(bd_bearing_tangent),
+    .predict = predict,
+    .observe = observe,
+    .displace = displace,
+    .correct = correct,
+    .commit = commit,
+};

@@ -1,0 +1,54 @@
+/* work.h - inside the core: scratch of one thread for one time step size. */
+#ifndef BD_WORK_H
+#define BD_WORK_H
+
+#include <stdbool.h>
+
+#include "model.h"
+
+typedef struct bd_kernels bd_kernels;
+
+struct bd_work {
+    bd_scheme scheme;
+    const bd_kernels *kernels;
+    double *memory; /* everything below lies in it */
+
+    /* operators of the prepared step */
+    double *step;   /* per block, columns [-S^-1 (K + speed N) | -S^-1 (C + C_ve + speed G) | -S^-1 L] */
+    size_t *step_at; /* (n_blocks) where a block's columns start */
+    double *SB;     /* S^-1 B^T: a column per padded coefficient */
+    double *SP;     /* S^-1 p: two columns per load (cosine, sine) */
+    double *W;      /* B S^-1 B^T: a column per padded coefficient */
+    bd_branch_weights *weights; /* layer by layer, branch by branch */
+
+    /* vectors of a step, padded */
+    double *x, *v, *a;            /* predictor; a without the bearings, then with */
+    double *x_new, *v_new;        /* without the bearings */
+    double *history, *trial;      /* (ranks), (n_stress) */
+    double *y_rate;               /* (ranks) at the new time */
+    double *z_linear, *z_rate_linear, *z, *z_rate, *Wg; /* (coefs) */
+    double *force, *guess, *change; /* (coefs) */
+    double *K, *C, *J, *inverse;  /* (coefs x coefs) */
+    double *load_factor;          /* (2 n_loads) */
+    double *loss;                 /* (n_padded) scratch of the audit */
+    bd_bearing_work *bearings;
+};
+
+/* Takes over a scheme and chooses its kernels. Returned: whether the scheme is valid on this machine. */
+bool bd_work_choose(bd_work *work, const bd_scheme *scheme);
+
+/* What the cosine and sine column of each load are multiplied with at time t. */
+void bd_load_factors(const bd_model *model, double speed, double t, double *factor);
+
+/* Forces of all bearings at work's z, z_rate into work->force; basis functions at time t first. */
+void bd_turn_bearings(const bd_model *model, bd_work *work, double t);
+void bd_force_bearings(const bd_model *model, bd_work *work);
+
+/* Stored energies and powers at the state, whose bearing quantities stand in work. */
+void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state, double t,
+                     bd_energy *energy);
+
+/* Adds a step's work by the trapezoidal rule from the powers at both ends. */
+void bd_energy_step(const bd_model *model, bd_work *work, const bd_state *state, double t);
+
+#endif

@@ -1,0 +1,32 @@
+"""Ball bearings: internal geometry, Hertz contact, lubricant film, and the force law between the rings."""
+
+from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.geometry import Frequencies, Geometry
+from bearingdyn.bearing.hertz import (
+    PointContact,
+    contact_modulus,
+    resultant_damping,
+    resultant_deflection_coefficient,
+)
+from bearingdyn.bearing.kernel import BearingKernel, ConstantDamping, Damping, LoadDamping, TabulatedDamping
+from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
+
+__all__ = [
+    "BallBearing",
+    "BearingKernel",
+    "ConstantDamping",
+    "Damping",
+    "Film",
+    "Frequencies",
+    "Geometry",
+    "LoadDamping",
+    "Lubricant",
+    "PointContact",
+    "TabulatedDamping",
+    "Walther",
+    "contact_modulus",
+    "hamrock_dowson",
+    "nijenbanning_venner_moes",
+    "resultant_damping",
+    "resultant_deflection_coefficient",
+]

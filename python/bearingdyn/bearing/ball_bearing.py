@@ -1,0 +1,326 @@
+"""A ball bearing as a force law between two rigid rings.
+
+Coordinates q (6,) = (x, y, z, θx, θy, θz): the inner ring relative to the outer, z along the shaft,
+references on the axis at mid-width. Balls have no degrees of freedom; each is one spring and damper between
+the groove centres (paper §2.2). Tilts enter linearly: an exact rotation adds −½Rθ² to the radial motion,
+which matters from milliradians on (1.7 % in a pure-moment case of 4 mrad).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.bearing.checks import nonnegative, number, positive, require, vector
+from bearingdyn.bearing.geometry import Frequencies, Geometry
+from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
+from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
+from bearingdyn.bearing.minimum import minimum
+from bearingdyn.material import STEEL, Elastic
+
+STATIC_PRESSURE = 4.2e9
+"""Contact pressure that defines the static rating of a ball bearing (ISO 76), Pa."""
+
+_Response: TypeAlias = tuple[
+    NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]
+]
+_MOTION = "(x, y, z, θx, θy, θz) of the inner ring relative to the outer ring"
+
+
+class Overrides(NamedTuple):
+    """Values given instead of those the geometry would have; None where the geometry decides."""
+
+    kappa: float | None = None
+    cage_ratio: float | None = None
+    arm: float | None = None
+
+
+@dataclass(frozen=True, init=False)
+class BallBearing:
+    """Single-row ball bearing with rigid rings.
+
+    q = 0 is the centred position when a clearance is given, and the position in which all balls just touch
+    when a contact angle is given (A sinα0 further along z than centred).
+
+    Parameters
+    ----------
+    Z
+        Number of balls, ≥ 3.
+    Dw, Dpw
+        Ball and pitch diameter, m.
+    fi, fo
+        Groove radius over ball diameter, inner and outer race, above ½.
+    clearance
+        Diametral clearance Pd, m. Exactly one of clearance and contact_angle.
+    contact_angle
+        Free contact angle α0, rad; the inner ring then carries axial load towards +z.
+    material, ball_material
+        Elastic material of the rings and of the balls.
+    film
+        Central film thickness of both contacts of a ball together, h_i + h_o, m: F = κ (δ + film)^{3/2}.
+    damping
+        Damping of one ball, both contacts in series: a number in N s/m, or ConstantDamping, TabulatedDamping,
+        LoadDamping.
+    kappa
+        Deflection coefficient of one ball, both contacts in series, instead of Hertz's, N/m^1.5.
+    cage_ratio
+        Cage speed over inner-ring speed instead of ½(1 − γ).
+    angle0
+        Azimuth of the first ball at cage angle 0, rad, from x towards y.
+    arm
+        Arm of tilts and moments instead of the radius R_i of the inner groove centres, m.
+    overrides
+        For `dataclasses.replace` only: carries kappa, cage_ratio and arm as given, so that a changed geometry
+        changes what was not given.
+
+    Raises
+    ------
+    ValueError
+        Naming the field, its value and what would be right.
+    """
+
+    Z: int
+    Dw: float
+    Dpw: float
+    fi: float
+    fo: float
+    clearance: float | None
+    contact_angle: float | None
+    material: Elastic
+    ball_material: Elastic
+    film: float
+    damping: Damping
+    angle0: float
+    overrides: Overrides
+
+    def __init__(
+        self,
+        Z: int,
+        Dw: float,
+        Dpw: float,
+        fi: float,
+        fo: float,
+        *,
+        clearance: float | None = None,
+        contact_angle: float | None = None,
+        material: Elastic = STEEL,
+        ball_material: Elastic = STEEL,
+        film: float = 0.0,
+        damping: float | Damping = 0.0,
+        kappa: float | None = None,
+        cage_ratio: float | None = None,
+        angle0: float = 0.0,
+        arm: float | None = None,
+        overrides: Overrides = Overrides(),  # noqa: B008 (immutable)
+    ) -> None:
+        Geometry(Z, Dw, Dpw, fi, fo, clearance, contact_angle)
+        for name, body in (("material", material), ("ball_material", ball_material)):
+            require(isinstance(body, Elastic), name, body, "give a material.Elastic, such as STEEL")
+        given = Overrides(
+            overrides.kappa if kappa is None else kappa,
+            overrides.cage_ratio if cage_ratio is None else cage_ratio,
+            overrides.arm if arm is None else arm,
+        )
+        if given.kappa is not None:
+            positive("kappa", given.kappa, "must be positive and finite, in N/m^1.5")
+        if given.cage_ratio is not None:
+            ratio = number("cage_ratio", given.cage_ratio)
+            require(0 <= ratio <= 1, "cage_ratio", ratio, "must lie in 0..1 (½(1 − γ), near 0.4)")
+        if given.arm is not None:
+            positive("arm", given.arm, "the arm of the moments in metres must be positive and finite")
+        values = {
+            "Z": int(Z),
+            "Dw": Dw,
+            "Dpw": Dpw,
+            "fi": fi,
+            "fo": fo,
+            "clearance": clearance,
+            "contact_angle": contact_angle,
+            "material": material,
+            "ball_material": ball_material,
+            "film": nonnegative("film", film, "h_i + h_o in metres must be zero or positive"),
+            "damping": as_damping(damping),
+            "angle0": number("angle0", angle0, "the azimuth of the first ball in rad must be finite"),
+            "overrides": given,
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @cached_property
+    def geometry(self) -> Geometry:
+        """Balls and grooves: A, α0, play, R_i, R_o, γ, osculation, kinematics."""
+        return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, self.clearance, self.contact_angle)
+
+    @cached_property
+    def inner_contact(self) -> PointContact:
+        """Hertz contact of a ball with the inner race."""
+        return race_contact(self.geometry, "inner", self.material, self.ball_material)
+
+    @cached_property
+    def outer_contact(self) -> PointContact:
+        """Hertz contact of a ball with the outer race."""
+        return race_contact(self.geometry, "outer", self.material, self.ball_material)
+
+    @cached_property
+    def kappa(self) -> float:
+        """Deflection coefficient κ of one ball, both contacts in series (paper eq. 2), N/m^1.5."""
+        if self.overrides.kappa is not None:
+            return float(self.overrides.kappa)
+        return resultant_deflection_coefficient(self.inner_contact.kappa, self.outer_contact.kappa)
+
+    @property
+    def cage_ratio(self) -> float:
+        """Cage speed over inner-ring speed, outer ring at rest."""
+        given = self.overrides.cage_ratio
+        return self.geometry.cage_ratio if given is None else float(given)
+
+    @property
+    def arm(self) -> float:
+        """Arm R of tilts and moments, m."""
+        return self.geometry.R_i if self.overrides.arm is None else float(self.overrides.arm)
+
+    @cached_property
+    def static_rating(self) -> float:
+        """Radial load ZQcosα/5 with 4.2 GPa in the heavier contact (ISO 76), N; axial play neglected."""
+        Q = min(c.load_at_pressure(STATIC_PRESSURE) for c in (self.inner_contact, self.outer_contact))
+        return self.Z * Q * math.cos(self.contact_angle or 0.0) / 5
+
+    def frequencies(self, speed: float) -> Frequencies:
+        """Cage, ball-pass and ball-spin frequencies, Hz, by geometry, at the inner-ring speed in rad/s."""
+        return self.geometry.frequencies(speed)
+
+    def kernel(self) -> BearingKernel:
+        """The bearing as the contact kernel takes it: five raceway coefficients, see `coefficients`."""
+        return self._kernel
+
+    @cached_property
+    def _kernel(self) -> BearingKernel:
+        geometry, A = self.geometry, self.geometry.A
+        law, c, table = self.damping.kernel_fields()
+        if self.clearance is not None:
+            half = self.clearance / 2
+            x0, y0, e0 = 0.0, A - half, -half * (2 * A - half)
+        else:
+            x0, y0, e0 = A * math.sin(geometry.alpha0), A * math.cos(geometry.alpha0), 0.0
+        return BearingKernel(
+            Z=self.Z,
+            axial=np.array([0, 0, 1, 1, 1], np.intc),
+            order=np.array([1, 1, 0, 1, 1], np.intc),
+            sine=np.array([0, 1, 0, 0, 1], np.intc),
+            x0=x0,
+            y0=y0,
+            A=A,
+            e0=e0,
+            kappa=self.kappa,
+            h0=self.film,
+            damping_law=law,
+            damping_c=c,
+            damping_table=table,
+            cage_ratio=self.cage_ratio,
+            angle0=self.angle0,
+        )
+
+    def coefficients(self) -> NDArray[np.float64]:
+        """(5, 6) matrix from q to the raceway coefficients, lengths in m.
+
+        Rows: radial cos ψ (x), radial sin ψ (y), axial mean (z), axial cos ψ (−R θy), axial sin ψ (+R θx).
+        """
+        B = np.zeros((5, 6))
+        B[0, 0] = B[1, 1] = B[2, 2] = 1.0
+        B[3, 4] = -self.arm
+        B[4, 3] = self.arm
+        return B
+
+    def relative(self, q: ArrayLike) -> NDArray[np.float64]:
+        """Raceway coefficients (5,), m, of a relative motion q (6,), m and rad."""
+        return self.coefficients() @ vector("q", q, (6,), _MOTION)
+
+    def force(
+        self, q: ArrayLike, angle: float = 0.0, velocity: ArrayLike | None = None, speed: float = 0.0
+    ) -> NDArray[np.float64]:
+        """Load (6,), N and N m, that holds the inner ring at q: +∇V (minus it acts on the ring).
+
+        Parameters
+        ----------
+        q
+            (6,) inner relative to outer ring, m and rad.
+        angle
+            Cage angle, rad: the first ball stands at angle0 + angle.
+        velocity
+            (6,) rate of q, m/s and rad/s; None is rest.
+        speed
+            Speed of the inner ring, rad/s; the cage turns at cage_ratio × speed and moves the balls through
+            their indentations, which damping resists.
+
+        Raises
+        ------
+        ValueError
+            On a wrong shape or a value that is not finite.
+        """
+        rate = np.zeros(6) if velocity is None else velocity
+        return self.coefficients().T @ self._evaluate(q, angle, rate, speed)[0]
+
+    def stiffness(self, q: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
+        """Tangent stiffness (6, 6) ∂force/∂q at rest, symmetric, N/m, N and N m."""
+        B = self.coefficients()
+        return B.T @ self._evaluate(q, angle, np.zeros(6), 0.0)[1] @ B
+
+    def damping_matrix(self, q: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
+        """Tangent damping (6, 6) ∂force/∂velocity at rest, symmetric, N s/m, N s and N m s."""
+        B = self.coefficients()
+        return B.T @ self._evaluate(q, angle, np.zeros(6), 0.0)[2] @ B
+
+    def ball_loads(self, q: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
+        """Contact load (Z,) of each ball at rest, N, balls in the order of their azimuth."""
+        return self._evaluate(q, angle, np.zeros(6), 0.0)[3]
+
+    def displacement(self, load: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
+        """Static equilibrium q (6,) of the inner ring under a load (6,), θz held, outer ring fixed.
+
+        Where the loaded balls leave a motion free (a ring resting on one ball rolls sideways), the
+        ring stays at its origin in that motion.
+
+        Parameters
+        ----------
+        load
+            (6,) forces N and moments N m on the inner ring; whatever holds θz carries the moment about z.
+        angle
+            Cage angle, rad.
+
+        Raises
+        ------
+        ValueError
+            On a wrong shape or a value that is not finite.
+        ArithmeticError
+            If no equilibrium is found.
+        """
+        f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
+        turn = self.angle0 + number("angle", angle, "the cage angle in rad must be finite")
+        R = self.arm
+        target = np.array([f[0], f[1], f[2], -f[4] / R, f[3] / R])
+        still = np.zeros(5)
+        from bearingdyn import core  # late: the compiled kernel is needed only here and in _evaluate
+
+        def stored(z: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], NDArray[np.float64], float]:
+            g, K, _, loads = core.bearing_force(self._kernel, z, still, turn, 0.0)
+            # ∫κ s^{3/2} ds = (2/5) F s with s = (F/κ)^{2/3}
+            return float(0.4 * (loads * (loads / self.kappa) ** (2 / 3)).sum()), g, K, float(loads.sum())
+
+        expected = (float(np.linalg.norm(target)) / self.kappa) ** (2 / 3) + self.geometry.Pd / 2 + self.film
+        z = minimum(stored, target, expected or 1e-9)
+        return np.array([z[0], z[1], z[2], z[4] / R, -z[3] / R, 0.0])
+
+    def _evaluate(self, q: ArrayLike, angle: float, velocity: ArrayLike, speed: float) -> _Response:
+        from bearingdyn import core
+
+        z = self.relative(q)
+        zdot = self.coefficients() @ vector("velocity", velocity, (6,), f"rate of {_MOTION}")
+        turn = self.angle0 + number("angle", angle, "the cage angle in rad must be finite")
+        cage = self.cage_ratio * number("speed", speed, "the inner-ring speed in rad/s must be finite")
+        response: _Response = core.bearing_force(self._kernel, z, zdot, turn, cage)
+        return response

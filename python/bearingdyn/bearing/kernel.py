@@ -1,0 +1,144 @@
+"""What the contact kernel is told about a bearing, and the laws of contact damping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.bearing.checks import nonnegative, number, require, vector
+
+Law: TypeAlias = Literal["constant", "table", "load"]
+KernelFields: TypeAlias = tuple[Law, float, NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class ConstantDamping:
+    """c(δ) = c, N s/m: the paper's harmonic case (30 N s/m). The force jumps where contact is lost.
+
+    Raises ValueError if c is negative or not finite.
+    """
+
+    c: float
+
+    def __post_init__(self) -> None:
+        nonnegative("damping.c", self.c, "the damping of one ball in N s/m must be zero or positive")
+
+    def kernel_fields(self) -> KernelFields:
+        """Law, constant and table as the kernel takes them."""
+        return "constant", float(self.c), np.zeros((0, 2))
+
+
+@dataclass(frozen=True, eq=False)
+class TabulatedDamping:
+    """c(δ) linear between table points, end values held outside.
+
+    At an inner table point the slope is that of the interval below it.
+
+    Parameters
+    ----------
+    delta
+        (n,) contact indentations δ (film not included), m, strictly increasing, n ≥ 2.
+    c
+        (n,) damping of one ball, N s/m, ≥ 0.
+
+    Raises
+    ------
+    ValueError
+        If the table is unsorted, ragged, too short, negative or not finite.
+    """
+
+    delta: NDArray[np.float64]
+    c: NDArray[np.float64]
+
+    def __init__(self, delta: ArrayLike, c: ArrayLike) -> None:
+        n = np.size(delta)
+        require(n >= 2, "damping.delta", delta, "a table needs two points or more (else ConstantDamping)")
+        x = vector("damping.delta", delta, (n,), "indentations in metres")
+        y = vector("damping.c", c, (n,), "one damping in N s/m for each delta")
+        require(bool((np.diff(x) > 0).all()), "damping.delta", delta, "must be strictly increasing")
+        require(bool((y >= 0).all()), "damping.c", c, "must be zero or positive")
+        for array in (x, y):
+            array.flags.writeable = False
+        object.__setattr__(self, "delta", x)
+        object.__setattr__(self, "c", y)
+
+    def kernel_fields(self) -> KernelFields:
+        """Law, constant and table as the kernel takes them."""
+        return "table", 0.0, np.column_stack([self.delta, self.c])
+
+
+@dataclass(frozen=True)
+class LoadDamping:
+    """c(δ) = time × linearised stiffness, time·(3/2)κ√(δ + h0): vanishes where contact is lost.
+
+    Values of (0.25–2.5)e-5 s are quoted for lubricated contacts; unverified here.
+
+    Raises ValueError if `time` (s) is negative or not finite.
+    """
+
+    time: float
+
+    def __post_init__(self) -> None:
+        nonnegative("damping.time", self.time, "the damping time in seconds must be zero or positive")
+
+    def kernel_fields(self) -> KernelFields:
+        """Law, constant and table as the kernel takes them."""
+        return "load", float(self.time), np.zeros((0, 2))
+
+
+Damping: TypeAlias = ConstantDamping | TabulatedDamping | LoadDamping
+
+
+def as_damping(damping: object) -> Damping:
+    """The damping law itself, or a plain number of N s/m as ConstantDamping; ValueError otherwise."""
+    if isinstance(damping, ConstantDamping | TabulatedDamping | LoadDamping):
+        return damping
+    remedy = (
+        "give the damping of one ball in N s/m, zero or positive, "
+        "or ConstantDamping, TabulatedDamping or LoadDamping"
+    )
+    return ConstantDamping(nonnegative("damping", number("damping", damping, remedy), remedy))
+
+
+@dataclass(frozen=True, eq=False)
+class BearingKernel:
+    """One bearing as the contact kernel sees it.
+
+    Groove-centre displacement of the inner race relative to the outer, a Fourier series in the azimuth ψ:
+    radial dY(ψ) and axial dX(ψ), each the sum of its coefficients z_k times cos or sin of order[k]·ψ.
+    The groove centres stand at (x0 + dX, y0 + dY); δ is their distance less A. Ball j (from 1) is at
+    ψ_j = angle + 2π(j − 1)/Z, where `angle` is what the caller passes: at the start of a run, `angle0`.
+    """
+
+    Z: int
+    """Number of balls."""
+    axial: NDArray[np.intc]
+    """(n,) 0 for a radial coefficient, 1 for an axial one."""
+    order: NDArray[np.intc]
+    """(n,) order in the azimuth, ≥ 0."""
+    sine: NDArray[np.intc]
+    """(n,) 0 for cos, 1 for sin."""
+    x0: float
+    """Axial distance of the groove centres at z = 0, m."""
+    y0: float
+    """Radial distance of the groove centres at z = 0, m."""
+    A: float
+    """Distance of the groove centres at which a ball just touches both races, m."""
+    e0: float
+    """x0² + y0² − A², formed without cancellation, m²."""
+    kappa: float
+    """Deflection coefficient of both contacts of a ball in series, N/m^1.5."""
+    h0: float
+    """Film thickness of both contacts of a ball together, m."""
+    damping_law: Law
+    damping_c: float
+    """c in N s/m ("constant") or the damping time in s ("load"); 0 for "table"."""
+    damping_table: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2)))
+    """(n, 2) rows (δ in m, c in N s/m); empty unless the law is "table"."""
+    cage_ratio: float = 0.5
+    """Cage speed over inner-ring speed."""
+    angle0: float = 0.0
+    """Azimuth of the first ball at the start, rad."""

@@ -1,0 +1,187 @@
+"""The one door to the C core: typed calls, and statuses turned into exceptions.
+
+Everything here is arrays in, arrays out; what the arrays mean is said in csrc/bearingdyn.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bearingdyn import _core
+
+if TYPE_CHECKING:
+    from bearingdyn.bearing.kernel import BearingKernel
+
+Array: TypeAlias = NDArray[np.float64]
+Progress: TypeAlias = Callable[[int, int], object]
+Model = _core.Model
+
+LAWS = {"constant": 0, "table": 1, "load": 2}
+LOAD_KINDS = {"constant": 0, "harmonic": 1, "rotating": 2, "sampled": 3}
+CHANNEL_KINDS = {"displacement": 0, "velocity": 1, "acceleration": 2, "force": 3, "ball": 4, "loaded": 5}
+ENERGIES = (
+    "kinetic",
+    "elastic",
+    "stored",
+    "indentation",
+    "load",
+    "turning",
+    "linear",
+    "branch",
+    "contact",
+    "throughput",
+)
+INTERRUPTED = 1
+ISAS = {"best": 0, "base": 1, "avx2": 2, "avx512": 3}
+
+
+class SolverError(RuntimeError):
+    """A march that could not go on. `partial` holds what was computed up to then, `report` where it stopped."""
+
+    def __init__(self, message: str, report: Report, partial: object = None) -> None:
+        super().__init__(message)
+        self.report = report
+        self.partial = partial
+
+
+class Interrupted(KeyboardInterrupt):
+    """A march ended by the user. `partial` holds what was computed up to then."""
+
+    def __init__(self, message: str, partial: object = None) -> None:
+        super().__init__(message)
+        self.partial = partial
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """Newmark's scheme and the tolerance of the bearing forces in it (bd_scheme)."""
+
+    dt: float
+    beta: float = 0.25
+    gamma: float = 0.5
+    speed: float = 0.0
+    tolerance: float = 1e-9
+    max_iterations: int = 40
+    audit: bool = False
+    isa: str = "best"
+
+
+@dataclass(frozen=True)
+class Report:
+    """Where and how a march ended (bd_report)."""
+
+    status: int
+    steps: int
+    iterations: int
+    refreshes: int
+    t: float
+    residual: float
+    bearing: int
+
+    @property
+    def text(self) -> str:
+        """The status in words."""
+        return _core.status_text(self.status)
+
+
+def kernel_tuple(kernel: BearingKernel) -> tuple[object, ...]:
+    """A bearing as the core parses it; radial coefficients must come before axial ones."""
+    axial = np.asarray(kernel.axial)
+    if np.any(np.diff(axial) < 0):
+        raise ValueError("axial must list all radial coefficients (0) before the axial ones (1)")
+    return (
+        int(kernel.Z),
+        kernel.order,
+        kernel.sine,
+        int(np.count_nonzero(axial == 0)),
+        float(kernel.x0),
+        float(kernel.y0),
+        float(kernel.A),
+        float(kernel.e0),
+        float(kernel.kappa),
+        float(kernel.h0),
+        LAWS[kernel.damping_law],
+        float(kernel.damping_c),
+        np.asarray(kernel.damping_table, dtype=np.float64).reshape(-1, 2),
+        float(kernel.cage_ratio),
+        float(kernel.angle0),
+    )
+
+
+def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Array, tau: Array) -> Array:
+    """Deviatoric stress (nt, m) of a material point under a strain rate (nt, m) linear between samples.
+
+    dt in s, one number or (nt − 1,); G in Pa and tau in s, (N,). From e = 0 and S = 0; paper eq (9).
+    """
+    steps = np.broadcast_to(np.asarray(dt, dtype=np.float64), (max(len(rate) - 1, 0),))
+    return _core.maxwell_stress(rate, steps, G0, eta0, G, tau)
+
+
+def bearing_force(
+    kernel: BearingKernel, z: Array, z_rate: Array, angle: float, cage_speed: float
+) -> tuple[Array, Array, Array, Array]:
+    """Force g (n,) = +∇V on a bearing's coefficients, tangents dg/dz and dg/dż (n, n), ball loads (Z,) in N."""
+    return _core.bearing_force(kernel_tuple(kernel), z, z_rate, angle, cage_speed)
+
+
+def march(
+    model: Model,
+    state: Array,
+    scheme: Scheme,
+    steps: int,
+    decimate: int = 1,
+    *,
+    start: bool = False,
+    progress: Progress | None = None,
+) -> tuple[Array, Array, Report]:
+    """March a state; returns the record (rows, channels), the new state and the report, whatever its status.
+
+    With `start`, the acceleration is first made to satisfy the equation of motion.
+    """
+    record, new_state, report = model.march(
+        state,
+        steps,
+        decimate,
+        scheme.dt,
+        scheme.beta,
+        scheme.gamma,
+        scheme.speed,
+        scheme.tolerance,
+        scheme.max_iterations,
+        scheme.audit,
+        ISAS[scheme.isa],
+        start,
+        progress,
+    )
+    return record, new_state, Report(*report)
+
+
+def harmonic(
+    model: Model,
+    omega: Array,
+    modulus: NDArray[np.complex128],
+    bearing_K: Array,
+    bearing_C: Array,
+    force: Array,
+    row: Array,
+    speed: float = 0.0,
+    progress: Progress | None = None,
+) -> NDArray[np.complex128]:
+    """Complex response (frequencies, outputs, inputs) to unit forces; paper eq (20).
+
+    omega (f,) rad/s; modulus (f, layers) G*(ω) in Pa; bearing_K, bearing_C (coefficients, coefficients)
+    linearised bearings; force (inputs, n); row (outputs, n). Raises ArithmeticError where the dynamic
+    stiffness is singular.
+    """
+    return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress)
+
+
+def energies(model: Model, state: Array) -> dict[str, float]:
+    """What the audit of a march integrated, J: the names of ENERGIES."""
+    values: Sequence[float] = model.unpack(state)[4].tolist()
+    return dict(zip(ENERGIES, values, strict=True))

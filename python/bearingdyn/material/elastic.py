@@ -1,0 +1,55 @@
+"""Linear elastic, isotropic materials."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """Linear elastic, isotropic material.
+
+    Parameters
+    ----------
+    E
+        Young's modulus, Pa.
+    nu
+        Poisson's ratio, −1 < nu < 0.5.
+    density
+        Mass density, kg/m³.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside its range or not finite.
+    """
+
+    E: float
+    nu: float
+    density: float
+
+    def __post_init__(self) -> None:
+        if not (self.E > 0 and math.isfinite(self.E)):
+            raise ValueError(f"Elastic.E = {self.E!r} Pa: Young's modulus must be positive and finite")
+        if not -1 < self.nu < 0.5:
+            raise ValueError(
+                f"Elastic.nu = {self.nu!r}: Poisson's ratio must lie strictly between -1 and 0.5 "
+                "(for a nearly incompressible material take 0.4999, or Maxwell with a bulk modulus)"
+            )
+        if not (self.density > 0 and math.isfinite(self.density)):
+            raise ValueError(f"Elastic.density = {self.density!r} kg/m³: must be positive and finite")
+
+    @property
+    def G(self) -> float:
+        """Shear modulus E/2(1+ν), Pa."""
+        return self.E / (2 * (1 + self.nu))
+
+    @property
+    def K(self) -> float:
+        """Bulk modulus E/3(1−2ν), Pa."""
+        return self.E / (3 * (1 - 2 * self.nu))
+
+
+STEEL = Elastic(E=210e9, nu=0.3, density=7850.0)
+"""Bearing and structural steel: 210 GPa, 0.3, 7850 kg/m³."""

@@ -1,0 +1,348 @@
+"""The generalised Maxwell model: spring, dashpot and branches in parallel (paper fig. 1, eqs 6, 7, 17-19)."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.material.shift import WLF, Arrhenius, ShiftTable, law_from_dict, law_to_dict
+
+
+@dataclass(frozen=True)
+class FitReport:
+    """How well a Maxwell model renders the master curve it was fitted to.
+
+    Errors are relative deviations ln(model/measured) of the points inside the band.
+
+    Attributes
+    ----------
+    band
+        Lowest and highest frequency at the reference temperature, Hz.
+    points
+        Number of points inside the band.
+    storage_rms, storage_max
+        Of the storage modulus G′.
+    tan_delta_rms, tan_delta_max
+        Of the loss factor tan δ.
+    names
+        Names of the fitted parameters: ln G0, ln G1 …, ln tau1 …, ln eta0; those at a bound are left out.
+    covariance
+        Of those parameters (len(names), len(names)), from the residuals' own scatter.
+    """
+
+    band: tuple[float, float]
+    points: int
+    storage_rms: float
+    storage_max: float
+    tan_delta_rms: float
+    tan_delta_max: float
+    names: tuple[str, ...]
+    covariance: NDArray[np.float64] = field(compare=False, repr=False)
+
+
+def _branches(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    array = np.array(values, dtype=np.float64)
+    if array.ndim != 1:
+        raise ValueError(
+            f"Maxwell.{name} has shape {array.shape}: must be one-dimensional, a value per branch"
+        )
+    array.flags.writeable = False
+    return array
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Maxwell:
+    """Generalised Maxwell material: viscoelastic in shear, elastic in volume.
+
+    Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
+    G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).
+
+    Parameters
+    ----------
+    G0
+        Relaxed shear modulus, Pa, ≥ 0 (0: a fluid).
+    G, tau
+        Strength, Pa, ≥ 0, and relaxation time, s, > 0, of each branch; (N,) each, stored read-only.
+    eta0
+        Viscosity of the parallel dashpot, Pa s, ≥ 0.
+    K
+        Bulk modulus, Pa, constant.
+    density
+        Mass density, kg/m³.
+    law
+        Shift law (WLF, Arrhenius, ShiftTable), for :meth:`at`.
+    temperature
+        Temperature at which tau and eta0 hold, °C; the law's T_ref unless given.
+    fit
+        Report of the fit the model comes from.
+
+    Two materials are equal if everything but `fit` is.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside its range or not finite, or G and tau differ in length.
+    """
+
+    G0: float
+    G: NDArray[np.float64]
+    tau: NDArray[np.float64]
+    eta0: float
+    K: float
+    density: float
+    law: WLF | Arrhenius | ShiftTable | None
+    temperature: float | None
+    fit: FitReport | None = field(repr=False)
+
+    def __init__(
+        self,
+        G0: float,
+        G: ArrayLike,
+        tau: ArrayLike,
+        eta0: float = 0.0,
+        *,
+        K: float,
+        density: float,
+        law: WLF | Arrhenius | ShiftTable | None = None,
+        temperature: float | None = None,
+        fit: FitReport | None = None,
+    ) -> None:
+        if temperature is None and law is not None:
+            temperature = law.T_ref
+        values = {
+            "G0": float(G0),
+            "G": _branches("G", G),
+            "tau": _branches("tau", tau),
+            "eta0": float(eta0),
+            "K": float(K),
+            "density": float(density),
+            "law": law,
+            "temperature": temperature,
+            "fit": fit,
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        self._validate()
+
+    def _validate(self) -> None:
+        for name, value, unit in (("G0", self.G0, "Pa"), ("eta0", self.eta0, "Pa s")):
+            if not (value >= 0 and math.isfinite(value)):
+                raise ValueError(f"Maxwell.{name} = {value!r} {unit}: must be zero or positive, and finite")
+        for name, value, unit in (("K", self.K, "Pa"), ("density", self.density, "kg/m³")):
+            if not (value > 0 and math.isfinite(value)):
+                raise ValueError(f"Maxwell.{name} = {value!r} {unit}: must be positive and finite")
+        if self.G.size != self.tau.size:
+            raise ValueError(
+                f"Maxwell.G has {self.G.size} branches, Maxwell.tau {self.tau.size}: each strength needs "
+                "its time"
+            )
+        for i, (G, tau) in enumerate(zip(self.G.tolist(), self.tau.tolist(), strict=True)):
+            if not (G >= 0 and math.isfinite(G)):
+                raise ValueError(f"Maxwell.G[{i}] = {G!r} Pa: must be zero or positive, and finite")
+            if not (tau > 0 and math.isfinite(tau)):
+                raise ValueError(f"Maxwell.tau[{i}] = {tau!r} s: must be positive and finite")
+        if not self.G0 + self.eta0 + self.G.sum() > 0:
+            raise ValueError(
+                "Maxwell: G0, every G and eta0 are zero: the material would carry no shear at all"
+            )
+        if self.temperature is not None and not math.isfinite(self.temperature):
+            raise ValueError(f"Maxwell.temperature = {self.temperature!r} °C: must be finite")
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)
+        for array in (self.G, self.tau):  # an unpickled array is writeable
+            array.flags.writeable = False
+
+    def _key(self) -> tuple[object, ...]:
+        branches = (tuple(self.G.tolist()), tuple(self.tau.tolist()))
+        return (self.G0, *branches, self.eta0, self.K, self.density, self.law, self.temperature)
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if isinstance(other, Maxwell) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    @property
+    def G_instantaneous(self) -> float:
+        """Modulus G0 + Σ G_i right after a step of strain, Pa (the impulse of eta0 left out)."""
+        return self.G0 + float(self.G.sum())
+
+    def complex_modulus(self, omega: ArrayLike) -> NDArray[np.complex128]:
+        """Complex shear modulus G*(ω) = G0 + iωη0 + Σ G_i iωτ_i/(1 + iωτ_i), Pa.
+
+        Parameters
+        ----------
+        omega
+            Angular frequency, rad/s, any shape.
+
+        Returns
+        -------
+        ndarray
+            Complex, the shape of omega; G0 at ω = 0, the conjugate at −ω. Reference: paper eqs 17-19.
+        """
+        omega = np.asarray(omega, dtype=np.float64)
+        if not np.all(np.isfinite(omega)):
+            raise ValueError("omega: every angular frequency must be finite, rad/s")
+        x = omega[..., None] * self.tau
+        branch = x / (1 + x * x) * (x + 1j)
+        return np.asarray(self.G0 + 1j * omega * self.eta0 + branch @ self.G)
+
+    def loss_factor(self, omega: ArrayLike) -> NDArray[np.float64]:
+        """Loss factor η = tan δ = G″/G′ at angular frequencies ω, rad/s; infinite where G′ = 0."""
+        modulus = self.complex_modulus(omega)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(modulus.real > 0, modulus.imag / modulus.real, np.inf)
+
+    def relaxation(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Relaxation modulus G_rel(t), Pa, at times t ≥ 0, s, any shape (paper eq. 6).
+
+        The dashpot adds an impulse η0·δ(t) at t = 0, which is left out.
+        """
+        t = np.asarray(t, dtype=np.float64)
+        if not np.all(t >= 0):
+            raise ValueError("t: a relaxation modulus exists for times t >= 0 s only")
+        return np.asarray(self.G0 + np.exp(-t[..., None] / self.tau) @ self.G)
+
+    def stress(self, strain_rate: ArrayLike, dt: ArrayLike) -> NDArray[np.float64]:
+        """Deviatoric stress history under a strain-rate history, by the history update of the C core.
+
+        s = 2·G0·e + 2·η0·ė + Σ S_i, from e = 0 and S_i = 0 at the first sample, exact for a rate linear
+        between samples, dt being free to change from step to step.
+
+        Parameters
+        ----------
+        strain_rate
+            Deviatoric tensorial strain rate ė, 1/s, (nt, …): axis 0 is time.
+        dt
+            Time step, s: a number, or one per step (nt − 1,).
+
+        Returns
+        -------
+        ndarray
+            Stress at the samples, Pa, the shape of strain_rate.
+
+        Raises
+        ------
+        ValueError
+            If a step is not positive, a rate not finite, or the lengths differ.
+
+        Reference: paper eqs 7-11 with the branch stress as the state (theory, §1).
+        """
+        rate = np.asarray(strain_rate, dtype=np.float64)
+        if rate.ndim == 0 or rate.shape[0] == 0:
+            raise ValueError(
+                f"strain_rate has shape {rate.shape}: axis 0 must be time, with at least one sample"
+            )
+        if not np.all(np.isfinite(rate)):
+            raise ValueError("strain_rate: every value must be finite, 1/s")
+        step = np.asarray(dt, dtype=np.float64)
+        if step.ndim > 0 and step.shape != (rate.shape[0] - 1,):
+            raise ValueError(
+                f"dt has shape {step.shape}: must be one number, or {rate.shape[0] - 1} for {rate.shape[0]} "
+                "samples"
+            )
+        if not (np.all(step > 0) and np.all(np.isfinite(step))):
+            raise ValueError("dt: every time step must be positive and finite, s")
+
+        from bearingdyn import core
+
+        columns = np.ascontiguousarray(rate.reshape(rate.shape[0], -1))
+        steps = float(step) if step.ndim == 0 else np.ascontiguousarray(step)
+        stress = core.maxwell_stress(columns, steps, self.G0, self.eta0, self.G, self.tau)
+        return np.asarray(stress, dtype=np.float64).reshape(rate.shape)
+
+    def at(self, T: float) -> Maxwell:
+        """The same material at temperature T, °C: tau and eta0 times a_T(T)/a_T(temperature), by its law.
+
+        Moduli are left as they are (no vertical shift). ValueError if the material has no law.
+        """
+        if self.law is None or self.temperature is None:
+            raise ValueError(
+                "Maxwell.law is None: a material can be moved to another temperature only by a shift law "
+                "(law=WLF(C1, C2, T_ref), or one fitted by master_curve)"
+            )
+        aT = float(10 ** (self.law.log_shift(T) - self.law.log_shift(self.temperature)))
+        return replace(self, tau=self.tau * aT, eta0=self.eta0 * aT, temperature=float(T), fit=None)
+
+    def with_modulus(self, modulus: float, omega: float) -> Maxwell:
+        """The same material, harder or softer: all strengths scaled so that |G*(omega)| is `modulus`, Pa.
+
+        The loss factor is unchanged at every frequency.
+        """
+        if not (modulus > 0 and math.isfinite(modulus)):
+            raise ValueError(f"modulus = {modulus!r} Pa: must be positive and finite")
+        magnitude = float(np.abs(self.complex_modulus(omega)))
+        if not magnitude > 0:
+            raise ValueError(f"omega = {omega!r} rad/s: |G*| is zero there, no scaling can change it")
+        factor = modulus / magnitude
+        return replace(self, G0=self.G0 * factor, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
+
+    def with_loss_factor(self, loss_factor: float, omega: float) -> Maxwell:
+        """A causal material of the same |G*(omega)| and relaxation times, whose loss factor at omega is
+        given.
+
+        The branches and the dashpot are scaled against the spring G0, then all of them together until
+        |G*(omega)| is what it was. G′ and G″ change together as Kramers and Kronig demand; G″ scaled alone
+        would not be causal.
+
+        Parameters
+        ----------
+        loss_factor
+            Wanted tan δ at omega, > 0 and below that of the branches without the spring.
+        omega
+            Angular frequency, rad/s, > 0.
+
+        Raises
+        ------
+        ValueError
+            If the material has no spring or no branches, or the loss factor is out of reach.
+        """
+        if not (omega > 0 and math.isfinite(omega)):
+            raise ValueError(f"omega = {omega!r} rad/s: must be positive and finite")
+        modulus = complex(self.complex_modulus(omega))
+        branches = modulus - self.G0
+        if not (self.G0 > 0 and branches.imag > 0):
+            raise ValueError(
+                "Maxwell: with_loss_factor weighs branches against the spring: both must be there"
+            )
+        limit = branches.imag / branches.real if branches.real > 0 else math.inf
+        if not 0 < loss_factor < limit:
+            raise ValueError(
+                f"loss_factor = {loss_factor!r}: must lie between 0 and {limit:.4g}, "
+                "that of the branches alone at this frequency"
+            )
+        factor = loss_factor * self.G0 / (branches.imag - loss_factor * branches.real)
+        weighed = replace(self, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
+        return weighed.with_modulus(abs(modulus), omega)
+
+    def to_json(self) -> str:
+        """The material as JSON text, exact to the last bit; the fit report is left out."""
+        data = {
+            "G0": self.G0,
+            "G": self.G.tolist(),
+            "tau": self.tau.tolist(),
+            "eta0": self.eta0,
+            "K": self.K,
+            "density": self.density,
+            "law": None if self.law is None else law_to_dict(self.law),
+            "temperature": self.temperature,
+        }
+        return json.dumps(data, indent=1)
+
+    @classmethod
+    def from_json(cls, text: str) -> Maxwell:
+        """The material written by :meth:`to_json`; ValueError naming what is missing or unknown."""
+        data = json.loads(text)
+        required = {"G0", "G", "tau", "K", "density"}
+        if not isinstance(data, dict) or not required <= data.keys():
+            raise ValueError(f"Maxwell.from_json: needs a JSON object with {', '.join(sorted(required))}")
+        unknown = data.keys() - required - {"eta0", "law", "temperature"}
+        if unknown:
+            raise ValueError(f"Maxwell.from_json: unknown entries {', '.join(sorted(unknown))}")
+        law = data.pop("law", None)
+        return cls(**data, law=None if law is None else law_from_dict(law))

@@ -1,0 +1,188 @@
+"""Time-temperature shift laws: the factor a_T by which temperature stretches relaxation times.
+
+A reduced frequency is f·a_T, a relaxation time at T is τ(T_ref)·a_T; log10 a_T(T_ref) = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+
+GAS_CONSTANT = 8.31446261815324
+"""Molar gas constant, J/(mol K), exact in the SI of 2019."""
+
+ZERO_CELSIUS = 273.15
+"""0 °C in K."""
+
+Covariance = tuple[tuple[float, ...], ...]
+
+
+class ShiftLaw(Protocol):
+    """What a shift law offers: its reference temperature and log10 a_T."""
+
+    @property
+    def T_ref(self) -> float:
+        """Reference temperature, °C."""
+
+    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+        """log10 a_T at the temperatures T, °C; same shape as T."""
+
+
+def _finite(name: str, value: float) -> None:
+    if not math.isfinite(value):
+        raise ValueError(f"{name} = {value!r}: must be a finite number")
+
+
+@dataclass(frozen=True)
+class WLF:
+    """Williams–Landel–Ferry: log10 a_T = −C1 (T − T_ref)/(C2 + T − T_ref).
+
+    Parameters
+    ----------
+    C1
+        Dimensionless, positive.
+    C2
+        K, positive; the law holds only above T_ref − C2.
+    T_ref
+        Reference temperature, °C.
+    covariance
+        Of (C1, C2), 2×2, when fitted.
+
+    Reference: M.L. Williams, R.F. Landel, J.D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701.
+    """
+
+    C1: float
+    C2: float
+    T_ref: float
+    covariance: Covariance | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        _finite("WLF.T_ref", self.T_ref)
+        for name, value in (("C1", self.C1), ("C2", self.C2)):
+            if not (value > 0 and math.isfinite(value)):
+                raise ValueError(f"WLF.{name} = {value!r}: must be positive and finite")
+
+    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+        """log10 a_T at T, °C.
+
+        Raises
+        ------
+        ValueError
+            If a temperature is at or below T_ref − C2, where the law has its pole.
+        """
+        x = np.asarray(T, dtype=float) - self.T_ref
+        if not np.all(self.C2 + x > 0):
+            raise ValueError(
+                f"T = {np.min(x) + self.T_ref:.6g} °C: this WLF law holds above "
+                f"T_ref - C2 = {self.T_ref - self.C2:.6g} °C only"
+            )
+        return np.asarray(-self.C1 * x / (self.C2 + x))
+
+
+@dataclass(frozen=True)
+class Arrhenius:
+    """Arrhenius: ln a_T = (Ea/R)(1/T − 1/T_ref), absolute temperatures.
+
+    Parameters
+    ----------
+    Ea
+        Activation energy, J/mol, positive.
+    T_ref
+        Reference temperature, °C.
+    variance
+        Of Ea, (J/mol)², when fitted.
+    """
+
+    Ea: float
+    T_ref: float
+    variance: float | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        if not (self.Ea > 0 and math.isfinite(self.Ea)):
+            raise ValueError(f"Arrhenius.Ea = {self.Ea!r} J/mol: must be positive and finite")
+        if not (self.T_ref > -ZERO_CELSIUS and math.isfinite(self.T_ref)):
+            raise ValueError(f"Arrhenius.T_ref = {self.T_ref!r} °C: must lie above -273.15 °C")
+
+    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+        """log10 a_T at T, °C; ValueError at or below absolute zero."""
+        kelvin = np.asarray(T, dtype=float) + ZERO_CELSIUS
+        if not np.all(kelvin > 0):
+            raise ValueError(f"T = {np.min(kelvin) - ZERO_CELSIUS:.6g} °C: must lie above -273.15 °C")
+        slope = self.Ea / (GAS_CONSTANT * math.log(10))
+        return np.asarray(slope * (1 / kelvin - 1 / (self.T_ref + ZERO_CELSIUS)))
+
+
+@dataclass(frozen=True)
+class ShiftTable:
+    """Shifts as a table, interpolated monotonically (PCHIP), never extrapolated.
+
+    Parameters
+    ----------
+    T
+        Temperatures, °C, strictly increasing, at least two.
+    log_aT
+        log10 a_T at each.
+    T_ref
+        Reference temperature, °C; the table is offset so that log10 a_T(T_ref) = 0.
+    """
+
+    T: tuple[float, ...]
+    log_aT: tuple[float, ...]
+    T_ref: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "T", tuple(float(v) for v in self.T))
+        object.__setattr__(self, "log_aT", tuple(float(v) for v in self.log_aT))
+        if len(self.T) != len(self.log_aT) or len(self.T) < 2:
+            raise ValueError(
+                f"ShiftTable: {len(self.T)} temperatures and {len(self.log_aT)} shifts; "
+                "must be as many of each, at least two"
+            )
+        if not np.all(np.diff(self.T) > 0):
+            raise ValueError("ShiftTable.T: temperatures must increase strictly and be finite")
+        if not np.all(np.isfinite(self.log_aT)):
+            raise ValueError("ShiftTable.log_aT: every shift must be finite")
+        self._check(np.asarray(self.T_ref))
+
+    def _check(self, T: NDArray[np.float64]) -> None:
+        if not np.all((T >= self.T[0]) & (T <= self.T[-1])):
+            raise ValueError(
+                f"T = {T.tolist()!r} °C: free shifts are known from {self.T[0]:.6g} to {self.T[-1]:.6g} °C "
+                "only "
+                "(take law='wlf' or 'arrhenius' to go beyond)"
+            )
+
+    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+        """log10 a_T at T, °C; ValueError outside the table."""
+        T = np.asarray(T, dtype=float)
+        self._check(T)
+        curve = PchipInterpolator(self.T, self.log_aT)
+        return np.asarray(curve(T) - curve(self.T_ref))
+
+
+def law_to_dict(law: WLF | Arrhenius | ShiftTable) -> dict[str, Any]:
+    """The numbers of a law, ready for JSON; :func:`law_from_dict` reads them back."""
+    if isinstance(law, WLF):
+        return {"law": "wlf", "C1": law.C1, "C2": law.C2, "T_ref": law.T_ref}
+    if isinstance(law, Arrhenius):
+        return {"law": "arrhenius", "Ea": law.Ea, "T_ref": law.T_ref}
+    return {"law": "free", "T": list(law.T), "log_aT": list(law.log_aT), "T_ref": law.T_ref}
+
+
+def law_from_dict(data: dict[str, Any]) -> WLF | Arrhenius | ShiftTable:
+    """The law written by :func:`law_to_dict`; ValueError if it is none."""
+    match data:
+        case {"law": "wlf", "C1": C1, "C2": C2, "T_ref": T_ref}:
+            return WLF(C1, C2, T_ref)
+        case {"law": "arrhenius", "Ea": Ea, "T_ref": T_ref}:
+            return Arrhenius(Ea, T_ref)
+        case {"law": "free", "T": T, "log_aT": log_aT, "T_ref": T_ref}:
+            return ShiftTable(tuple(T), tuple(log_aT), T_ref)
+    raise ValueError(
+        f"law = {data!r}: must hold law 'wlf' (C1, C2), 'arrhenius' (Ea) or 'free' (T, log_aT), and T_ref"
+    )

@@ -1,0 +1,73 @@
+"""Non-negative relaxation spectra by least squares, strengths eliminated (variable projection).
+
+A modulus Σ x_j φ_j(ω) with x ≥ 0 and causal φ_j (a spring, Maxwell branches, a dashpot) satisfies the
+Kramers–Kronig relations whatever the x_j: what such a sum cannot render is not a linear, causal, passive
+material.
+
+Reference: G.H. Golub, V. Pereyra, Inverse Problems 19 (2003) R1, with Kaufman's simplified derivative.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+Array = NDArray[np.float64]
+
+
+def branch_columns(omega: Array, tau: Array) -> tuple[Array, Array]:
+    """Storage and loss modulus at ω, rad/s, (p,), of branches of unit strength, τ, s, (n,): (p, n) each
+    (18, 19)."""
+    x = omega[:, None] * tau
+    loss = x / (1 + x * x)
+    return x * loss, loss
+
+
+def branch_slopes(omega: Array, tau: Array) -> tuple[Array, Array]:
+    """Derivatives of :func:`branch_columns` with respect to ln ω, or ln τ: (p, n) each."""
+    storage, loss = branch_columns(omega, tau)
+    return 2 * loss * loss, loss * (1 - 2 * storage)
+
+
+@dataclass(frozen=True)
+class Strengths:
+    """Non-negative least-squares solution of A x ≈ b.
+
+    Attributes
+    ----------
+    x
+        Solution, (n,), ≥ 0.
+    residual
+        A x − b, (m,).
+    basis
+        Orthonormal basis of the columns with x > 0, (m, r).
+    """
+
+    x: Array
+    residual: Array
+    basis: Array
+
+    def project_out(self, columns: Array) -> Array:
+        """What of the columns, (m, k), the active strengths cannot take up (Kaufman's derivative)."""
+        return np.asarray(columns - self.basis @ (self.basis.T @ columns))
+
+
+def solve_strengths(A: Array, b: Array) -> Strengths:
+    """Solve min ‖A x − b‖, x ≥ 0, A (m, n), b (m,); columns are scaled to unit length first."""
+    length = np.linalg.norm(A, axis=0)
+    length[length == 0] = 1.0
+    scaled = A / length
+    y, _ = nnls(scaled, b, maxiter=30 * A.shape[1])
+    active = y > 0
+    basis = np.linalg.qr(scaled[:, active])[0]
+    return Strengths(y / length, scaled @ y - b, basis)
+
+
+def dense_times(omega_min: float, omega_max: float, per_decade: int = 12, margin: float = 1.5) -> Array:
+    """Relaxation times, s, equispaced in the logarithm, from margin decades below 1/ω_max to as far above
+    1/ω_min."""
+    low, high = -np.log10(omega_max) - margin, -np.log10(omega_min) + margin
+    return np.asarray(np.logspace(low, high, 1 + int(np.ceil((high - low) * per_decade))))

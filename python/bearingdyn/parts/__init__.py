@@ -1,0 +1,28 @@
+"""Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
+
+from bearingdyn.fem.beam import Section
+from bearingdyn.parts.housing import Feet, Housing
+from bearingdyn.parts.layer import Layer
+from bearingdyn.parts.revolved import Revolved, RevolvedModes
+from bearingdyn.parts.rigid_body import RigidBody
+from bearingdyn.parts.ring import Ring, damping_sample
+from bearingdyn.parts.section import Cylinder, EndFace, Region, ViscoelasticSolid
+from bearingdyn.parts.shaft import Disc, Shaft
+
+__all__ = [
+    "Cylinder",
+    "Disc",
+    "EndFace",
+    "Feet",
+    "Housing",
+    "Layer",
+    "Region",
+    "Revolved",
+    "RevolvedModes",
+    "RigidBody",
+    "Ring",
+    "Section",
+    "Shaft",
+    "ViscoelasticSolid",
+    "damping_sample",
+]

@@ -1,0 +1,156 @@
+"""A flexible housing: a block, or a tall pedestal, with a bore for a bearing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.sparse
+
+from bearingdyn.cms import RigidInterface, Superelement, reduce_free_body
+from bearingdyn.fem.eigen import rigid_motion
+from bearingdyn.fem.solid import assemble_solid, block_with_bore
+from bearingdyn.material import STEEL, Elastic
+
+ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
+
+
+@dataclass(frozen=True)
+class Feet:
+    """What a housing stands on: two strips along z, each of this width (x), m.
+
+    With height 0 the strips are the left and right edges of the block's own base. With a height, m, they are
+    the undersides of two flanges of that height, added to the sides of the block at its base.
+    """
+
+    width: float
+    height: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.width > 0 and math.isfinite(self.width)):
+            raise ValueError(f"Feet width is {self.width}; it must be a positive width in m")
+        if not (self.height >= 0 and math.isfinite(self.height)):
+            raise ValueError(f"Feet height is {self.height}; it must be 0 or a height in m")
+
+
+@dataclass(frozen=True)
+class Housing:
+    """A rectangular block with a round bore through it along z, of 3-D finite elements.
+
+    width along x, height along y, length along z, m; a small length makes a plate-like pedestal.
+    bore_diameter, m; bore_height: height of the bore's axis above the base, m (default: mid-height).
+    feet: what is held at the base: the whole base (None) or two strips (Feet).
+    damping: ratio ζ of every free elastic mode. f_max: fixed-interface modes are kept up to this, Hz.
+    points: name -> (x, y, z), m, from the bore's axis at mid-length: further outputs, at the nearest node.
+    element_size: longest wanted side of an element, m (default: some 300 elements).
+
+    Interfaces: "bore" (reference on the axis at mid-length) and "feet" (reference below it, on the base),
+    both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n).
+
+    Raises ValueError for a bore that leaves no wall, a point outside, or values not positive and finite.
+    """
+
+    width: float
+    height: float
+    length: float
+    bore_diameter: float
+    bore_height: float | None = None
+    material: Elastic = STEEL
+    damping: float = 0.0
+    feet: Feet | None = None
+    f_max: float = 20e3
+    points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    element_size: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height", "length", "bore_diameter", "f_max"):
+            value = getattr(self, name)
+            if not (value > 0 and math.isfinite(value)):
+                unit = "frequency in Hz" if name == "f_max" else "length in m"
+                raise ValueError(f"{name} is {value}; it must be a positive {unit}")
+        if not 0 <= self.damping < 1:
+            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
+        d, axis = self.bore_diameter, self.axis
+        if not math.isfinite(axis):
+            raise ValueError(f"bore_height is {self.bore_height}; it must be a height in m")
+        wall = 0.02 * d
+        if not d <= self.width - 2 * wall:
+            raise ValueError(f"bore_diameter is {d} m; it must leave a wall in a width of {self.width} m")
+        if not 0.5 * d + wall <= axis <= self.height - 0.5 * d - wall:
+            raise ValueError(
+                f"bore_height is {axis} m; for a wall above and below the bore it must lie in "
+                f"{0.5 * d + wall:.6g} to {self.height - 0.5 * d - wall:.6g} m"
+            )
+        if self.feet is not None:
+            if self.feet.height == 0 and not self.feet.width < 0.5 * self.width:
+                raise ValueError(f"feet.width is {self.feet.width} m; two must fit in {self.width} m")
+            if not self.feet.height < self.height:
+                raise ValueError(f"feet.height is {self.feet.height} m; it must be below {self.height} m")
+        size = self.element_size
+        if size is not None and not (size >= 0.01 * self.height and math.isfinite(size)):
+            raise ValueError(f"element_size is {size}; it must be {0.01 * self.height:.3g} m or more")
+        flange = self.feet.width if self.feet is not None and self.feet.height > 0 else 0.0
+        reach = np.array([[0.5 * self.width + flange, self.height - axis, 0.5 * self.length]])
+        for name, point in self.points.items():
+            if name in ("bore", "feet", "top"):
+                raise ValueError(f"points has {name!r}, a name the housing uses itself; choose another")
+            p = np.asarray(point, dtype=np.float64)
+            low = np.array([-reach[0, 0], -axis, -reach[0, 2]])
+            if p.shape != (3,) or not np.all((p >= low - 1e-9) & (p <= reach[0] + 1e-9)):
+                raise ValueError(
+                    f"points[{name!r}] is {point!r}; it must be (x, y, z) in the block, "
+                    f"from {low.tolist()} to {reach[0].tolist()} m"
+                )
+            if math.hypot(p[0], p[1]) < 0.5 * d * (1.0 - 1e-9):
+                raise ValueError(f"points[{name!r}] is {point!r}, in the bore; it must be in the material")
+
+    @property
+    def axis(self) -> float:
+        """Height of the bore's axis above the base, m."""
+        return 0.5 * self.height if self.bore_height is None else self.bore_height
+
+    def superelement(self) -> Superelement:
+        """The housing reduced onto its bore and feet and the fixed-interface modes up to f_max."""
+        volume = (self.width * self.height - 0.25 * math.pi * self.bore_diameter**2) * self.length
+        size = self.element_size or (volume / ELEMENTS) ** (1.0 / 3.0)
+        feet, half = self.feet, 0.5 * self.width
+        flanged = feet is not None and feet.height > 0
+        solid = assemble_solid(
+            block_with_bore(
+                self.width,
+                self.height,
+                self.length,
+                self.bore_diameter,
+                self.axis,
+                size,
+                flange=(feet.width, feet.height) if feet is not None and flanged else None,
+                strip=feet.width if feet is not None and not flanged else None,
+            )
+        )
+        p, near = solid.points, 1e-6 * size
+        on_bore = np.abs(np.hypot(p[:, 0], p[:, 1]) - 0.5 * self.bore_diameter) < near
+        on_feet = np.abs(p[:, 1] + self.axis) < near
+        if feet is not None:
+            on_feet &= np.abs(p[:, 0]) > (half if flanged else half - feet.width) - near
+
+        def rigid(mask: np.ndarray, reference: tuple[float, float, float]) -> RigidInterface:
+            nodes = np.flatnonzero(mask)
+            dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
+            return RigidInterface(dofs, rigid_motion(p[nodes], reference), np.array(reference))
+
+        def rows(place: tuple[float, float, float]) -> scipy.sparse.csr_matrix:
+            node = int(np.argmin(np.linalg.norm(p - np.asarray(place), axis=1)))
+            at = (np.arange(3), 3 * node + np.arange(3))
+            return scipy.sparse.csr_matrix((np.ones(3), at), shape=(3, 3 * len(p)))
+
+        places = {"top": (0.0, self.height - self.axis, 0.0), **self.points}
+        return reduce_free_body(
+            self.material.density * solid.mass,
+            solid.stiffness(self.material),
+            {"bore": rigid(on_bore, (0.0, 0.0, 0.0)), "feet": rigid(on_feet, (0.0, -self.axis, 0.0))},
+            {name: rows(place) for name, place in places.items()},
+            damping=self.damping,
+            f_max=self.f_max,
+        )

@@ -1,0 +1,80 @@
+"""A rigid body: six coordinates, a mass and its moments of inertia."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearingdyn.cms import Superelement
+from bearingdyn.material import STEEL, Elastic
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """A rigid body with one interface, "centre", at its centre of mass.
+
+    mass: kg. inertia: (Ix, Iy, Iz), kg m², about the centre; the axes x, y, z are principal.
+    rotating: the body turns with the shaft about z; its polar inertia is then Iz, and Ix must equal Iy, for
+        the inertia of an unequal body would vary with the angle.
+
+    Raises ValueError for values that are not positive or that no body can have.
+    """
+
+    mass: float
+    inertia: tuple[float, float, float]
+    rotating: bool = False
+
+    def __post_init__(self) -> None:
+        if not (self.mass > 0 and math.isfinite(self.mass)):
+            raise ValueError(f"mass is {self.mass}; it must be a positive mass in kg")
+        inertia = tuple(float(i) for i in self.inertia)
+        if len(inertia) != 3:
+            raise ValueError(f"inertia is {self.inertia!r}; it must hold three moments (Ix, Iy, Iz) in kg m²")
+        for name, value in zip(("Ix", "Iy", "Iz"), inertia, strict=True):
+            if not (value > 0 and math.isfinite(value)):
+                raise ValueError(f"inertia {name} is {value}; it must be a positive moment in kg m²")
+        if not 2.0 * max(inertia) <= sum(inertia) * (1.0 + 1e-9):
+            raise ValueError(f"inertia is {inertia}; no moment may exceed the sum of the other two")
+        if self.rotating and not math.isclose(inertia[0], inertia[1], rel_tol=1e-9):
+            raise ValueError(f"inertia is {inertia}; a rotating body needs Ix = Iy")
+        object.__setattr__(self, "inertia", inertia)
+
+    @classmethod
+    def ring(
+        cls,
+        r_inner: float,
+        r_outer: float,
+        width: float,
+        material: Elastic = STEEL,
+        *,
+        rotating: bool = False,
+    ) -> RigidBody:
+        """A ring (a disc when r_inner is 0) about z, for example that of a bearing; radii and width in m.
+
+        Raises ValueError unless 0 <= r_inner < r_outer and width > 0.
+        """
+        if not (r_outer > 0 and math.isfinite(r_outer)):
+            raise ValueError(f"r_outer is {r_outer}; it must be a positive radius in m")
+        if not 0 <= r_inner < r_outer:
+            raise ValueError(f"r_inner is {r_inner}; it must be at least 0 and below r_outer = {r_outer} m")
+        if not (width > 0 and math.isfinite(width)):
+            raise ValueError(f"width is {width}; it must be a positive width in m")
+        mass = material.density * math.pi * (r_outer**2 - r_inner**2) * width
+        square = r_inner**2 + r_outer**2
+        across = mass * (square / 4.0 + width**2 / 12.0)
+        return cls(mass, (across, across, mass * square / 2.0), rotating)
+
+    def superelement(self) -> Superelement:
+        """Six coordinates, those of the interface "centre"; gyroscopic when rotating."""
+        G = np.zeros((6, 6))
+        if self.rotating:
+            G[3, 4], G[4, 3] = self.inertia[2], -self.inertia[2]
+        return Superelement(
+            M=np.diag([self.mass] * 3 + list(self.inertia)),
+            C=np.zeros((6, 6)),
+            K=np.zeros((6, 6)),
+            G=G,
+            interfaces={"centre": np.arange(6)},
+        )

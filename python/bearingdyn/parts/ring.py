@@ -1,0 +1,90 @@
+"""Ready forms of bodies of revolution: the rectangular ring, and the damping sample of three rings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+from bearingdyn.cms import Superelement
+from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.revolved import Revolved, RevolvedModes
+from bearingdyn.parts.section import Cylinder, Region, ViscoelasticSolid
+
+
+@dataclass(frozen=True)
+class Ring:
+    """An elastic ring of rectangular section, not turning; interfaces "inner" and "outer", its faces.
+
+    r_inner, r_outer, width: m; the reference point of both faces lies on the axis at mid-width.
+    damping: ratio ζ of its free elastic modes. f_max: fixed-interface modes up to this
+        frequency, Hz; 0: none.
+    refinement: mesh density.
+
+    Raises ValueError for dimensions that are not positive, or r_outer not above r_inner.
+    """
+
+    r_inner: float
+    r_outer: float
+    width: float
+    material: Elastic = STEEL
+    damping: float = 0.0
+    f_max: float = 0.0
+    refinement: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not self.r_inner > 0:
+            raise ValueError(f"r_inner is {self.r_inner}; a ring needs a positive inner radius, m")
+        if not self.r_outer > self.r_inner:
+            raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
+        if not self.width > 0:
+            raise ValueError(f"width is {self.width}; it must be positive, m")
+        _ = self.body
+
+    @cached_property
+    def body(self) -> Revolved:
+        """The ring as a body of revolution."""
+        return Revolved(
+            (Region((self.r_inner, self.r_outer), (-0.5 * self.width, 0.5 * self.width), self.material),),
+            {"inner": Cylinder(self.r_inner), "outer": Cylinder(self.r_outer)},
+            damping=self.damping,
+            f_max=self.f_max,
+            refinement=self.refinement,
+        )
+
+    def superelement(self) -> Superelement:
+        """Reduced matrices with both faces rigid."""
+        return self.body.superelement()
+
+    def modes(self, order: int, count: int, fixed: Iterable[str] = ()) -> RevolvedModes:
+        """Lowest modes of one Fourier order with its faces free (elastic), or some of them held still."""
+        return self.body.modes(order, count, fixed=fixed)
+
+
+def damping_sample(
+    material: Elastic | ViscoelasticSolid,
+    radii: tuple[float, float, float, float] = (0.015, 0.0175, 0.020, 0.026),
+    width: float = 0.011,
+    metal: Elastic = STEEL,
+    damping: float = 0.0,
+    f_max: float = 0.0,
+    refinement: float = 1.0,
+) -> Revolved:
+    """Two concentric metal rings with a layer bonded between them, the paper's sample (figure 3); SI units.
+
+    radii: bore, inner bond, outer bond, outside. Interfaces "inner" (the bore) and "outer" (the outside)
+    are rigid. Raises ValueError for radii that do not rise.
+    """
+    half = (-0.5 * width, 0.5 * width)
+    a, b, c, d = radii
+    return Revolved(
+        (
+            Region((a, b), half, metal),
+            Region((b, c), half, material, graded=True),
+            Region((c, d), half, metal),
+        ),
+        {"inner": Cylinder(a), "outer": Cylinder(d)},
+        damping=damping,
+        f_max=f_max,
+        refinement=refinement,
+    )

@@ -1,0 +1,341 @@
+"""Solid elements, the block with a bore, the housing, and matrices from elsewhere."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.linalg
+import scipy.sparse
+import scipy.sparse.linalg
+from scipy.optimize import brentq
+
+from bearingdyn.fem.eigen import (
+    lowest_modes,
+    rigid_body_inertia,
+    rigid_body_residual,
+    rigid_motion,
+    rigid_transfer,
+)
+from bearingdyn.fem.exchange import FEMatrices, check_matrices, read_matrix_market, read_npz, write_npz
+from bearingdyn.fem.solid import assemble_solid, block_with_bore
+from bearingdyn.material import STEEL
+from bearingdyn.parts import Feet, Housing
+
+skfem = pytest.importorskip("skfem")
+
+
+def crooked_block():
+    """A block of bricks whose inner corners are shifted: no element is a box."""
+    mesh = skfem.MeshHex.init_tensor(*[np.linspace(0.0, s, 4) for s in (0.1, 0.2, 0.3)])
+    p = mesh.p.copy()
+    inner = np.all((p > 1e-9) & (p < np.array([[0.1], [0.2], [0.3]]) - 1e-9), axis=0)
+    p[:, inner] += 0.012 * np.sin(40.0 * p[[1, 2, 0]][:, inner] + 1.0)
+    return skfem.MeshHex(p, mesh.t)
+
+
+def tetrahedra():
+    return skfem.MeshTet.init_tensor(*[np.linspace(0.0, s, 4) for s in (0.1, 0.2, 0.3)])
+
+
+@pytest.mark.parametrize("make", [crooked_block, tetrahedra])
+def test_patch_of_solid_elements_carries_constant_stress(make):
+    solid = assemble_solid(make())
+    p, K = solid.points, solid.stiffness(STEEL)
+    grad = np.array([[1.0, 2.0, -1.0], [0.5, -1.0, 3.0], [2.0, 0.2, 0.7]]) * 1e-3
+    u = (p @ grad.T).ravel()
+    boundary = np.any((np.abs(p) < 1e-9) | (np.abs(p - [0.1, 0.2, 0.3]) < 1e-9), axis=1)
+    inner = np.repeat(~boundary, 3)
+    # inner nodes are in balance; the straight-sided element integrates it exactly, so round-off only
+    assert np.abs((K @ u)[inner]).max() < 1e-11 * np.abs(K @ u).max()
+    strain = 0.5 * (grad + grad.T)
+    lam = STEEL.K - 2 / 3 * STEEL.G
+    density = 0.5 * lam * np.trace(strain) ** 2 + STEEL.G * np.sum(strain**2)
+    assert 0.5 * u @ K @ u == pytest.approx(density * 0.1 * 0.2 * 0.3, rel=1e-11)
+
+
+def test_volume_and_shape_change_are_kept_apart():
+    solid = assemble_solid(crooked_block())
+    p, volume = solid.points, 0.1 * 0.2 * 0.3
+    swelling, shear = p.ravel(), np.column_stack([p[:, 1], p[:, 0], 0 * p[:, 0]]).ravel()
+    # div = 3 and e = 0; div = 0 and e:e = 2 (theory.md section 1: T1, T2)
+    assert swelling @ solid.volumetric @ swelling == pytest.approx(9 * volume, rel=1e-11)
+    assert abs(swelling @ solid.deviatoric @ swelling) < 1e-11 * volume
+    assert abs(shear @ solid.volumetric @ shear) < 1e-11 * volume
+    assert shear @ solid.deviatoric @ shear == pytest.approx(2 * volume, rel=1e-11)
+
+
+def test_regions_of_a_mesh_add_up():
+    mesh = crooked_block()
+    whole = assemble_solid(mesh)
+    parts = [assemble_solid(mesh, e) for e in (np.arange(9), np.arange(9, mesh.nelements))]
+    for name in ("mass", "volumetric", "deviatoric"):
+        total = sum(getattr(part, name) for part in parts)
+        assert abs(total - getattr(whole, name)).max() < 1e-12 * abs(getattr(whole, name)).max()
+
+
+def block():
+    return block_with_bore(0.12, 0.2, 0.03, 0.062, 0.13, 0.012)
+
+
+def test_curved_brick_moves_rigidly_without_force_and_has_the_mass_of_the_block():
+    solid = assemble_solid(block())
+    R = rigid_motion(solid.points)
+    assert rigid_body_residual(solid.stiffness(STEEL), R) < 1e-12
+    m, hole = 0.12 * 0.2 * 0.03, math.pi * 0.031**2 * 0.03
+    J = rigid_body_inertia(solid.mass, R)
+    # block with its centre 0.03 below the axis, less the bore; 32 quadratic arcs are round to 1e-6
+    np.testing.assert_allclose(np.diag(J)[:3], m - hole, rtol=1e-5)
+    Iz = m * ((0.12**2 + 0.2**2) / 12 + 0.03**2) - hole * 0.031**2 / 2
+    assert J[5, 5] == pytest.approx(Iz, rel=1e-5)
+    assert J[0, 5] == pytest.approx(0.03 * m, rel=1e-5)  # ∫ -y dV
+
+
+@pytest.mark.parametrize(
+    ("flange", "strip", "extra"),
+    [
+        (None, None, 0.0),
+        (None, 0.025, 0.0),
+        ((0.03, 0.015), None, 2 * 0.03 * 0.015),
+        ((0.03, 0.1), None, 2 * 0.003),
+    ],
+)
+@pytest.mark.parametrize("bore_height", [0.1, 0.105, 0.13, 0.16])
+def test_mesher_fills_the_drawing(flange, strip, extra, bore_height):
+    mesh = block_with_bore(0.12, 0.2, 0.02, 0.06, bore_height, 0.013, flange, strip)
+    solid = assemble_solid(mesh)
+    volume = (0.12 * 0.2 - math.pi * 0.03**2 + extra) * 0.02
+    one = np.tile([1.0, 0.0, 0.0], len(solid.points))
+    assert one @ solid.mass @ one == pytest.approx(volume, rel=1e-5)  # the arcs, as above
+    rho = np.hypot(*solid.points[:, :2].T)
+    assert rho.min() > 0.03 * (1 - 1e-12)
+
+
+def test_slender_block_of_bricks_vibrates_as_a_beam():
+    # free bar 20 x 20 x 400 mm; Timoshenko, k = 5(1+ν)/(6+5ν) for a square: its own error is some 0.05 %
+    mesh = skfem.MeshHex.init_tensor(
+        np.linspace(0, 0.02, 3), np.linspace(0, 0.02, 3), np.linspace(0, 0.4, 21)
+    )
+    solid = assemble_solid(mesh)
+    M, K = STEEL.density * solid.mass, solid.stiffness(STEEL)
+    f = lowest_modes(K + 1e3 * solid.mass * STEEL.density, M, n_modes=10)[0]
+    f = np.sqrt(np.maximum((2 * math.pi * f) ** 2 - 1e3, 0.0)) / (2 * math.pi)
+    EI, A = STEEL.E * 0.02**4 / 12, 0.02**2
+    k = 5 * 1.3 / (6 + 1.5)
+
+    def determinant(omega):  # zero at a frequency of the free Timoshenko beam
+        a = STEEL.density * omega**2 / STEEL.E
+        b = STEEL.density * omega**2 / (k * STEEL.G)
+        c = STEEL.density * A * omega**2 / EI
+        half = 0.5 * (a + b)
+        root = math.sqrt(0.25 * (a - b) ** 2 + c)
+        p, q = math.sqrt(root - half), math.sqrt(root + half)
+        L = 0.4
+        s, t = (p * p + b) / p, (q * q - b) / q
+        # w = Σ of cosh pz, sinh pz, cos qz, sin qz; θ' = 0 and w' = θ at both ends
+        rows = []
+        for z in (0.0, L):
+            ch, sh, co, si = math.cosh(p * z), math.sinh(p * z), math.cos(q * z), math.sin(q * z)
+            rows.append([s * p * ch, s * p * sh, -t * q * co, -t * q * si])
+            rows.append([(p - s) * sh, (p - s) * ch, (t - q) * si, (q - t) * co])
+        return np.linalg.det(np.array(rows))
+
+    euler = [22.3733, 61.6728]  # (βL)² of a free beam
+    for i, beta in enumerate(euler):
+        omega = beta / 0.4**2 * math.sqrt(EI / (STEEL.density * A))
+        exact = brentq(determinant, 0.8 * omega, omega) / (2 * math.pi)
+        found = f[6 + 2 * i : 8 + 2 * i] if i == 0 else f[f > 1.5 * f[6]][:2]
+        np.testing.assert_allclose(found, exact, rtol=1e-3)
+
+
+def housing(**change):
+    given = {"width": 0.12, "height": 0.2, "length": 0.02, "bore_diameter": 0.062, "bore_height": 0.13}
+    return Housing(**(given | change))
+
+
+def grounded(s, name="feet"):
+    free = [i for i in range(s.n) if i not in s.interfaces[name]]
+    return s.K[np.ix_(free, free)], s.M[np.ix_(free, free)], free
+
+
+def frequencies(K, M):
+    return np.sqrt(np.abs(scipy.linalg.eigh(K, M, eigvals_only=True))) / (2.0 * math.pi)
+
+
+def test_pedestal_has_its_own_modes_in_the_working_band_and_they_converge():
+    coarse, fine = (housing(element_size=size, f_max=8e3).superelement() for size in (0.02, None))
+    f, g = (frequencies(*grounded(s)[:2])[:4] for s in (coarse, fine))
+    assert np.count_nonzero((g > 400) & (g < 6000)) >= 3
+    # displacement elements are too stiff, by 1 % at 20 mm, rigid faces ending in singular corners
+    np.testing.assert_allclose(f, g, rtol=1e-2)
+    assert np.all(f > g)
+
+
+def test_reduced_housing_matches_the_full_model():
+    drawing = housing(element_size=0.016)
+    s = drawing.superelement()
+    solid = assemble_solid(block_with_bore(0.12, 0.2, 0.02, 0.062, 0.13, 0.016))
+    p = solid.points
+    K, M = solid.stiffness(STEEL), STEEL.density * solid.mass
+    bore = np.abs(np.hypot(p[:, 0], p[:, 1]) - 0.031) < 1e-9
+    feet = np.abs(p[:, 1] + 0.13) < 1e-9
+    # the rigid bore as a constraint on the full model: u = T q on its nodes, the base held, the rest free
+    other = np.flatnonzero(np.repeat(~bore & ~feet, 3))
+    T = scipy.sparse.lil_matrix((3 * len(p), 6 + other.size))
+    T[np.flatnonzero(np.repeat(bore, 3)), :6] = rigid_motion(p[bore])
+    T[other, 6 + np.arange(other.size)] = 1.0
+    T = T.tocsc()
+    exact = lowest_modes(T.T @ K @ T, T.T @ M @ T, n_modes=5)[0]
+    k, m, free = grounded(s)
+    f = frequencies(k, m)[:5]
+    below = exact < 5e3  # a quarter of f_max
+    np.testing.assert_allclose(f[below], exact[below], rtol=1e-3)
+    # static flexibility at the bore is exact: constraint modes; 1e-8 is a sparse solve's round-off
+    unit = np.zeros(T.shape[1])
+    unit[1] = 1.0
+    exact_flexibility = scipy.sparse.linalg.spsolve((T.T @ K @ T).tocsc(), unit)[1]
+    assert np.linalg.inv(k)[free.index(1), free.index(1)] == pytest.approx(exact_flexibility, rel=1e-8)
+
+
+def test_reduced_housing_keeps_mass_and_moves_rigidly():
+    s = housing(points={"side": (0.06, 0.0, 0.01)}, damping=0.01).superelement()
+    R = np.zeros((s.n, 6))
+    R[:12] = rigid_transfer([[0, 0, 0], [0, -0.13, 0]])
+    m = 7850 * (0.12 * 0.2 - math.pi * 0.031**2) * 0.02
+    np.testing.assert_allclose(np.diag(R.T @ s.M @ R)[:3], m, rtol=1e-5)  # the arcs of the bore
+    assert np.abs(s.K @ R).max() < 1e-11 * np.abs(s.K).max()
+    # rows follow a rigid motion of the named point: round-off of the static solve
+    np.testing.assert_allclose(s.outputs["top"] @ R, rigid_motion([[0, 0.07, 0]]), atol=1e-8)
+    np.testing.assert_allclose(s.outputs["side"] @ R, rigid_motion([[0.06, 0.0, 0.01]]), atol=1e-8)
+    assert s.interfaces["bore"].tolist() == list(range(6))
+    assert np.abs(s.G).max() == 0.0
+    # free elastic modes all have the ratio given: C Φ = 2 ζ ω M Φ
+    lam, phi = scipy.linalg.eigh(s.K, s.M)
+    elastic = lam > 1e3
+    ratio = np.diag(phi.T @ s.C @ phi)[elastic] / (2 * np.sqrt(lam[elastic]))
+    assert elastic.sum() == s.n - 6
+    np.testing.assert_allclose(ratio, 0.01, rtol=1e-6)  # eigenvectors of 1e12-spread eigenvalues
+
+
+def test_tall_pedestal_sways_as_a_cantilever_with_a_hole_high_up():
+    # a slim tall plate held at the base, with a small bore near its top: axial (z) sway of a cantilever
+    s = housing(
+        width=0.03, height=0.4, length=0.01, bore_diameter=0.01, bore_height=0.39, f_max=5e3
+    ).superelement()
+    f = frequencies(*grounded(s)[:2])[0]
+    euler = 1.8751**2 / (2 * math.pi * 0.4**2) * math.sqrt(210e9 / 7850 * 0.01**2 / 12)
+    # the bore takes .65 % of the mass at the tip, felt four-fold by a beam: f up 1.3 %; plate action < 1 %
+    assert f == pytest.approx(euler, rel=0.03)
+
+
+def test_flanged_and_narrow_feet_soften_the_stand():
+    stiff, strips, flanged = (
+        np.linalg.inv(grounded(housing(feet=feet, f_max=5e3).superelement())[0])[2, 2]
+        for feet in (None, Feet(0.03), Feet(0.03, 0.012))
+    )
+    assert stiff < strips < flanged
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"width": -0.1}, "width is -0.1"),
+        ({"height": math.nan}, "height is nan"),
+        ({"length": math.inf}, "length is inf"),
+        ({"bore_diameter": 0.0}, "bore_diameter is 0.0"),
+        ({"bore_diameter": 0.12}, "bore_diameter is 0.12 m; it must leave a wall"),
+        ({"bore_height": 0.18}, r"bore_height is 0.18 m; .* 0.03224 to 0.16776 m"),
+        ({"bore_height": math.nan}, "bore_height is nan"),
+        ({"damping": 1.0}, "damping is 1.0"),
+        ({"f_max": -1.0}, "f_max is -1.0"),
+        ({"element_size": 0.0}, "element_size is 0.0"),
+        ({"element_size": 1e-4}, "element_size is 0.0001"),
+        ({"feet": Feet(0.07)}, "feet.width is 0.07"),
+        ({"feet": Feet(0.02, 0.3)}, "feet.height is 0.3"),
+        ({"points": {"top": (0, 0, 0)}}, "'top', a name the housing uses"),
+        ({"points": {"p": (0.0, 0.5, 0.0)}}, r"points\['p'\].*in the block"),
+        ({"points": {"p": (0.0, 0.0, 0.0)}}, r"points\['p'\].*in the bore"),
+        ({"points": {"p": (0.0, 0.0)}}, r"points\['p'\].*in the block"),
+    ],
+)
+def test_housing_refuses(change, message):
+    with pytest.raises(ValueError, match=message):
+        housing(**change)
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "message"), [(0.0, 0.0, "width is 0.0"), (0.1, math.nan, "height is nan")]
+)
+def test_feet_refuse(width, height, message):
+    with pytest.raises(ValueError, match=message):
+        Feet(width, height)
+
+
+def test_solid_refuses_other_meshes_and_inverted_elements():
+    with pytest.raises(ValueError, match="mesh is a MeshTri1"):
+        assemble_solid(skfem.MeshTri())
+    mesh = skfem.MeshHex.init_tensor(*[np.linspace(0, 1, 3)] * 3)
+    p = mesh.p.copy()
+    p[:, np.argmin(np.linalg.norm(p - 0.5, axis=0))] += 0.8
+    with pytest.raises(ValueError, match="turned inside out"):
+        assemble_solid(skfem.MeshHex(p, mesh.t))
+
+
+@pytest.fixture(scope="module")
+def model():
+    solid = assemble_solid(skfem.MeshHex.init_tensor(*[np.linspace(0, 0.1, 3)] * 3))
+    return FEMatrices(solid.stiffness(STEEL), STEEL.density * solid.mass, solid.points)
+
+
+def test_matrices_survive_npz_and_matrix_market(model, tmp_path):
+    write_npz(tmp_path / "m.npz", model)
+    read = read_npz(tmp_path / "m.npz")
+    np.savez(tmp_path / "dense.npz", K=model.K.toarray(), M=model.M.toarray())
+    dense = read_npz(tmp_path / "dense.npz")
+    scipy.io.mmwrite(tmp_path / "K.mtx", model.K, symmetry="symmetric", precision=17)
+    scipy.io.mmwrite(tmp_path / "M.mtx", model.M, symmetry="symmetric", precision=17)
+    text = read_matrix_market(tmp_path / "K.mtx", tmp_path / "M.mtx", model.points)
+    for other in (read, dense, text):
+        assert abs(other.K - model.K).max() <= 1e-15 * abs(model.K).max()  # 17 digits carry a double exactly
+        assert abs(other.M - model.M).max() <= 1e-15 * abs(model.M).max()
+    assert np.array_equal(read.points, model.points)
+    assert dense.points is None
+
+
+def test_matrices_from_elsewhere_that_are_wrong_are_refused(model, tmp_path):
+    K, M, p = model.K, model.M, model.points
+    bad = K.copy().tolil()
+    bad[0, 1] += K.max()
+    nan = K.copy()
+    nan.data = nan.data.copy()
+    nan.data[3] = np.nan
+    for args, message in (
+        ((K[:6], M), r"K has shape \(6, 243\); it must be square"),
+        ((K[:6, :6], M), r"K has shape \(6, 6\) and M \(243, 243\)"),
+        ((bad, M), "K is not symmetric"),
+        ((scipy.sparse.tril(K), M), "K is not symmetric .*triangle"),
+        ((nan, M), "K has an entry that is not finite"),
+        ((K, -M), "M has a negative diagonal"),
+        ((K, 0 * M), "M is zero everywhere"),
+        ((K * 1j, M), "K is complex"),
+        ((K, M, p[:5]), r"points has shape \(5, 3\)"),
+        ((K + 1e6 * scipy.sparse.eye(243), M, p), "K resists rigid motion"),
+        ((K, M, p[::-1]), "K resists rigid motion"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            check_matrices(*args)
+    (tmp_path / "text.npz").write_text("not an archive")
+    (tmp_path / "text.mtx").write_text("1 2 3\n")
+    np.savez(tmp_path / "half.npz", K=K.toarray())
+    np.savez(tmp_path / "object.npz", K=np.array([{}], dtype=object), M=M.toarray())
+    for read, message in (
+        (lambda: read_npz(tmp_path / "text.npz"), "text.npz cannot be read"),
+        (lambda: read_npz(tmp_path / "half.npz"), "half.npz has no M"),
+        (lambda: read_npz(tmp_path / "object.npz"), "object.npz cannot be read"),
+        (lambda: read_npz(tmp_path / "none.npz"), "none.npz is not a file"),
+        (lambda: read_matrix_market(tmp_path / "text.mtx", tmp_path / "text.mtx"), "text.mtx cannot be read"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            read()
