@@ -58,7 +58,7 @@ asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 	meson install -C $(BUILD)/asan --quiet
 	LD_PRELOAD="$(SANITIZERS)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 \
 	  PYTHONMALLOC=malloc PYTHONPATH=$(BUILD)/asan/site \
-	  $(PY) -m pytest -m "not slow" $(CORE_TESTS)
+	  $(PY) -m pytest --capture=sys -m "not slow" $(CORE_TESTS)
 
 bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/transient.py --json

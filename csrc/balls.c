@@ -3,6 +3,7 @@
  * A ball per lane where balls are independent, a coefficient per lane where they are summed. */
 #include "balls.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "ehl.h"
@@ -79,7 +80,8 @@ BD_INLINE void indent(const bd_bearing *bearing, bd_bearing_work *work, const do
 
         lanes X = x0 + dX, Y = y0 + dY, square = X * X + Y * Y, length;
         lanes_sqrt(&square, &length);
-        lanes tilt = 1.0 / length, sine_a = X * tilt, cosine_a = Y * tilt;
+        /* DBL_MIN keeps it finite where the groove centres meet and no ball is touched */
+        lanes tilt = 1.0 / (length + DBL_MIN), sine_a = X * tilt, cosine_a = Y * tilt;
         lanes stretch = dX * (2.0 * x0 + dX) + dY * (2.0 * y0 + dY) + e0;
 
         LANES_AT(work->sine_a + first) = sine_a;

@@ -8,7 +8,7 @@ static double table_damping(const bd_contact *contact, double delta, double *slo
     const double *x = contact->table_delta, *c = contact->table_c;
     int last = contact->n_table - 1;
     *slope = 0.0;
-    if (delta <= x[0])
+    if (!(delta > x[0])) /* NaN too, lest the search below run off the table */
         return c[0];
     if (delta >= x[last])
         return c[last];

@@ -32,8 +32,9 @@ struct bd_kernels {
     void (*displace)(const bd_model *model, bd_work *work);
     /* step.c: guess += share * inverse (force - guess) */
     void (*correct)(const bd_model *model, bd_work *work, double share, const double *inverse);
-    /* step.c: completes the acceleration and makes the trial state the state */
-    void (*commit)(const bd_model *model, bd_work *work, bd_state *state);
+    /* step.c: completes the acceleration and makes the trial state the state.
+     * Returned: 0, or nonzero where it would not be finite; the state is then as it was */
+    int (*commit)(const bd_model *model, bd_work *work, bd_state *state);
 };
 
 /* The kernels of an instruction set, or NULL where this build or machine lacks it. */

@@ -7,13 +7,13 @@
  * terms leave less than 1e-18 at x = 1/2. */
 static const double series_limit = 0.5;
 
-/* q(x) = 1 - (1 - e^-x)/x and p(x) = (1 - e^-x) - q(x). */
+/* q(x) = 1 - (1 - e^-x)/x and p(x) = (1 - e^-x) - q(x) = (1 - e^-x)/x - e^-x. */
 static void ramp_weights(double x, double *p, double *q)
 {
     if (x >= series_limit) {
-        double loss = -expm1(-x);
-        *q = 1.0 - loss / x;
-        *p = loss - *q;
+        double mean = -expm1(-x) / x;
+        *q = 1.0 - mean;
+        *p = mean - exp(-x);
         return;
     }
     double term = 1.0; /* (-1)^(k+1) x^k / (k+1)! */

@@ -39,6 +39,17 @@ static bool increasing(const double *values, int n)
     return true;
 }
 
+/* Basis functions are built up from order to order; beyond this a call would not come to an end. */
+enum { HIGHEST_ORDER = 10000 };
+
+static bool nonnegative(const double *values, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!(values[i] >= 0.0))
+            return false;
+    return true;
+}
+
 bd_status bd_bearing_check(const bd_bearing_data *bearing)
 {
     const bd_contact *contact = &bearing->contact;
@@ -46,16 +57,19 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
         bearing->n_radial > bearing->n_coefs)
         return BD_BAD_SHAPE;
     for (int k = 0; k < bearing->n_coefs; k++)
-        if (bearing->order[k] < 0)
+        if (bearing->order[k] < 0 || bearing->order[k] > HIGHEST_ORDER)
             return BD_BAD_VALUE;
-    if (!(bearing->A > 0.0) || !(contact->kappa > 0.0) || !(contact->h0 >= 0.0) ||
-        !(contact->c >= 0.0) || !isfinite(bearing->x0) || !isfinite(bearing->y0) ||
-        !isfinite(bearing->e0) || !isfinite(bearing->cage_ratio) || !isfinite(bearing->angle0))
+    const double finite[] = {bearing->x0,     bearing->y0, bearing->e0, bearing->cage_ratio, bearing->angle0,
+                             contact->kappa, contact->h0, contact->c,  bearing->A};
+    if (!all_finite(finite, sizeof finite / sizeof finite[0]) || !(bearing->A > 0.0) ||
+        !(contact->kappa > 0.0) || !(contact->h0 >= 0.0) || !(contact->c >= 0.0))
         return BD_BAD_VALUE;
     if (contact->law == BD_DAMPING_TABLE) {
         if (contact->n_table < 1)
             return BD_BAD_SHAPE;
         if (!all_finite(contact->table_c, (size_t)contact->n_table) ||
+            !nonnegative(contact->table_c, contact->n_table) ||
+            !all_finite(contact->table_delta, (size_t)contact->n_table) ||
             !increasing(contact->table_delta, contact->n_table))
             return BD_BAD_VALUE;
     }
@@ -77,8 +91,12 @@ static bd_status check(const bd_model_data *data)
             return BD_BAD_SHAPE;
         if (!all_finite(layer->L, n * (size_t)layer->rank))
             return BD_BAD_VALUE;
+        if (!all_finite(layer->tau, (size_t)layer->n_branches) ||
+            !all_finite(layer->modulus, (size_t)layer->n_branches) ||
+            !nonnegative(layer->modulus, layer->n_branches))
+            return BD_BAD_VALUE;
         for (int i = 0; i < layer->n_branches; i++)
-            if (!(layer->tau[i] > 0.0) || !(layer->modulus[i] >= 0.0))
+            if (!(layer->tau[i] > 0.0))
                 return BD_BAD_VALUE;
     }
     for (int b = 0; b < data->n_bearings; b++) {
@@ -98,6 +116,7 @@ static bd_status check(const bd_model_data *data)
             if (load->n_samples < 1)
                 return BD_BAD_SHAPE;
             if (!all_finite(load->value, (size_t)load->n_samples) ||
+                !all_finite(load->time, (size_t)load->n_samples) ||
                 !increasing(load->time, load->n_samples))
                 return BD_BAD_VALUE;
         }

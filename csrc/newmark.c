@@ -147,7 +147,7 @@ static bool position_settled(const bd_model *model, bd_work *work)
     return largest_move <= grazing_tolerance * largest;
 }
 
-/* The bearing with the largest residual. */
+/* The bearing with the largest residual, or the first whose residual is not a number. */
 static int worst_bearing(const bd_model *model, const bd_work *work)
 {
     int worst = -1;
@@ -156,7 +156,9 @@ static int worst_bearing(const bd_model *model, const bd_work *work)
         for (int k = 0; k < model->bearings[b].data.n_coefs; k++) {
             int at = model->bearing_slot[b] + k;
             double residual = fabs(work->force[at] - work->guess[at]);
-            if (!(residual <= largest)) {
+            if (isnan(residual))
+                return b;
+            if (residual > largest) {
                 largest = residual;
                 worst = b;
             }
@@ -188,8 +190,10 @@ static bd_status solve_bearings(const bd_model *model, bd_work *work, bd_state *
         bool converged = residual <= scheme->tolerance * scale ||
                          (iteration >= GRAZING && position_settled(model, work));
         if (!converged && (!fresh || iteration >= PATIENCE)) {
-            if (refresh(model, work))
+            if (refresh(model, work)) {
+                report->bearing = worst_bearing(model, work);
                 return BD_SINGULAR;
+            }
             inverse = work->inverse;
             fresh = true;
             report->refreshes++;
@@ -317,7 +321,8 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
         memcpy(factor, model->M + block->matrix, n * n * sizeof *factor);
         if (bd_solve_real(lapack, block->n, factor, pivots, 1, right))
             status = BD_SINGULAR_MASS;
-        memcpy(state.a + block->offset, right, n * sizeof *right);
+        else
+            memcpy(state.a + block->offset, right, n * sizeof *right);
     }
     free(pivots);
     if (status == BD_OK && !finite_state(model, &state))
@@ -358,16 +363,15 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         }
 
         /* both together; only now does the state change */
-        work->kernels->commit(model, work, &state);
+        if (work->kernels->commit(model, work, &state)) {
+            report->status = BD_NOT_FINITE;
+            break;
+        }
         state.clock[1] += 1.0;
         if (scheme->audit)
             bd_energy_step(model, work, &state, t);
 
         if ((long long)state.clock[1] % decimate == 0) {
-            if (!finite_state(model, &state)) {
-                report->status = BD_NOT_FINITE;
-                break;
-            }
             record_row(model, work, &state, record + rows * model->n_channels);
             rows++;
         }

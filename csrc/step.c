@@ -87,22 +87,35 @@ static void correct(const bd_model *model, bd_work *work, double share, const do
     columns_add(model->coefs, model->coefs, inverse, model->coefs, work->change, work->guess);
 }
 
-/* Completes the acceleration and makes the trial state the state. */
-static void commit(const bd_model *model, bd_work *work, bd_state *state)
+/* Completes the acceleration and makes the trial state the state, if that is finite. */
+static int commit(const bd_model *model, bd_work *work, bd_state *state)
 {
     const bd_scheme *scheme = &work->scheme;
     const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
 
-    for (int k = 0; k < model->coefs; k += BD_WIDTH) {
-        LANES_AT(state->g + k) = LANES(work->guess + k);
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->change + k) = -LANES(work->guess + k);
-    }
     columns_add(model->n_padded, model->coefs, work->SB, model->n_padded, work->change, work->a);
+
+    /* 0 times a number that is not finite is NaN, and so is every sum with it */
+    lanes poison = {0};
     for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
         lanes a = LANES(work->a + i);
-        LANES_AT(state->a + i) = a;
-        LANES_AT(state->x + i) = LANES(work->x + i) + in_x * a;
-        LANES_AT(state->v + i) = LANES(work->v + i) + in_v * a;
+        lanes x = LANES(work->x + i) + in_x * a, v = LANES(work->v + i) + in_v * a;
+        LANES_AT(work->x_new + i) = x;
+        LANES_AT(work->v_new + i) = v;
+        poison += 0.0 * x + 0.0 * v;
+    }
+    for (int i = 0; i < BD_WIDTH; i++)
+        if (!(poison[i] == 0.0))
+            return 1;
+
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+        LANES_AT(state->g + k) = LANES(work->guess + k);
+    for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
+        LANES_AT(state->a + i) = LANES(work->a + i);
+        LANES_AT(state->x + i) = LANES(work->x_new + i);
+        LANES_AT(state->v + i) = LANES(work->v_new + i);
     }
 
     const bd_branch_weights *weights = work->weights;
@@ -118,6 +131,7 @@ static void commit(const bd_model *model, bd_work *work, bd_state *state)
             maxwell_commit(layer->padded, *weights++, work->trial + at, rate, state->stress + at);
         }
     }
+    return 0;
 }
 
 extern const bd_kernels BD_NAMED(bd_kernels);

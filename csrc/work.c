@@ -189,8 +189,11 @@ static void place_block(const bd_model *model, int b, bd_work *work, const block
     const size_t in_step = step_columns(model, block);
     const double *column = system->rhs;
 
-    for (size_t c = 0; c < in_step; c++, column += n)
-        memcpy(work->step + work->step_at[b] + c * padded, column, n * sizeof *column);
+    for (size_t c = 0; c < in_step; c++, column += n) {
+        double *to = work->step + work->step_at[b] + c * padded;
+        memcpy(to, column, n * sizeof *column);
+        memset(to + n, 0, (padded - n) * sizeof *to); /* bd_start may have written there */
+    }
     for (size_t c = 0; c < 2 * (size_t)model->n_loads; c++, column += n)
         memcpy(work->SP + c * (size_t)model->n_padded + block->offset, column, n * sizeof *column);
     for (size_t c = 0; c < (size_t)model->coefs; c++, column += n)

@@ -144,14 +144,14 @@ def test_c_equals_its_twin(case):
     away_from_kinks(*case)
     spec, z, zdot, _, cage_speed = case
     size = np.abs(z).max()
-    # every ball's force has round-off of its own scale, also where the sum cancels
+    # round-off is that of one ball's force, the film's share included, also where the sum over balls cancels
     stiffness = 1.5 * spec.kappa * np.sqrt(size + spec.h0)
     c = np.abs(bearing_twin.bearing_force(*case)[2]).max()
     scales = (
-        stiffness * size + c * (np.abs(zdot).max() + abs(cage_speed) * size),
+        stiffness * (size + spec.h0) + c * (np.abs(zdot).max() + abs(cage_speed) * size),
         stiffness + c * abs(cage_speed),
         max(c, 1e-300),
-        stiffness * size + c * (np.abs(zdot).max() + abs(cage_speed) * size),
+        stiffness * (size + spec.h0) + c * (np.abs(zdot).max() + abs(cage_speed) * size),
     )
     for ours, twin, scale in zip(
         core.bearing_force(*case), bearing_twin.bearing_force(*case), scales, strict=True

@@ -337,3 +337,24 @@ def test_material_without_law_stays_at_its_temperature():
     """No law, no other temperature."""
     with pytest.raises(ValueError, match="only by a shift law"):
         rubber().at(40.0)
+
+
+@pytest.mark.parametrize("wanted", [0.2, 0.3, 0.6])
+def test_a_further_relaxation_raises_the_loss_and_keeps_the_modulus(wanted: float) -> None:
+    base = Maxwell(4e6, [1e6, 5e5], [1e-4, 1e-2], eta0=3.0, K=2e9, density=1100.0)
+    omega = 2 * np.pi * 1000.0
+    damped = base.with_relaxation(wanted, omega)
+    # both follow from the definition in closed form: round-off of a few operations
+    assert damped.loss_factor(omega) == pytest.approx(wanted, rel=1e-12)
+    assert abs(damped.complex_modulus(omega)) == pytest.approx(abs(base.complex_modulus(omega)), rel=1e-12)
+    assert len(damped.tau) == len(base.tau) + 1
+    # and it keeps more relaxed modulus than scaling the branches does, where that can reach so far
+    if wanted == 0.2:
+        assert damped.G0 > base.with_loss_factor(wanted, omega).G0
+
+
+@pytest.mark.parametrize("wanted", [0.01, 1.0, np.nan])
+def test_a_loss_out_of_reach_of_a_further_relaxation_is_refused(wanted: float) -> None:
+    base = Maxwell(4e6, [1e6], [1e-4], K=2e9, density=1100.0)
+    with pytest.raises(ValueError, match="loss_factor"):
+        base.with_relaxation(wanted, 6000.0)

@@ -1,0 +1,88 @@
+"""Dynamics of rotors on ball bearings with viscoelastic layers, from the measured rubber to the running motor.
+
+SI units everywhere; z along the shaft, y vertical; interfaces in the order (x, y, z, θx, θy, θz).
+"""
+
+from bearingdyn.analysis import (
+    Equilibrium,
+    equilibrium,
+    frequency_response,
+    modes,
+    orbit,
+    spectrum,
+    transient,
+)
+from bearingdyn.application import Application
+from bearingdyn.bearing import BallBearing, ConstantDamping, LoadDamping, TabulatedDamping
+from bearingdyn.cms import Superelement
+from bearingdyn.core import Interrupted, Scheme, SolverError
+from bearingdyn.material import (
+    STEEL,
+    DMAData,
+    Elastic,
+    MasterCurve,
+    Maxwell,
+    fit_maxwell,
+    master_curve,
+    read_dma,
+    sample_dma_path,
+)
+from bearingdyn.parts import (
+    Cylinder,
+    Disc,
+    EndFace,
+    Feet,
+    Housing,
+    Layer,
+    Region,
+    Revolved,
+    RigidBody,
+    Ring,
+    Section,
+    Shaft,
+    damping_sample,
+)
+from bearingdyn.results import load, save
+
+__all__ = [
+    "STEEL",
+    "Application",
+    "BallBearing",
+    "ConstantDamping",
+    "Cylinder",
+    "DMAData",
+    "Disc",
+    "Elastic",
+    "EndFace",
+    "Equilibrium",
+    "Feet",
+    "Housing",
+    "Interrupted",
+    "Layer",
+    "LoadDamping",
+    "MasterCurve",
+    "Maxwell",
+    "Region",
+    "Revolved",
+    "RigidBody",
+    "Ring",
+    "Scheme",
+    "Section",
+    "Shaft",
+    "SolverError",
+    "Superelement",
+    "TabulatedDamping",
+    "damping_sample",
+    "equilibrium",
+    "fit_maxwell",
+    "frequency_response",
+    "load",
+    "master_curve",
+    "modes",
+    "orbit",
+    "read_dma",
+    "sample_dma_path",
+    "save",
+    "spectrum",
+    "transient",
+]

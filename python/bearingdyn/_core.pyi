@@ -1,10 +1,12 @@
 from collections.abc import Callable, Sequence
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
 _Array = NDArray[np.float64]
 
+@final
 class Model:
     def __new__(
         cls,

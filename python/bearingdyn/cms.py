@@ -312,14 +312,26 @@ def modal_damping(M: ArrayLike, K: ArrayLike, zeta: float) -> Float:
         return np.zeros_like(m)
     if not np.all(np.diag(m) > 0):
         raise ValueError("M has a diagonal entry that is not positive; modal damping needs a mass for each")
-    s = 1.0 / np.sqrt(np.diag(m))  # metres and radians brought to one scale before the rank decision
-    try:
-        lam, phi = scipy.linalg.eigh(s[:, None] * k * s, s[:, None] * m * s)
-    except np.linalg.LinAlgError as error:
-        raise ValueError(f"M is not positive definite ({error}); modal damping needs one that is") from error
-    elastic = lam > 100.0 * len(lam) * np.finfo(float).eps * np.abs(lam).max()
-    MPhi = m @ (s[:, None] * phi[:, elastic])
-    return np.asarray((MPhi * (2.0 * zeta * np.sqrt(lam[elastic]))) @ MPhi.T)
+    C = np.zeros_like(m)
+    for block in coupled_blocks(m, k):  # so that round-off does not couple what M and K do not
+        inside = np.ix_(block, block)
+        m_b, k_b = m[inside], k[inside]
+        s = 1.0 / np.sqrt(np.diag(m_b))  # metres and radians brought to one scale before the rank decision
+        try:
+            lam, phi = scipy.linalg.eigh(s[:, None] * k_b * s, s[:, None] * m_b * s)
+        except np.linalg.LinAlgError as error:
+            raise ValueError(f"M is not positive definite ({error}); modal damping needs one that is") from error
+        elastic = lam > 100.0 * len(lam) * np.finfo(float).eps * np.abs(lam).max()
+        MPhi = m_b @ (s[:, None] * phi[:, elastic])
+        C[inside] = (MPhi * (2.0 * zeta * np.sqrt(lam[elastic]))) @ MPhi.T
+    return C
+
+
+def coupled_blocks(*matrices: Float) -> list[Index]:
+    """Coordinates that any nonzero entry of the (n, n) matrices couples, block by block."""
+    pattern = scipy.sparse.csr_matrix(sum((np.asarray(A) != 0.0) for A in matrices))
+    count, label = scipy.sparse.csgraph.connected_components(pattern, directed=False)
+    return [np.flatnonzero(label == b) for b in range(count)]
 
 
 def reduce_free_body(

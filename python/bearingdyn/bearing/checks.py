@@ -18,7 +18,7 @@ def require(ok: bool, field: str, value: object, remedy: str) -> None:
 def number(field: str, value: object, remedy: str = "give one finite number") -> float:
     """The value as a finite float; ValueError if it is anything else."""
     try:
-        x = float(value)  # type: ignore[arg-type]
+        x = math.nan if isinstance(value, str) else float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         raise ValueError(f"{field} = {value!r}: {remedy}") from None
     require(math.isfinite(x), field, value, remedy)

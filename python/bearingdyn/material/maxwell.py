@@ -320,6 +320,39 @@ class Maxwell:
         weighed = replace(self, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
         return weighed.with_modulus(abs(modulus), omega)
 
+    def with_relaxation(self, loss_factor: float, omega: float) -> Maxwell:
+        """A causal material of the same |G*(omega)| with one more relaxation, τ = 1/omega, that raises the loss
+        factor there to the one given.
+
+        A branch of strength s adds s/2 to G′ and to G″ at its own frequency, so s = 2(tan δ G′ − G″)/(1 − tan δ);
+        then all strengths are scaled together until |G*(omega)| is what it was. Against `with_loss_factor` it
+        keeps more of the relaxed modulus G0, and so of the static stiffness, for the same damping at omega.
+
+        Parameters
+        ----------
+        loss_factor
+            Wanted tan δ at omega, above the present one and below 1.
+        omega
+            Angular frequency, rad/s, > 0.
+
+        Raises
+        ------
+        ValueError
+            If omega is not positive or the loss factor out of reach.
+        """
+        if not (omega > 0 and math.isfinite(omega)):
+            raise ValueError(f"omega = {omega!r} rad/s: must be positive and finite")
+        modulus = complex(self.complex_modulus(omega))
+        present = modulus.imag / modulus.real
+        if not present < loss_factor < 1:
+            raise ValueError(
+                f"loss_factor = {loss_factor!r}: must lie between the present {present:.4g} and 1"
+            )
+        strength = 2 * (loss_factor * modulus.real - modulus.imag) / (1 - loss_factor)
+        G, tau = np.append(self.G, strength), np.append(self.tau, 1 / omega)
+        order = np.argsort(tau)
+        return replace(self, G=G[order], tau=tau[order], fit=None).with_modulus(abs(modulus), omega)
+
     def to_json(self) -> str:
         """The material as JSON text, exact to the last bit; the fit report is left out."""
         data = {

@@ -1,0 +1,18 @@
+"""Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
+
+from bearingdyn.analysis.equilibrium import BearingState, Equilibrium, equilibrium
+from bearingdyn.analysis.harmonic import frequency_response
+from bearingdyn.analysis.modes import modes
+from bearingdyn.analysis.spectra import orbit, spectrum
+from bearingdyn.analysis.transient import transient
+
+__all__ = [
+    "BearingState",
+    "Equilibrium",
+    "equilibrium",
+    "frequency_response",
+    "modes",
+    "orbit",
+    "spectrum",
+    "transient",
+]

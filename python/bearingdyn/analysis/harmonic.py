@@ -1,0 +1,94 @@
+"""The harmonic response about an equilibrium (paper section 4.1, eq (20))."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn import core
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.application import Application
+from bearingdyn.system import System, assemble
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = NDArray[np.float64]
+
+
+def frequency_response(
+    source: Equilibrium | Application | System,
+    frequency: ArrayLike,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    *,
+    speed: float = 0.0,
+    quantity: str = "displacement",
+    progress: core.Progress | None = None,
+) -> xarray.Dataset:
+    """Complex response at `outputs` to unit harmonic forces at `inputs`, zero-to-peak per N (or N m).
+
+    Parameters
+    ----------
+    source
+        Equilibrium, whose bearings are linearised; or an application or system without bearings.
+    frequency
+        (f,) Hz, ≥ 0, finite.
+    inputs, outputs
+        Channels, "shaft.left.y".
+    speed
+        rad/s of the shaft, for gyroscopic forces; it is not the excitation frequency.
+    quantity
+        "displacement", "velocity" or "acceleration".
+
+    Returns a Dataset with response (frequency, output, input), complex.
+
+    Raises ValueError for an unknown channel or quantity, a negative frequency, bearings without equilibrium;
+    ArithmeticError where the dynamic stiffness is singular.
+    """
+    f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
+    if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f >= 0).all()):
+        raise ValueError("frequency must be a list of finite values of zero or more, in Hz")
+    powers = {"displacement": 0, "velocity": 1, "acceleration": 2}
+    if quantity not in powers:
+        raise ValueError(f"quantity is {quantity!r}; it must be one of {sorted(powers)}")
+    if isinstance(source, Equilibrium):
+        system, K, C = source.system, source.bearing_K, source.bearing_C
+    else:
+        system = source if isinstance(source, System) else assemble(source)
+        if system.bearings:
+            raise ValueError(
+                "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
+            )
+        K = C = np.zeros((0, 0))
+    force = np.array([system.row(name) for name in inputs]).reshape(-1, system.n)
+    row = np.array([system.row(name) for name in outputs]).reshape(-1, system.n)
+
+    omega = 2 * np.pi * f
+    modulus = np.ones((f.size, len(system.layers)), dtype=np.complex128)
+    for k, layer in enumerate(system.layers):
+        modulus[:, k] = layer.material.complex_modulus(omega)
+    # η0 sits in G*(ω) here, so C is the structure's own
+    response = core.harmonic(
+        system.model([], relaxed=False), omega, modulus, K, C, force, row, speed, progress
+    )
+    response *= ((1j * omega) ** powers[quantity])[:, None, None]
+
+    from bearingdyn.results import dataset
+
+    units = {"displacement": "m/N", "velocity": "m/(N s)", "acceleration": "m/(N s²)"}
+    return dataset(
+        {
+            "response": (
+                ("frequency", "output", "input"),
+                response,
+                units[quantity],
+                f"complex {quantity}, zero-to-peak, per unit force",
+            ),
+        },
+        {"analysis": "frequency response", "speed": speed, "quantity": quantity},
+        {"frequency": (f, "Hz"), "output": (list(outputs), ""), "input": (list(inputs), "")},
+    )

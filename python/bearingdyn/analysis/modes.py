@@ -1,0 +1,134 @@
+"""Natural modes: undamped, or damped and exact with the layers' branches as states."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.application import Application
+from bearingdyn.system import System, assemble
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = NDArray[np.float64]
+
+# an eigenvalue this close to the real axis, relative to its size, does not swing
+REAL = 1e-9
+
+
+def modes(
+    source: Equilibrium | Application | System,
+    count: int | None = None,
+    *,
+    speed: float = 0.0,
+    damped: bool = False,
+    modulus: str = "relaxed",
+) -> xarray.Dataset:
+    """Natural modes about an equilibrium (bearings at their tangents), or of an application without bearings.
+
+    Undamped: layers at their "relaxed" or "instantaneous" modulus, gyroscopic forces at `speed` (rad/s).
+    Damped: (K, C, G, N) and every Maxwell branch as a state, so eigenvalues are those of the
+    frequency-dependent problem itself.
+
+    Returns a Dataset over "mode": frequency (Hz), damping_ratio, eigenvalue (rad/s, complex), shape (mode,
+    coordinate) complex, of the system's coordinates; motion of a place is rows(place) @ shape.
+
+    Raises ValueError for bearings without an equilibrium.
+    """
+    system = _linear(source)
+    if damped:
+        values, shapes = _damped(system, speed)
+    elif speed == 0.0:
+        squares, real = scipy.linalg.eigh(system.stiffness(modulus), system.M)
+        values, shapes = 1j * np.sqrt(np.maximum(squares, 0.0)), real.astype(np.complex128)
+    else:
+        values, shapes = _first_order(system.stiffness(modulus), np.zeros_like(system.C), system, speed)
+    order = np.argsort(np.abs(values), kind="stable")[:count]
+    values, shapes = values[order], shapes[:, order]
+
+    from bearingdyn.results import dataset
+
+    size = np.abs(values)
+    return dataset(
+        {
+            "frequency": ("mode", size / (2 * np.pi), "Hz", "undamped natural frequency |λ|/2π"),
+            "damping_ratio": (
+                "mode",
+                np.divide(-values.real, size, out=np.zeros_like(size), where=size > 0),
+                "1",
+                "−Re λ/|λ|",
+            ),
+            "eigenvalue": ("mode", values, "rad/s", "λ of exp(λt)"),
+            "shape": (("mode", "coordinate"), shapes.T, "m, rad", "mode shape in system coordinates"),
+        },
+        {"analysis": "modes", "speed": speed, "damped": int(damped), "modulus": modulus},
+    )
+
+
+def _linear(source: Equilibrium | Application | System) -> System:
+    if isinstance(source, Equilibrium):
+        return source.linearised()
+    system = source if isinstance(source, System) else assemble(source)
+    if system.bearings:
+        raise ValueError(
+            "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
+        )
+    return system
+
+
+def _swinging(values: NDArray[np.complex128], shapes: NDArray[np.complex128]) -> tuple[
+    NDArray[np.complex128], NDArray[np.complex128]
+]:
+    keep = values.imag > REAL * np.abs(values).max(initial=1.0) * 1e-3
+    return values[keep], shapes[:, keep]
+
+
+def _first_order(K: Array, C: Array, system: System, speed: float) -> tuple[
+    NDArray[np.complex128], NDArray[np.complex128]
+]:
+    n = system.n
+    inverse = np.linalg.inv(system.M)
+    A = np.block(
+        [
+            [np.zeros((n, n)), np.eye(n)],
+            [-inverse @ (K + speed * system.N), -inverse @ (C + speed * system.G)],
+        ]
+    )
+    values, vectors = scipy.linalg.eig(A)
+    return _swinging(values, vectors[:n])
+
+
+def _damped(system: System, speed: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """States x, v and every branch stress: ṡ = 2 G Lᵀ v − s/τ, force L s (paper (6) differentiated)."""
+    modal, T = system.modal()
+    n = modal.n
+    columns, rates = [np.zeros((n, 0))], [np.zeros(0)]
+    strengths = [np.zeros(0)]
+    for layer in modal.layers:
+        for G, tau in zip(layer.material.G, layer.material.tau, strict=True):
+            columns.append(layer.L)
+            rates.append(np.full(layer.L.shape[1], 1.0 / tau))
+            strengths.append(np.full(layer.L.shape[1], 2.0 * G))
+    L, rate, strength = np.hstack(columns), np.concatenate(rates), np.concatenate(strengths)
+    m = len(rate)
+    # s scaled by √strength, so that the branches' states weigh like velocities
+    Ls = L * np.sqrt(strength)
+    A = np.block(
+        [
+            [np.zeros((n, n)), np.eye(n), np.zeros((n, m))],
+            [
+                -(modal.stiffness() + speed * modal.N),
+                -(modal.viscous() + speed * modal.G),
+                -Ls,
+            ],
+            [np.zeros((m, n)), Ls.T, -np.diag(rate)],
+        ]
+    )
+    values, vectors = scipy.linalg.eig(A)
+    values, shapes = _swinging(values, vectors[:n])
+    return values, T @ shapes

@@ -1,0 +1,67 @@
+"""Spectra and orbits of recorded channels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray
+
+WINDOWS = ("hann", "none")
+
+
+def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarray.Dataset:
+    """One-sided amplitude spectrum (zero-to-peak) of a recorded channel, its mean removed.
+
+    A sine of amplitude A on a line of the grid shows as A whatever the window. The resolution is 1/T of the
+    record.
+
+    Raises ValueError for an unknown channel or window, or fewer than four samples.
+    """
+    if window not in WINDOWS:
+        raise ValueError(f"window is {window!r}; it must be one of {list(WINDOWS)}")
+    signal = _signal(result, channel)
+    n = signal.size
+    if n < 4:
+        raise ValueError(f"channel {channel!r} holds {n} samples; a spectrum needs four or more")
+    weight = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(n) / n) if window == "hann" else np.ones(n)
+    amplitude = 2.0 * np.abs(np.fft.rfft((signal - signal.mean()) * weight)) / weight.sum()
+    if n % 2 == 0:
+        amplitude[-1] /= 2.0
+    dt = float(result.attrs["dt"]) * int(result.attrs["decimate"])
+
+    from bearingdyn.results import dataset
+
+    unit = str(result["unit"].sel(channel=channel).item())
+    return dataset(
+        {"amplitude": ("frequency", amplitude, unit, f"{channel}, zero-to-peak")},
+        {"analysis": "spectrum", "channel": channel, "window": window},
+        {"frequency": (np.fft.rfftfreq(n, dt), "Hz")},
+    )
+
+
+def orbit(result: xarray.Dataset, x: str, y: str) -> xarray.Dataset:
+    """Two channels against each other, each with its mean (the static deflection) subtracted.
+
+    Raises ValueError for an unknown channel.
+    """
+    from bearingdyn.results import dataset
+
+    across, up = _signal(result, x), _signal(result, y)
+    return dataset(
+        {
+            "x": ("time", across - across.mean(), "m", f"{x} about its mean"),
+            "y": ("time", up - up.mean(), "m", f"{y} about its mean"),
+        },
+        {"analysis": "orbit", "mean_x": float(across.mean()), "mean_y": float(up.mean())},
+        {"time": (result["time"].values, "s")},
+    )
+
+
+def _signal(result: xarray.Dataset, channel: str) -> np.ndarray:
+    known = [str(c) for c in result["channel"].values]
+    if channel not in known:
+        raise ValueError(f"channel {channel!r} was not recorded; there are {known}")
+    return np.asarray(result["record"].sel(channel=channel).values, dtype=np.float64)

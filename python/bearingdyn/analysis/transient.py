@@ -1,0 +1,205 @@
+"""The nonlinear transient at speed: Maxwell history, Newmark, Newton on the balls (paper section 4.2)."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn import core
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.system import QUANTITIES, System
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = NDArray[np.float64]
+Channel = tuple[int, Array | None, int, int]
+
+UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}
+
+
+def transient(
+    source: Equilibrium | System,
+    *,
+    speed: float,
+    dt: float,
+    steps: int,
+    record: Sequence[str],
+    decimate: int = 1,
+    settle: int = 0,
+    initial: Mapping[str, ArrayLike] | None = None,
+    resume: xarray.Dataset | None = None,
+    audit: bool = False,
+    scheme: core.Scheme | None = None,
+    progress: core.Progress | None = None,
+) -> xarray.Dataset:
+    """March an application at constant speed from its equilibrium.
+
+    Parameters
+    ----------
+    source
+        Equilibrium: the march starts there, at rest, layers relaxed. A System starts from zero.
+    speed
+        Speed of the shaft, rad/s.
+    dt, steps
+        Step in s and number of steps recorded from.
+    record
+        Channels: "shaft.left.y" (displacement), "shaft.left.y.velocity", "….acceleration"; of a bearing:
+        "left.loaded" (number of loaded balls), "left.ball3" (its load, balls from 1), "left.force.x"
+        (force of the inner ring on the balls, x, y or z).
+    decimate
+        Every how many steps a sample is kept; plain sampling, no filter.
+    settle
+        Steps marched before and thrown away, so that the ring-down of the start has passed.
+    initial
+        Displacement (6,) or (3,) of interfaces or points at the start, instead of the equilibrium's.
+    resume
+        Result of an earlier call on the same application: goes on where it ended, bit for bit.
+    audit
+        Integrate energies and works; they come as attributes "energy_…", J.
+    scheme
+        β, γ, tolerance, iterations and instruction set; its dt, speed and audit are replaced.
+
+    Returns a Dataset with record (time, channel), and state, from which `resume` goes on. Attribute
+    complete is 0 where the march did not reach its end.
+
+    Raises
+    ------
+    ValueError
+        For dt ≤ 0, negative steps, an unknown channel, before any work.
+    SolverError
+        When Newton's iteration diverges; its `partial` is the Dataset up to there.
+    Interrupted
+        On Ctrl-C; its `partial` likewise.
+    """
+    if not (dt > 0 and math.isfinite(dt)):
+        raise ValueError(f"dt is {dt}; the time step must be positive, in s")
+    for name, value, least in (("steps", steps, 0), ("settle", settle, 0), ("decimate", decimate, 1)):
+        if int(value) != value or value < least:
+            raise ValueError(f"{name} is {value}; it must be a whole number of at least {least}")
+    if not math.isfinite(speed):
+        raise ValueError(f"speed is {speed}; it must be finite, in rad/s")
+    system = source.system if isinstance(source, Equilibrium) else source
+    modal, T = system.modal()
+    channels, units = zip(*(_channel(modal, name) for name in record), strict=True) if record else ((), ())
+    model = modal.model(list(channels))
+    base = scheme or core.Scheme(dt)
+    scheme = core.Scheme(
+        dt, base.beta, base.gamma, float(speed), base.tolerance, base.max_iterations, audit, base.isa
+    )
+
+    if resume is not None:
+        state, start = np.asarray(resume["state"].values, dtype=np.float64), False
+    else:
+        x = source.x.copy() if isinstance(source, Equilibrium) else np.zeros(system.n)
+        for name, target in (initial or {}).items():
+            rows = system.rows(name)
+            wanted = np.asarray(target, dtype=np.float64)
+            if wanted.shape != (rows.shape[0],) or not np.isfinite(wanted).all():
+                raise ValueError(f"initial[{name!r}] must be {rows.shape[0]} finite numbers, not {target!r}")
+            x += np.linalg.pinv(rows) @ (wanted - rows @ x)
+        state, start = model.state(0.0, T.T @ system.M @ x, np.zeros(system.n)), True
+
+    total = settle + steps
+    report = None
+    if settle:
+        def settling(done: int, _: int) -> object:
+            return progress(done, total) if progress else None
+
+        _, state, report = core.march(
+            model, state, scheme, settle, settle + 1, start=start, progress=settling if progress else None
+        )
+        start = False
+    if report is None or report.status == 0:
+        def marching(done: int, _: int) -> object:
+            return progress(settle + done, total) if progress else None
+
+        rows, state, report = core.march(
+            model, state, scheme, steps, decimate, start=start, progress=marching if progress else None
+        )
+    else:
+        rows = np.zeros((0, len(channels)))
+
+    result = _result(rows, state, report, model, scheme, record, units, decimate, settle)
+    if report.status == core.INTERRUPTED:
+        raise core.Interrupted(f"interrupted at t = {report.t:.6g} s; what was marched is in `partial`", result)
+    if report.status != 0:
+        place = f", worst in bearing {system.bearings[report.bearing].name!r}" if report.bearing >= 0 else ""
+        raise core.SolverError(
+            f"{report.text} in step {report.steps + 1} at t = {report.t:.6g} s (residual "
+            f"{report.residual:.3g} of the largest bearing force{place}); try a smaller dt",
+            report,
+            result,
+        )
+    return result
+
+
+def _channel(system: System, name: str) -> tuple[Channel, str]:
+    """Kind, row, bearing and index of a channel by name, and its unit."""
+    bearings = [b.name for b in system.bearings]
+    head, _, rest = name.partition(".")
+    if head in bearings:
+        which = bearings.index(head)
+        ball = re.fullmatch(r"ball(\d+)", rest)
+        if rest == "loaded":
+            return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
+        if ball and 1 <= int(ball[1]) <= system.bearings[which].bearing.Z:
+            return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
+        if rest in ("force.x", "force.y", "force.z"):
+            return (core.CHANNEL_KINDS["force"], None, which, "xyz".index(rest[-1])), "N"
+        raise ValueError(
+            f"channel {name!r}: bearing {head!r} offers loaded, ball1 … ball{system.bearings[which].bearing.Z}, "
+            f"force.x, force.y and force.z"
+        )
+    place, _, quantity = name.rpartition(".")
+    if quantity not in QUANTITIES:
+        place, quantity = name, "displacement"
+    unit = UNITS[quantity]
+    if place.rpartition(".")[2] in ("θx", "θy", "θz", "rx", "ry", "rz"):
+        unit = unit.replace("m", "rad", 1)
+    return (core.CHANNEL_KINDS[quantity], system.row(place), 0, 0), unit
+
+
+def _result(
+    rows: Array,
+    state: Array,
+    report: core.Report,
+    model: core.Model,
+    scheme: core.Scheme,
+    record: Sequence[str],
+    units: Sequence[str],
+    decimate: int,
+    settle: int,
+) -> xarray.Dataset:
+    from bearingdyn.results import dataset
+
+    origin, count = float(state[0]), int(state[1])
+    last = count - count % decimate
+    time = origin + (last - decimate * np.arange(len(rows))[::-1]) * scheme.dt
+    energies = core.energies(model, state) if scheme.audit else {}
+    data = dataset(
+        {
+            "record": (("time", "channel"), rows, "", "recorded channels; their units are in `unit`"),
+            "state": ("word", state, "", "state of the march in the core's own order"),
+        },
+        {
+            "analysis": "transient",
+            "speed": scheme.speed,
+            "dt": scheme.dt,
+            "decimate": decimate,
+            "settle": settle,
+            "steps": report.steps,
+            "iterations": report.iterations,
+            "refreshes": report.refreshes,
+            "complete": int(report.status == 0),
+            "status": report.text,
+            **{f"energy_{name}": value for name, value in energies.items()},
+        },
+        {"time": (time, "s"), "channel": (list(record), "")},
+    )
+    return data.assign_coords(unit=("channel", list(units)))

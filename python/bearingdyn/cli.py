@@ -1,0 +1,254 @@
+"""The command line: `bearingdyn fit`, `bearingdyn show`, `bearingdyn version`.
+
+Results go to standard output, warnings and errors, one line each, to standard error. The exit code is 0, 1 for
+input that cannot be used, 2 for a command that was not understood.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import warnings
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bearingdyn import results
+from bearingdyn.material import MasterCurve, Maxwell, fit_maxwell, master_curve, read_dma
+
+if TYPE_CHECKING:
+    import xarray
+
+# usual for rubber; said in the table where they were not given
+BULK_MODULUS = 2e9
+DENSITY = 1200.0
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command, sys.argv's when none is given, and return its exit code."""
+    parser = _parser()
+    try:
+        arguments = parser.parse_args(argv)
+    except SystemExit as stop:  # argparse has said why
+        return int(stop.code or 0)
+    # a name with θ must not stop a terminal that cannot show it
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            text = arguments.run(arguments)
+        for warning in caught:
+            if issubclass(warning.category, UserWarning):
+                print(f"bearingdyn: warning: {_line(warning.message)}", file=sys.stderr)
+        print(text, flush=True)
+    except BrokenPipeError:  # the reader had enough, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except (ValueError, OSError) as error:
+        print(f"bearingdyn: {_line(error)}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("bearingdyn: interrupted", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _line(message: object) -> str:
+    return " ".join(str(message).split())
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="bearingdyn", description="Dynamics of rotors on ball bearings with viscoelastic layers."
+    )
+    commands = parser.add_subparsers(required=True, metavar="command")
+
+    fit = commands.add_parser("fit", help="a Maxwell model from measured DMA data")
+    fit.set_defaults(run=_fit)
+    fit.add_argument("data", help="table of isothermal frequency sweeps, with a header")
+    fit.add_argument("--n", type=int, default=5, help="number of branches (default 5)")
+    fit.add_argument(
+        "--band", type=float, nargs=2, metavar=("LOW", "HIGH"), help="frequencies to fit between at T-ref, Hz"
+    )
+    fit.add_argument(
+        "--T-ref", type=float, default=20.0, metavar="T", help="reference temperature, C (default 20)"
+    )
+    fit.add_argument(
+        "--law", choices=("wlf", "arrhenius", "free"), default="wlf", help="shift law (default wlf)"
+    )
+    fit.add_argument("--K", type=float, help=f"bulk modulus, Pa (default {BULK_MODULUS:g}, usual for rubber)")
+    fit.add_argument("--density", type=float, help=f"kg/m3 (default {DENSITY:g}, usual for rubber)")
+    fit.add_argument("--mode", choices=("shear", "tension"), help="where the header does not say it")
+    fit.add_argument("--f-max", type=float, metavar="F", help="leave out what was measured above, Hz")
+    fit.add_argument("--out", metavar="FILE", help="write the model there, as Maxwell.from_json reads it")
+    fit.add_argument("--json", action="store_true", help="print JSON instead of a table")
+
+    show = commands.add_parser("show", help="what a result file holds")
+    show.set_defaults(run=_show)
+    show.add_argument("result", help="file written by bearingdyn.save")
+    show.add_argument("--json", action="store_true", help="print JSON instead of a table")
+
+    about = commands.add_parser("version", help="versions of the package and what it computes with")
+    about.set_defaults(run=_about)
+    return parser
+
+
+# ---------------------------------------------------------------- fit
+
+
+def _fit(arguments: argparse.Namespace) -> str:
+    out = None if arguments.out is None else Path(arguments.out)
+    if out is not None and not out.resolve().parent.is_dir():
+        raise ValueError(f"--out {out}: there is no folder {out.parent}")
+    if arguments.f_max is not None and not arguments.f_max > 0:
+        raise ValueError(f"--f-max is {arguments.f_max}; it must be a positive frequency, in Hz")
+    dma = read_dma(arguments.data, arguments.mode)
+    if arguments.f_max is not None:
+        dma = dma.select(f_max=arguments.f_max)
+    curve = master_curve(dma, T_ref=arguments.T_ref, law=arguments.law)
+    band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
+    model = fit_maxwell(
+        curve,
+        n=arguments.n,
+        band=band,
+        K=BULK_MODULUS if arguments.K is None else arguments.K,
+        density=DENSITY if arguments.density is None else arguments.density,
+    )
+    if out is not None:
+        out.write_text(model.to_json() + "\n", encoding="utf-8")
+    if arguments.json:
+        return json.dumps({**_fit_record(curve, model), "data": arguments.data}, indent=1)
+    text = _fit_table(
+        curve, model, K_given=arguments.K is not None, density_given=arguments.density is not None
+    )
+    return text if out is None else f"{text}\nwritten to {out}"
+
+
+def _fit_record(curve: MasterCurve, model: Maxwell) -> dict[str, Any]:
+    report = model.fit
+    assert report is not None  # fit_maxwell leaves one
+    return {
+        "maxwell": json.loads(model.to_json()),
+        "fit": {
+            "band": list(report.band),
+            "points": report.points,
+            "storage_rms": report.storage_rms,
+            "storage_max": report.storage_max,
+            "tan_delta_rms": report.tan_delta_rms,
+            "tan_delta_max": report.tan_delta_max,
+        },
+        "master": {
+            "T_ref": curve.T_ref,
+            "mode": curve.mode,
+            "frequency": [float(curve.frequency[0]), float(curve.frequency[-1])],
+            "shifts": [{"temperature": T, "log_aT": shift} for T, shift in curve.shifts.items()],
+            "law_residual": curve.law_residual,
+            "kk_residual": list(curve.kk_residual),
+        },
+    }
+
+
+def _fit_table(curve: MasterCurve, model: Maxwell, K_given: bool, density_given: bool) -> str:
+    report = model.fit
+    assert report is not None  # fit_maxwell leaves one
+
+    storage, loss = curve.kk_residual
+
+    def assumed(given: bool) -> str:
+        return "" if given else "  (assumed)"
+
+    lines = [
+        f"master curve   {len(curve.shifts)} isotherms in {curve.mode}, {curve.frequency[0]:.3g} to "
+        f"{curve.frequency[-1]:.3g} Hz at {curve.T_ref:g} C",
+        f"shift law      {type(curve.law).__name__}, rms {curve.law_residual:.3f} decades",
+        f"causality      rms {storage:.2%} of the storage, {loss:.2%} of the loss modulus",
+        "",
+        f"Maxwell model in shear at {curve.T_ref:g} C",
+        f"  G0           {model.G0:12.5g} Pa",
+        *(
+            f"  G{i:<2d}          {G:12.5g} Pa     tau{i:<2d} {tau:12.5g} s"
+            for i, (G, tau) in enumerate(zip(model.G, model.tau, strict=True), 1)
+        ),
+        f"  eta0         {model.eta0:12.5g} Pa s",
+        f"  K            {model.K:12.5g} Pa{assumed(K_given)}",
+        f"  density      {model.density:12.5g} kg/m3{assumed(density_given)}",
+        "",
+        f"errors of the {report.points} points from {report.band[0]:g} to {report.band[1]:g} Hz",
+        f"  storage modulus  rms {report.storage_rms:.2%}   largest {report.storage_max:.2%}",
+        f"  tan delta        rms {report.tan_delta_rms:.2%}   largest {report.tan_delta_max:.2%}",
+    ]
+    return "\n".join(lines)
+
+
+# ---------------------------------------------------------------- show
+
+
+def _show(arguments: argparse.Namespace) -> str:
+    path = Path(arguments.result)
+    if not path.is_file():
+        raise ValueError(f"{path}: no such file")
+    names = results.groups(path)
+    held = {name: _describe(results.load(path, name)) for name in ("", *names)}
+    if names and not held[""]["variables"]:
+        del held[""]
+    if arguments.json:
+        return json.dumps({"file": str(path), "groups": held}, indent=1)
+    return "\n\n".join(_listing(name, group) for name, group in held.items())
+
+
+def _describe(data: xarray.Dataset) -> dict[str, Any]:
+    return {
+        "dims": {str(name): int(size) for name, size in data.sizes.items()},
+        "coords": {str(name): _variable(v) for name, v in data.coords.items()},
+        "variables": {str(name): _variable(v) for name, v in data.data_vars.items()},
+        "attrs": {str(name): _plain(value) for name, value in data.attrs.items()},
+    }
+
+
+def _variable(array: xarray.DataArray) -> dict[str, Any]:
+    return {
+        "dims": [str(d) for d in array.dims],
+        "dtype": "text" if array.dtype.kind in "OUS" else str(array.dtype),
+        "units": str(array.attrs.get("units", "")),
+        "long_name": str(array.attrs.get("long_name", "")),
+    }
+
+
+def _plain(value: Any) -> Any:
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+def _listing(name: str, group: dict[str, Any]) -> str:
+    lines = [f"group {name}" if name else "root group"]
+    lines.append("  dims   " + ", ".join(f"{dim} {size}" for dim, size in group["dims"].items()))
+    for kind in ("coords", "variables"):
+        for variable, about in group[kind].items():
+            label = f"  {'coord' if kind == 'coords' else 'var':<6} {variable} ({', '.join(about['dims'])})"
+            unit = f"[{about['units']}]" if about["units"] else ""
+            lines.append(f"{label:<44} {about['dtype']:<10} {unit:<8} {about['long_name']}".rstrip())
+    lines += [f"  attr   {key} = {value}" for key, value in group["attrs"].items()]
+    return "\n".join(lines)
+
+
+# ---------------------------------------------------------------- version
+
+
+def _about(_: argparse.Namespace) -> str:
+    def of(package: str) -> str:
+        try:
+            return version(package)
+        except PackageNotFoundError:
+            return "not installed"
+
+    python = ".".join(map(str, sys.version_info[:3]))
+    return f"bearingdyn {of('bearingdyn')}\nPython {python}, NumPy {of('numpy')}, SciPy {of('scipy')}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

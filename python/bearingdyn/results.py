@@ -1,0 +1,116 @@
+"""Results: xarray Datasets with named dimensions and units, saved to and loaded from one file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray
+
+Variable: TypeAlias = tuple[str | tuple[str, ...], Any, str, str]
+"""dims, values, unit, meaning"""
+
+# netCDF has no complex type: a trailing axis of two of this name holds real and imaginary part
+PARTS = "part"
+
+
+def _version() -> str:
+    try:
+        return version("bearingdyn")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def dataset(
+    variables: Mapping[str, Variable],
+    attrs: Mapping[str, Any],
+    coords: Mapping[str, tuple[Any, str]] | None = None,
+) -> xarray.Dataset:
+    """A Dataset whose variables carry units and meaning, and which says what made it."""
+    import xarray
+
+    made = xarray.Dataset(attrs={**attrs, "made_by": f"bearingdyn {_version()}"})
+    for name, (values, unit) in (coords or {}).items():
+        made = made.assign_coords({name: (name, np.asarray(values), {"units": unit} if unit else {})})
+    for name, (dims, values, unit, meaning) in variables.items():
+        made[name] = (dims, values, {"units": unit, "long_name": meaning})
+    return made
+
+
+def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
+    """Write one Dataset, or several by name (as groups), to one netCDF-4 file.
+
+    The file is written under another name and moved into place, so that a failure leaves no half file.
+    Raises OSError where the place cannot be written.
+    """
+    target = Path(path)
+    groups = dict(results) if isinstance(results, Mapping) and not hasattr(results, "dims") else {"": results}
+    scratch = target.with_name(target.name + ".part")
+    try:
+        for i, (name, data) in enumerate(groups.items()):
+            _plain(data).to_netcdf(  # type: ignore[arg-type]
+                scratch, mode="w" if i == 0 else "a", group=name or None, engine="h5netcdf"
+            )
+        scratch.replace(target)
+    finally:
+        scratch.unlink(missing_ok=True)
+
+
+def load(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
+    """Read a Dataset written by `save`, wholly into memory.
+
+    Raises ValueError if the file does not exist, is no netCDF-4 file, or lacks the group.
+    """
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
+            return _complex(data.load())
+    except FileNotFoundError:
+        raise ValueError(f"{os.fspath(path)}: no such file") from None
+    except (OSError, KeyError) as error:
+        place = f"group {group!r} of " if group else ""
+        raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def groups(path: str | os.PathLike[str]) -> list[str]:
+    """Names of the groups in a result file.
+
+    Raises ValueError if it cannot be read.
+    """
+    import h5netcdf
+
+    try:
+        with h5netcdf.File(path, "r") as file:
+            return sorted(file.groups)
+    except OSError as error:
+        raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def _plain(data: Any) -> Any:
+    """Complex variables as a trailing axis of two."""
+    import xarray
+
+    plain = data.copy()
+    for name, variable in data.data_vars.items():
+        if np.iscomplexobj(variable.values):
+            values = np.stack([variable.values.real, variable.values.imag], axis=-1)
+            plain[name] = xarray.Variable((*variable.dims, PARTS), values, {**variable.attrs, "complex": 1})
+    return plain
+
+
+def _complex(data: xarray.Dataset) -> xarray.Dataset:
+    import xarray
+
+    for name, variable in data.data_vars.items():
+        if variable.attrs.get("complex") == 1 and variable.dims[-1] == PARTS:
+            attrs = {k: v for k, v in variable.attrs.items() if k != "complex"}
+            values = variable.values[..., 0] + 1j * variable.values[..., 1]
+            data = data.assign({str(name): xarray.Variable(variable.dims[:-1], values, attrs)})
+    return data

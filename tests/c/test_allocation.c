@@ -1,0 +1,91 @@
+/* The march allocates nothing: the linker puts these functions in the allocator's place. */
+#include <stdlib.h>
+
+#include "bearingdyn.h"
+#include "check.h"
+#include "reference_lapack.h"
+#include "systems.h"
+
+static int calls;
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void __real_free(void *piece);
+
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+void __wrap_free(void *piece);
+
+void *__wrap_malloc(size_t size)
+{
+    calls++;
+    return __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t count, size_t size)
+{
+    calls++;
+    return __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *old, size_t size)
+{
+    calls++;
+    return __real_realloc(old, size);
+}
+
+void *__wrap_aligned_alloc(size_t alignment, size_t size)
+{
+    calls++;
+    return __real_aligned_alloc(alignment, size);
+}
+
+void __wrap_free(void *piece)
+{
+    calls++;
+    __real_free(piece);
+}
+
+static void the_march_allocates_nothing(bd_damping_law law)
+{
+    enum { STEPS = 400 };
+    pool p = {.n = 0};
+    const bd_model_data data = motor(&p, law);
+    const double rest[MOTOR_SIZE] = {0};
+    double record[(STEPS + 1) * MOTOR_CHANNELS];
+    bd_status status;
+    bd_report report;
+    bd_scheme scheme = motor_scheme();
+    scheme.audit = 1;
+
+    calls = 0;
+    bd_model *model = bd_model_create(&data, &status);
+    bd_work *work = bd_work_create(model);
+    CHECK_EQUAL("the calls are counted", calls > 3, 1);
+    double *state = pool_take(&p, bd_state_size(model), sizeof *state);
+    bd_state_set(model, state, 0.0, rest, rest);
+    CHECK_EQUAL("start", bd_start(model, &scheme, &reference_lapack, work, state), BD_OK);
+    CHECK_EQUAL("prepare", bd_prepare(model, &scheme, &reference_lapack, work), BD_OK);
+
+    calls = 0;
+    bd_march(model, &scheme, work, state, STEPS, 1, record, &report);
+    CHECK_EQUAL("calls to the allocator in a march", calls, 0);
+    CHECK_EQUAL("status", report.status, BD_OK);
+    CHECK_EQUAL("Newton's matrix was formed in it", report.refreshes > 0, 1);
+
+    bd_work_free(work);
+    bd_model_free(model);
+    pool_empty(&p);
+}
+
+int main(void)
+{
+    the_march_allocates_nothing(BD_DAMPING_CONSTANT);
+    the_march_allocates_nothing(BD_DAMPING_TABLE);
+    the_march_allocates_nothing(BD_DAMPING_LOAD);
+    return check_result();
+}

@@ -1,0 +1,179 @@
+/* One contact, and the balls of one bearing: forces against the formula, tangents against differences. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "bearingdyn.h"
+#include "check.h"
+#include "systems.h"
+
+/* A bearing of one ball and one axial coefficient, whose indentation is the coefficient itself. */
+static bd_bearing_data single_contact(bd_damping_law law)
+{
+    static const int zero = 0;
+    bd_bearing_data bearing = deep_groove(law);
+    bearing.n_balls = 1;
+    bearing.n_coefs = 1;
+    bearing.n_radial = 0;
+    bearing.order = &zero;
+    bearing.sine = &zero;
+    bearing.x0 = bearing.A;
+    bearing.y0 = 0.0;
+    bearing.e0 = 0.0;
+    return bearing;
+}
+
+static void press(const bd_bearing_data *contact, double delta, double rate, double *F, double *K,
+                  double *C)
+{
+    double load;
+    bd_bearing_single(contact, &delta, &rate, 0.0, 0.0, F, K, C, &load);
+    /* the normal is (X, Y)/Lambda, one to round-off */
+    CHECK_CLOSE("the ball carries the force", load, *F, 1e-15 * load);
+}
+
+static double damping_of(const bd_contact *contact, double delta, double s)
+{
+    const double *x = contact->table_delta, *c = contact->table_c;
+    if (contact->law == BD_DAMPING_CONSTANT)
+        return contact->c;
+    if (contact->law == BD_DAMPING_LOAD)
+        return contact->c * 1.5 * contact->kappa * sqrt(s);
+    if (delta <= x[0])
+        return c[0];
+    for (int i = 1; i < contact->n_table; i++)
+        if (delta <= x[i])
+            return c[i - 1] + (c[i] - c[i - 1]) * (delta - x[i - 1]) / (x[i] - x[i - 1]);
+    return c[contact->n_table - 1];
+}
+
+static void contact_pushes_and_never_pulls(bd_damping_law law)
+{
+    const bd_bearing_data bearing = single_contact(law);
+    const bd_contact *contact = &bearing.contact;
+    unsigned long long seed = 11;
+    int lost = 0, torn = 0;
+    for (int i = 0; i < 4000; i++) {
+        const double delta = 2e-5 * uniform(&seed),
+                     rate = uniform(&seed) * pow(10.0, 2.0 * uniform(&seed));
+        const double s = delta + contact->h0;
+        double F, K, C;
+        press(&bearing, delta, rate, &F, &K, &C);
+        const double elastic = s > 0.0 ? contact->kappa * pow(s, 1.5) : 0.0;
+        const double free_force = s > 0.0 ? elastic + damping_of(contact, delta, s) * rate : 0.0;
+        const double expected = fmax(0.0, free_force);
+        lost += s <= 0.0;
+        torn += s > 0.0 && free_force < 0.0;
+        CHECK_EQUAL("force is not tensile", F >= 0.0, 1);
+        /* round-off of the terms: delta itself is got out of (A + delta)^2 */
+        CHECK_CLOSE("force of the contact", F, expected,
+                    1e-12 * (elastic + fabs(elastic - free_force)));
+        if (F == 0.0)
+            CHECK_EQUAL("no tangent where there is no force", K == 0.0 && C == 0.0, 1);
+    }
+    CHECK_EQUAL("cases without touch, and torn apart", lost > 100 && torn > 100, 1);
+}
+
+static void contact_tangent_is_the_derivative_of_its_force(bd_damping_law law)
+{
+    const bd_bearing_data bearing = single_contact(law);
+    unsigned long long seed = 13;
+    double worst = 0.0;
+    for (int i = 0; i < 2000; i++) {
+        const double delta = 5e-6 + 4e-6 * uniform(&seed), rate = 0.02 * uniform(&seed);
+        const double h = 1e-10, hr = 1e-5;
+        double F, K, C, up, down, unused[2];
+        if (fabs(delta - 2e-6) < 2.0 * h) /* a corner of the table */
+            continue;
+        press(&bearing, delta, rate, &F, &K, &C);
+        if (F < 1e-2) /* near the clip */
+            continue;
+        press(&bearing, delta + h, rate, &up, &unused[0], &unused[1]);
+        press(&bearing, delta - h, rate, &down, &unused[0], &unused[1]);
+        worst = fmax(worst, fabs((up - down) / (2.0 * h) - K) / K);
+        press(&bearing, delta, rate + hr, &up, &unused[0], &unused[1]);
+        press(&bearing, delta, rate - hr, &down, &unused[0], &unused[1]);
+        worst = fmax(worst, fabs((up - down) / (2.0 * hr) - C) / fmax(C, 1.0));
+    }
+    /* round-off of F over h: 1e-16 F/(h K), F/K ~ delta, so about 1e-11; curvature h^2/delta^2 ~ 1e-9 */
+    CHECK_BELOW("contact tangent against differences", worst, 1e-7);
+}
+
+static double largest_of(const double *values, int n)
+{
+    double largest = 0.0;
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, fabs(values[i]));
+    return largest;
+}
+
+static void bearing_tangent_is_the_derivative_of_its_force(bd_damping_law law)
+{
+    enum { M = 5 };
+    const bd_bearing_data bearing = deep_groove(law);
+    unsigned long long seed = 17;
+    double worst_K = 0.0, worst_C = 0.0;
+    for (int i = 0; i < 300; i++) {
+        const double angle = 3.0 * uniform(&seed), cage = 200.0 * uniform(&seed);
+        double z[M], z_rate[M], g[M], K[M * M], C[M * M], loads[8], moved[M];
+        double up[M], down[M], ignored[M * M], ignored_too[M * M];
+        for (int k = 0; k < M; k++) {
+            z[k] = 1.5e-5 * uniform(&seed);
+            z_rate[k] = 5e-3 * uniform(&seed);
+        }
+        bd_bearing_single(&bearing, z, z_rate, angle, cage, g, K, C, loads);
+        /* each ball needs some load (or a clear gap), lest a difference straddle the edge of contact */
+        int near_edge = 0;
+        for (int j = 0; j < 8; j++)
+            near_edge += loads[j] > 0.0 && loads[j] < 3.0;
+        if (near_edge || largest_of(loads, 8) == 0.0)
+            continue;
+        for (int l = 0; l < M; l++) {
+            const double h = 1e-10, hr = 1e-5;
+            memcpy(moved, z, sizeof moved);
+            moved[l] = z[l] + h;
+            bd_bearing_single(&bearing, moved, z_rate, angle, cage, up, ignored, ignored_too,
+                              loads);
+            moved[l] = z[l] - h;
+            bd_bearing_single(&bearing, moved, z_rate, angle, cage, down, ignored, ignored_too,
+                              loads);
+            for (int k = 0; k < M; k++)
+                worst_K = fmax(worst_K, fabs((up[k] - down[k]) / (2.0 * h) - K[k * M + l]) /
+                                            largest_of(K, M * M));
+            memcpy(moved, z_rate, sizeof moved);
+            moved[l] = z_rate[l] + hr;
+            bd_bearing_single(&bearing, z, moved, angle, cage, up, ignored, ignored_too, loads);
+            moved[l] = z_rate[l] - hr;
+            bd_bearing_single(&bearing, z, moved, angle, cage, down, ignored, ignored_too, loads);
+            for (int k = 0; k < M; k++)
+                worst_C = fmax(worst_C, fabs((up[k] - down[k]) / (2.0 * hr) - C[k * M + l]) /
+                                            largest_of(C, M * M));
+        }
+    }
+    CHECK_BELOW("bearing stiffness against differences", worst_K, 1e-7);
+    CHECK_BELOW("bearing damping against differences", worst_C, 1e-7);
+}
+
+static void turned_by_one_pitch_a_bearing_is_itself(void)
+{
+    const bd_bearing_data bearing = deep_groove(BD_DAMPING_CONSTANT);
+    const double pitch = 2.0 * 3.14159265358979323846 / 8.0;
+    const double z[] = {2e-5, -1e-5, 3e-6, 1e-6, -2e-6}, rest[5] = {0};
+    double g[5], turned[5], K[25], C[25], loads[8];
+    bd_bearing_single(&bearing, z, rest, 0.3, 0.0, g, K, C, loads);
+    bd_bearing_single(&bearing, z, rest, 0.3 + pitch, 0.0, turned, K, C, loads);
+    for (int k = 0; k < 5; k++)
+        CHECK_CLOSE("force after one pitch", turned[k], g[k], 1e-11 * largest_of(g, 5));
+}
+
+int main(void)
+{
+    static const bd_damping_law laws[] = {BD_DAMPING_CONSTANT, BD_DAMPING_TABLE, BD_DAMPING_LOAD};
+    for (int i = 0; i < 3; i++) {
+        contact_pushes_and_never_pulls(laws[i]);
+        contact_tangent_is_the_derivative_of_its_force(laws[i]);
+        bearing_tangent_is_the_derivative_of_its_force(laws[i]);
+    }
+    turned_by_one_pitch_a_bearing_is_itself();
+    return check_result();
+}
