@@ -1,6 +1,6 @@
 """What one step of the demo's layered motor costs: best of 20 marches of 20 000 steps, on one core.
 
-    python benchmarks/transient.py [--json] [--isa best|base|avx2|avx512]
+python benchmarks/transient.py [--json] [--isa best|base|avx2|avx512]
 """
 
 from __future__ import annotations
@@ -52,7 +52,9 @@ def measure(isa: str) -> dict[str, float | int | str]:
 
 def main() -> int:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.add_argument("--isa", default="best", choices=sorted(core.ISAS), help="instruction set")
     options = parser.parse_args()

@@ -129,11 +129,24 @@ static PyArrayObject *private_copy(PyObject *keep, PyObject *object, int type, c
     return (PyArrayObject *)array;
 }
 
+/* 0, or -1 with an exception that names what is not finite. */
+static int require_finite(const double *values, npy_intp n, const char *name)
+{
+    for (npy_intp i = 0; i < n; i++)
+        if (!isfinite(values[i])) {
+            PyErr_Format(PyExc_ValueError, "%s must be finite", name);
+            return -1;
+        }
+    return 0;
+}
+
 static double *doubles(PyObject *keep, PyObject *object, const char *name, int n_dims, npy_intp rows,
                        npy_intp columns)
 {
     PyArrayObject *array = private_copy(keep, object, NPY_DOUBLE, name, n_dims, rows, columns);
-    return array ? PyArray_DATA(array) : NULL;
+    if (!array || require_finite(PyArray_DATA(array), PyArray_SIZE(array), name))
+        return NULL;
+    return PyArray_DATA(array);
 }
 
 /* The number of rows of the array kept last. */
@@ -248,13 +261,15 @@ static PyObject *maxwell_stress(PyObject *module, PyObject *args)
     const double *tau = modulus ? doubles(keep, tau_in, "tau", 1, branches, -1) : NULL;
     if (!tau)
         goto done;
-    if (n > INT_MAX || m > INT_MAX || branches > INT_MAX) {
+    if (n > INT_MAX || m > INT_MAX - BD_LANES || branches > INT_MAX) {
         PyErr_SetString(PyExc_ValueError, "rate, modulus: too many values");
         goto done;
     }
+    if (require_finite(&G0, 1, "G0") || require_finite(&eta0, 1, "eta0"))
+        goto done;
     for (npy_intp i = 0; i < n - 1; i++)
-        if (!(dt[i] > 0.0) || !isfinite(dt[i])) {
-            PyErr_Format(PyExc_ValueError, "dt[%zd] must be positive and finite", (Py_ssize_t)i);
+        if (!(dt[i] > 0.0)) {
+            PyErr_Format(PyExc_ValueError, "dt[%zd] must be positive", (Py_ssize_t)i);
             goto done;
         }
     for (npy_intp i = 0; i < branches; i++)
@@ -299,7 +314,7 @@ static PyObject *bearing_force(PyObject *module, PyObject *args)
     }
     const double *z = doubles(keep, z_in, "z", 1, bearing.n_coefs, -1);
     const double *rate = z ? doubles(keep, rate_in, "z_rate", 1, bearing.n_coefs, -1) : NULL;
-    if (!rate)
+    if (!rate || require_finite(&angle, 1, "angle") || require_finite(&cage_speed, 1, "cage_speed"))
         goto done;
     g = new_array(1, bearing.n_coefs, 0);
     K = new_array(2, bearing.n_coefs, bearing.n_coefs);
@@ -340,10 +355,10 @@ typedef struct model_object {
     bd_model *model;
 } model_object;
 
-/* An array of `size`-byte records for the items of a sequence, or NULL with an exception. */
-static void *records(PyObject *keep, PyObject *fast, size_t size)
+/* An array of `size`-byte records for the items of a tuple, or NULL with an exception. */
+static void *records(PyObject *keep, PyObject *items, size_t size)
 {
-    Py_ssize_t n = PySequence_Fast_GET_SIZE(fast);
+    Py_ssize_t n = PyTuple_GET_SIZE(items);
     if (n > 1000000) {
         PyErr_SetString(PyExc_ValueError, "too many layers, bearings, loads or channels");
         return NULL;
@@ -351,24 +366,30 @@ static void *records(PyObject *keep, PyObject *fast, size_t size)
     return scratch(keep, (size_t)n, size);
 }
 
-/* A sequence kept alive by `keep`. */
+/* The items of a sequence of tuples as a tuple of our own, kept alive by `keep`: converting an item may run
+ * any code, which must not change the sequence under our feet. */
 static PyObject *sequence(PyObject *keep, PyObject *object, const char *name)
 {
-    char message[96];
-    snprintf(message, sizeof message, "%s must be a sequence of tuples", name);
-    PyObject *fast = PySequence_Fast(object, message);
-    if (!fast)
+    PyObject *items = PySequence_Tuple(object);
+    if (!items && PyErr_ExceptionMatches(PyExc_TypeError))
+        PyErr_Format(PyExc_TypeError, "%s must be a sequence of tuples", name);
+    if (!items)
         return NULL;
-    int failed = PyList_Append(keep, fast);
-    Py_DECREF(fast);
-    return failed ? NULL : fast;
+    int failed = PyList_Append(keep, items);
+    Py_DECREF(items);
+    for (Py_ssize_t i = 0; !failed && i < PyTuple_GET_SIZE(items); i++)
+        if (!PyTuple_Check(PyTuple_GET_ITEM(items, i))) {
+            PyErr_Format(PyExc_TypeError, "%s[%zd] must be a tuple", name, i);
+            failed = 1;
+        }
+    return failed ? NULL : items;
 }
 
-static int parse_layers(PyObject *keep, PyObject *fast, npy_intp n, bd_layer_data *layers)
+static int parse_layers(PyObject *keep, PyObject *items, npy_intp n, bd_layer_data *layers)
 {
-    for (Py_ssize_t l = 0; l < PySequence_Fast_GET_SIZE(fast); l++) {
+    for (Py_ssize_t l = 0; l < PyTuple_GET_SIZE(items); l++) {
         PyObject *L_in, *modulus_in, *tau_in;
-        if (!PyArg_ParseTuple(PySequence_Fast_GET_ITEM(fast, l), "OOO:layer", &L_in, &modulus_in, &tau_in))
+        if (!PyArg_ParseTuple(PyTuple_GET_ITEM(items, l), "OOO:layer", &L_in, &modulus_in, &tau_in))
             return -1;
         layers[l].L = doubles(keep, L_in, "layer L", 2, n, -1);
         if (!layers[l].L)
@@ -387,12 +408,12 @@ static int parse_layers(PyObject *keep, PyObject *fast, npy_intp n, bd_layer_dat
     return 0;
 }
 
-static int parse_bearings(PyObject *keep, PyObject *fast, npy_intp n, bd_bearing_data *bearings,
+static int parse_bearings(PyObject *keep, PyObject *items, npy_intp n, bd_bearing_data *bearings,
                           const double **B)
 {
-    for (Py_ssize_t b = 0; b < PySequence_Fast_GET_SIZE(fast); b++) {
+    for (Py_ssize_t b = 0; b < PyTuple_GET_SIZE(items); b++) {
         PyObject *tuple, *B_in;
-        if (!PyArg_ParseTuple(PySequence_Fast_GET_ITEM(fast, b), "OO:bearing", &tuple, &B_in) ||
+        if (!PyArg_ParseTuple(PyTuple_GET_ITEM(items, b), "OO:bearing", &tuple, &B_in) ||
             parse_bearing(keep, tuple, &bearings[b]))
             return -1;
         B[b] = doubles(keep, B_in, "bearing B", 2, bearings[b].n_coefs, n);
@@ -402,12 +423,12 @@ static int parse_bearings(PyObject *keep, PyObject *fast, npy_intp n, bd_bearing
     return 0;
 }
 
-static int parse_loads(PyObject *keep, PyObject *fast, npy_intp n, bd_load_data *loads)
+static int parse_loads(PyObject *keep, PyObject *items, npy_intp n, bd_load_data *loads)
 {
-    for (Py_ssize_t k = 0; k < PySequence_Fast_GET_SIZE(fast); k++) {
+    for (Py_ssize_t k = 0; k < PyTuple_GET_SIZE(items); k++) {
         PyObject *cos_in, *sin_in, *time_in, *value_in;
         int kind;
-        if (!PyArg_ParseTuple(PySequence_Fast_GET_ITEM(fast, k), "idOOOO:load", &kind, &loads[k].omega,
+        if (!PyArg_ParseTuple(PyTuple_GET_ITEM(items, k), "idOOOO:load", &kind, &loads[k].omega,
                               &cos_in, &sin_in, &time_in, &value_in))
             return -1;
         if (kind < 0 || kind > BD_LOAD_SAMPLED) {
@@ -429,12 +450,12 @@ static int parse_loads(PyObject *keep, PyObject *fast, npy_intp n, bd_load_data 
     return 0;
 }
 
-static int parse_channels(PyObject *keep, PyObject *fast, npy_intp n, bd_channel_data *channels)
+static int parse_channels(PyObject *keep, PyObject *items, npy_intp n, bd_channel_data *channels)
 {
-    for (Py_ssize_t c = 0; c < PySequence_Fast_GET_SIZE(fast); c++) {
+    for (Py_ssize_t c = 0; c < PyTuple_GET_SIZE(items); c++) {
         PyObject *row_in;
         int kind;
-        if (!PyArg_ParseTuple(PySequence_Fast_GET_ITEM(fast, c), "iOii:channel", &kind, &row_in,
+        if (!PyArg_ParseTuple(PyTuple_GET_ITEM(items, c), "iOii:channel", &kind, &row_in,
                               &channels[c].bearing, &channels[c].index))
             return -1;
         if (kind < 0 || kind > BD_CHANNEL_LOADED) {
@@ -460,7 +481,7 @@ PyDoc_STRVAR(model_doc,
 
 static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
-    PyObject *in[9], *fast[4];
+    PyObject *in[9], *items[4];
     static char *names[] = {"M", "C", "G", "K", "N", "layers", "bearings", "loads", "channels", NULL};
     if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOOOOOOO:Model", names, &in[0], &in[1], &in[2],
                                      &in[3], &in[4], &in[5], &in[6], &in[7], &in[8]))
@@ -484,22 +505,22 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
         !(data.K = doubles(keep, in[3], "K", 2, n, n)) || !(data.N = doubles(keep, in[4], "N", 2, n, n)))
         goto done;
     for (int i = 0; i < 4; i++)
-        if (!(fast[i] = sequence(keep, in[5 + i], names[5 + i])))
+        if (!(items[i] = sequence(keep, in[5 + i], names[5 + i])))
             goto done;
 
-    bd_layer_data *layers = records(keep, fast[0], sizeof *layers);
-    bd_bearing_data *bearings = layers ? records(keep, fast[1], sizeof *bearings) : NULL;
-    const double **B = bearings ? records(keep, fast[1], sizeof *B) : NULL;
-    bd_load_data *loads = B ? records(keep, fast[2], sizeof *loads) : NULL;
-    bd_channel_data *channels = loads ? records(keep, fast[3], sizeof *channels) : NULL;
-    if (!channels || parse_layers(keep, fast[0], n, layers) ||
-        parse_bearings(keep, fast[1], n, bearings, B) || parse_loads(keep, fast[2], n, loads) ||
-        parse_channels(keep, fast[3], n, channels))
+    bd_layer_data *layers = records(keep, items[0], sizeof *layers);
+    bd_bearing_data *bearings = layers ? records(keep, items[1], sizeof *bearings) : NULL;
+    const double **B = bearings ? records(keep, items[1], sizeof *B) : NULL;
+    bd_load_data *loads = B ? records(keep, items[2], sizeof *loads) : NULL;
+    bd_channel_data *channels = loads ? records(keep, items[3], sizeof *channels) : NULL;
+    if (!channels || parse_layers(keep, items[0], n, layers) ||
+        parse_bearings(keep, items[1], n, bearings, B) || parse_loads(keep, items[2], n, loads) ||
+        parse_channels(keep, items[3], n, channels))
         goto done;
-    data.n_layers = (int)PySequence_Fast_GET_SIZE(fast[0]);
-    data.n_bearings = (int)PySequence_Fast_GET_SIZE(fast[1]);
-    data.n_loads = (int)PySequence_Fast_GET_SIZE(fast[2]);
-    data.n_channels = (int)PySequence_Fast_GET_SIZE(fast[3]);
+    data.n_layers = (int)PyTuple_GET_SIZE(items[0]);
+    data.n_bearings = (int)PyTuple_GET_SIZE(items[1]);
+    data.n_loads = (int)PyTuple_GET_SIZE(items[2]);
+    data.n_channels = (int)PyTuple_GET_SIZE(items[3]);
     data.layers = layers;
     data.bearings = bearings;
     data.B = B;
@@ -549,9 +570,20 @@ static PyObject *model_state(PyObject *object, PyObject *args)
         return NULL;
     const double *x = doubles(keep, x_in, "x", 1, bd_model_size(model), -1);
     const double *v = x ? doubles(keep, v_in, "v", 1, bd_model_size(model), -1) : NULL;
-    if (v && (state = new_array(1, (npy_intp)bd_state_size(model), 0)))
+    if (v && !require_finite(&t, 1, "t") && (state = new_array(1, (npy_intp)bd_state_size(model), 0)))
         bd_state_set(model, data_of(state), t, x, v);
     Py_DECREF(keep);
+    return state;
+}
+
+/* A private copy of a state of this model. */
+static double *state_of(PyObject *keep, const bd_model *model, PyObject *object)
+{
+    double *state = doubles(keep, object, "state", 1, (npy_intp)bd_state_size(model), -1);
+    if (state && !(state[1] >= 0.0 && state[1] < 9007199254740992.0 && state[2] >= 0.0)) { /* 2^53 */
+        PyErr_SetString(PyExc_ValueError, "state must come from this model: its count of steps is impossible");
+        return NULL;
+    }
     return state;
 }
 
@@ -570,7 +602,7 @@ static PyObject *model_unpack(PyObject *object, PyObject *args)
     if (!keep)
         return NULL;
     PyObject *x = NULL, *v = NULL, *a = NULL, *energy = NULL;
-    double *state = doubles(keep, state_in, "state", 1, (npy_intp)bd_state_size(model), -1);
+    double *state = state_of(keep, model, state_in);
     if (state) {
         x = new_array(1, bd_model_size(model), 0);
         v = new_array(1, bd_model_size(model), 0);
@@ -623,7 +655,8 @@ PyDoc_STRVAR(model_march_doc,
              "      isa, start, progress) -> record, state, report\n\n"
              "The GIL is released. A new state is returned; the one given is not touched. progress(done,\n"
              "total) is called every 0.05 s. report: status, steps, iterations, refreshes, t, residual,\n"
-             "bearing. An interrupt (Ctrl-C) ends the march with status 1 and what was recorded.");
+             "bearing. An interrupt (Ctrl-C) ends the march with status 1 and what was recorded, be\n"
+             "it in the last of its steps.");
 
 static PyObject *model_march(PyObject *object, PyObject *args)
 {
@@ -637,19 +670,21 @@ static PyObject *model_march(PyObject *object, PyObject *args)
                           &scheme.max_iterations, &scheme.audit, &isa, &start, &progress))
         return NULL;
     scheme.isa = (bd_isa)isa;
-    if (steps < 0 || decimate < 1) {
-        PyErr_SetString(PyExc_ValueError, "steps must be at least 0 and decimate at least 1");
+    if (steps < 0 || steps >= 1LL << 53 || decimate < 1) {
+        PyErr_SetString(PyExc_ValueError, "steps must be 0 to 2**53 - 1 and decimate at least 1");
         return NULL;
     }
     module_state *module = PyType_GetModuleState(Py_TYPE(object));
     PyObject *keep = PyList_New(0);
-    if (!module || !keep)
+    if (!module || !keep) {
+        Py_XDECREF(keep);
         return NULL;
+    }
 
     const npy_intp channels = bd_model_channels(model);
     PyObject *state = NULL, *record = NULL;
     bd_work *work = NULL;
-    const double *given = doubles(keep, state_in, "state", 1, (npy_intp)bd_state_size(model), -1);
+    const double *given = state_of(keep, model, state_in);
     if (!given)
         goto done;
     state = new_array(1, (npy_intp)bd_state_size(model), 0);
@@ -676,7 +711,8 @@ static PyObject *model_march(PyObject *object, PyObject *args)
     }
 
     bd_report total = {.status = status, .bearing = -1}, report = {0};
-    long long kept = 0, chunk = 256;
+    long long kept = 0, chunk = 1;
+    bd_state_get(model, flat, &total.t, NULL, NULL, NULL);
     while (total.status == BD_OK && total.steps < steps) {
         const long long now = Py_MIN(chunk, steps - total.steps);
         const double began = seconds();
@@ -700,7 +736,7 @@ static PyObject *model_march(PyObject *object, PyObject *args)
         const int stop = between_chunks(progress, total.steps, steps);
         if (stop < 0)
             goto done;
-        if (stop > 0 && total.status == BD_OK && total.steps < steps)
+        if (stop > 0 && total.status == BD_OK)
             total.status = BD_INTERRUPTED;
     }
     PyObject *used = PySequence_GetSlice(record, 0, (Py_ssize_t)kept);
@@ -730,8 +766,10 @@ static PyObject *model_harmonic(PyObject *object, PyObject *args)
         return NULL;
     module_state *module = PyType_GetModuleState(Py_TYPE(object));
     PyObject *keep = PyList_New(0);
-    if (!module || !keep)
+    if (!module || !keep) {
+        Py_XDECREF(keep);
         return NULL;
+    }
 
     const npy_intp n = bd_model_size(model), coefs = bd_model_coefs(model);
     bd_harmonic_work *work = NULL;
@@ -740,7 +778,9 @@ static PyObject *model_harmonic(PyObject *object, PyObject *args)
     const npy_intp n_omega = rows_of_last(keep);
     PyArrayObject *modulus =
         private_copy(keep, modulus_in, NPY_CDOUBLE, "modulus", 2, n_omega, bd_model_layers(model));
-    if (!modulus || !(data.bearing_K = doubles(keep, K_in, "bearing_K", 2, coefs, coefs)) ||
+    if (require_finite(&data.speed, 1, "speed") || !modulus ||
+        require_finite(PyArray_DATA(modulus), 2 * PyArray_SIZE(modulus), "modulus") ||
+        !(data.bearing_K = doubles(keep, K_in, "bearing_K", 2, coefs, coefs)) ||
         !(data.bearing_C = doubles(keep, C_in, "bearing_C", 2, coefs, coefs)) ||
         !(data.force = doubles(keep, force_in, "force", 2, -1, n)))
         goto done;
@@ -766,7 +806,7 @@ static PyObject *model_harmonic(PyObject *object, PyObject *args)
         goto failed;
     }
     double *out = data_of(response);
-    int at = 0, chunk = 8;
+    int at = 0, chunk = 1;
     while (at < data.n_omega) {
         const int now = Py_MIN(chunk, data.n_omega - at);
         const double began = seconds();
@@ -778,9 +818,12 @@ static PyObject *model_harmonic(PyObject *object, PyObject *args)
             raise_status(status, "harmonic");
             goto failed;
         }
+        const double took = seconds() - began;
         at += now;
-        if (seconds() - began < 0.5 * chunk_seconds && chunk < 1000000)
+        if (took < 0.5 * chunk_seconds && chunk < 1000000)
             chunk *= 2;
+        else if (took > chunk_seconds && chunk > 1)
+            chunk /= 2;
         const int stop = between_chunks(progress, at, data.n_omega);
         if (stop > 0)
             PyErr_SetNone(PyExc_KeyboardInterrupt);

@@ -22,6 +22,7 @@ from bearingdyn.cms import (
 from bearingdyn.fem.beam import Section, assemble
 from bearingdyn.fem.eigen import lowest_modes, rigid_transfer
 from bearingdyn.material import STEEL
+from bearingdyn.parts import Housing
 
 
 class Rubber:
@@ -254,3 +255,21 @@ def test_grounded_or_overlapping_interfaces_are_refused():
         reduce_free_body(M, K, {"a": faces["a"], "b": faces["a"]}, n_modes=2)
     with pytest.raises(ValueError, match="interfaces is empty"):
         reduce_free_body(M, K, {}, n_modes=2)
+
+
+def test_modes_of_a_body_held_at_an_interface_have_its_damping_and_rigid_motion_none() -> None:
+    zeta = 0.013
+    element = Housing(0.12, 0.16, 0.03, 0.05, damping=zeta, f_max=6e3).superelement()
+    feet = element.interfaces["feet"]
+    kept = np.setdiff1d(np.arange(element.n), feet)
+    inside = np.ix_(kept, kept)
+    squares, shapes = scipy.linalg.eigh(element.K[inside], element.M[inside])
+    damping = shapes.T @ element.C[inside] @ shapes
+    # the definition of modal damping, to the round-off of three products
+    np.testing.assert_allclose(damping, np.diag(2 * zeta * np.sqrt(squares)), atol=1e-8 * damping.max())
+    # a rigid turn of the whole housing about its feet strains nothing: power against that of the bore alone
+    turn = np.zeros(element.n)
+    turn[feet] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]
+    turn[element.interfaces["bore"]] = [0.0, 0.0, 0.08, 1.0, 0.0, 0.0]
+    alone = np.where(np.isin(np.arange(element.n), element.interfaces["bore"]), turn, 0.0)
+    assert abs(turn @ element.C @ turn) < 1e-9 * (alone @ element.C @ alone)

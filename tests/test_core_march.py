@@ -84,9 +84,9 @@ def make(name: str, seed: int) -> tuple[twin.System, core.Model, np.random.Gener
 def assert_same(got: np.ndarray, expected: np.ndarray) -> None:
     """Column by column against the column's largest value.
 
-    Newton ends at 1e-11 of the largest bearing force in the C, at round-off in the twin; some hundred steps add
-    that up, and the factorised structure (condition up to 1e4) and the contact (force over stiffness over
-    displacement: some 1e2) magnify round-off. 1e-9 leaves a decade or two; a wrong term shows at 1e-3 and above.
+    Newton ends at 1e-11 of the largest bearing force in the C, at round-off in the twin. A hundred steps add
+    that up, and the factorised structure (condition up to 1e4) and the contacts (stiffness times displacement
+    over force: some 1e2) magnify round-off. 1e-9 leaves a decade or two; a wrong term shows above 1e-3.
     """
     assert got.shape == expected.shape
     scale = np.abs(expected).max(axis=0)
@@ -94,7 +94,7 @@ def assert_same(got: np.ndarray, expected: np.ndarray) -> None:
     assert worst < 1e-9
 
 
-@pytest.mark.parametrize("beta, gamma", [(0.25, 0.5), (0.3, 0.6)])
+@pytest.mark.parametrize(("beta", "gamma"), [(0.25, 0.5), (0.3, 0.6)])
 @pytest.mark.parametrize("name", CASES)
 def test_march_is_the_twins(name: str, beta: float, gamma: float) -> None:
     system, model, rng = make(name, seed=len(name))
@@ -134,7 +134,7 @@ def test_the_cases_lose_and_regain_contact() -> None:
     assert {0, 1, 7} <= counts
 
 
-@pytest.mark.parametrize("steps, decimate", [(0, 1), (1, 5), (10, 1), (10, 3), (11, 11), (12, 100)])
+@pytest.mark.parametrize(("steps", "decimate"), [(0, 1), (1, 5), (10, 1), (10, 3), (11, 11), (12, 100)])
 def test_record_has_a_row_each_time_the_count_is_a_multiple(steps: int, decimate: int) -> None:
     _, model, _ = make("motor", seed=1)
     state = model.state(0.0, np.zeros(18), np.zeros(18))

@@ -60,11 +60,12 @@ def test_6202_under_axial_preload_has_the_printed_numbers():
     np.testing.assert_allclose(bearing.loads, 87.6163, atol=6e-5)
     R = B6202.arm
     K = bearing.K
-    assert bearing.radial_stiffness == pytest.approx(9.533296e7, rel=1e-7)
-    assert K[2, 2] == pytest.approx(1.561296e7, rel=1e-7)
+    # half a unit of the seventh digit is up to 3.2e-7
+    assert bearing.radial_stiffness == pytest.approx(9.533296e7, rel=3.5e-7)
+    assert K[2, 2] == pytest.approx(1.561296e7, rel=3.5e-7)
     # coefficient 4 is +R θx, coefficient 3 is −R θy
-    assert R * R * K[4, 4] == pytest.approx(1242.715, rel=1e-6)
-    assert -R * K[0, 3] == pytest.approx(-3.157244e5, rel=1e-6)
+    assert R * R * K[4, 4] == pytest.approx(1242.715, rel=5e-7)
+    assert -R * K[0, 3] == pytest.approx(-3.157244e5, rel=3.5e-7)
 
 
 def test_layer_in_series_adds_its_deflection():

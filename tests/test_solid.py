@@ -211,12 +211,8 @@ def test_reduced_housing_keeps_mass_and_moves_rigidly():
     np.testing.assert_allclose(s.outputs["side"] @ R, rigid_motion([[0.06, 0.0, 0.01]]), atol=1e-8)
     assert s.interfaces["bore"].tolist() == list(range(6))
     assert np.abs(s.G).max() == 0.0
-    # free elastic modes all have the ratio given: C Φ = 2 ζ ω M Φ
-    lam, phi = scipy.linalg.eigh(s.K, s.M)
-    elastic = lam > 1e3
-    ratio = np.diag(phi.T @ s.C @ phi)[elastic] / (2 * np.sqrt(lam[elastic]))
-    assert elastic.sum() == s.n - 6
-    np.testing.assert_allclose(ratio, 0.01, rtol=1e-6)  # eigenvectors of 1e12-spread eigenvalues
+    # and damping resists no rigid motion, though ζ is that of the housing held at its feet
+    assert np.abs(s.C @ R).max() < 1e-9 * np.abs(s.C).max()
 
 
 def test_tall_pedestal_sways_as_a_cantilever_with_a_hole_high_up():

@@ -308,3 +308,12 @@ def test_natural_modes_agree_with_lapack_where_lapack_can_tell(system):
     ours = np.sort(np.diag(system.modal()[0].stiffness()))
     # LAPACK's absolute error: round-off of the largest
     np.testing.assert_allclose(ours, squares, rtol=1e-9, atol=1e-13 * squares[-1])
+
+
+def test_gyroscopic_matrix_keeps_its_sign(system):
+    """Mx = It θ̈x + Ip Ω θ̇y (reference page §1): G[θx, θy] = +Ip, whatever the assembler does."""
+    rows = system.rows("rotor.centre")
+    G = rows @ system.G @ rows.T
+    wanted = np.zeros((6, 6))
+    wanted[3, 4], wanted[4, 3] = 0.005, -0.005
+    np.testing.assert_array_equal(G, wanted)

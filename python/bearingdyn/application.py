@@ -199,7 +199,9 @@ class Application:
         if rows.shape[0] == 3 and force[3:].any():
             raise ValueError(f"load at {where}: the point has no rotation, so its moment must be zero")
         if frequency is None and phase != 0.0:
-            raise ValueError(f"load at {where}: phase is {phase}; it belongs to a frequency, and none is given")
+            raise ValueError(
+                f"load at {where}: phase is {phase}; it belongs to a frequency, and none is given"
+            )
         if frequency is not None and (time is not None or value is not None):
             raise ValueError(f"load at {where}: give frequency, or time and value, not both")
         if frequency is not None:

@@ -1,7 +1,7 @@
 """The command line: `bearingdyn fit`, `bearingdyn show`, `bearingdyn version`.
 
-Results go to standard output, warnings and errors, one line each, to standard error. The exit code is 0, 1 for
-input that cannot be used, 2 for a command that was not understood.
+Results go to standard output, warnings and errors, one line each, to standard error. The exit code is 0, 1
+for input that cannot be used, 2 for a command that was not understood.
 """
 
 from __future__ import annotations
@@ -192,7 +192,9 @@ def _fit_table(curve: MasterCurve, model: Maxwell, K_given: bool, density_given:
 def _show(arguments: argparse.Namespace) -> str:
     path = Path(arguments.result)
     if not path.is_file():
-        raise ValueError(f"{path}: no such file")
+        raise ValueError(
+            f"{path}: " + ("is a folder, not a result file" if path.is_dir() else "no such file")
+        )
     names = results.groups(path)
     held = {name: _describe(results.load(path, name)) for name in ("", *names)}
     if names and not held[""]["variables"]:

@@ -320,7 +320,9 @@ def modal_damping(M: ArrayLike, K: ArrayLike, zeta: float) -> Float:
         try:
             lam, phi = scipy.linalg.eigh(s[:, None] * k_b * s, s[:, None] * m_b * s)
         except np.linalg.LinAlgError as error:
-            raise ValueError(f"M is not positive definite ({error}); modal damping needs one that is") from error
+            raise ValueError(
+                f"M is not positive definite ({error}); modal damping needs one that is"
+            ) from error
         elastic = lam > 100.0 * len(lam) * np.finfo(float).eps * np.abs(lam).max()
         MPhi = m_b @ (s[:, None] * phi[:, elastic])
         C[inside] = (MPhi * (2.0 * zeta * np.sqrt(lam[elastic]))) @ MPhi.T
@@ -343,6 +345,7 @@ def reduce_free_body(
     G: Any = None,
     spin: Any = None,
     damping: float = 0.0,
+    held: str | None = None,
     f_max: float | None = None,
     n_modes: int | None = None,
 ) -> Superelement:
@@ -352,7 +355,9 @@ def reduce_free_body(
     interfaces: name -> rigid interface, no coordinate in two of them; outputs: name -> rows (6, n) or (3, n).
     spin: (n, n) generator J of a turn about z for a body of revolution that turns with the shaft: its damping
         then acts on ẋ - Ω J x, and the superelement has the circulatory matrix N = -C J.
-    damping: ratio ζ of every free elastic mode (modal_damping). f_max, n_modes: as in craig_bampton.
+    damping: ratio ζ of every elastic mode (modal_damping), of the free body or of the body held at the
+        interface `held`. Dampers then act on the motion relative to that interface, never on rigid motion.
+    f_max, n_modes: as in craig_bampton.
 
     Raises ValueError for interfaces that overlap, or a stiffness that resists rigid motion.
     """
@@ -382,7 +387,16 @@ def reduce_free_body(
     K_r = basis.stiffness()
     K_r[:r, :r] = 0.5 * (k + k.T)
     M_r = basis.reduce(M)
-    C = modal_damping(M_r, K_r, damping)
+    if held is None:
+        C = modal_damping(M_r, K_r, damping)
+    else:
+        own = np.arange(6) + 6 * list(interfaces).index(held)
+        others = np.setdiff1d(np.arange(len(M_r)), own)
+        inside = np.ix_(others, others)
+        relative = np.eye(len(M_r))[others]
+        carried = rigid_transfer([f.position for f in faces], interfaces[held].position)
+        relative[:, own] -= np.vstack([carried, np.zeros((len(M_r) - r, 6))])[others]
+        C = relative.T @ modal_damping(M_r[inside], K_r[inside], damping) @ relative
     N = np.zeros_like(M_r)
     if spin is not None and damping > 0.0:
         CJ = C @ np.linalg.solve(M_r, basis.Psi.T @ (M @ (spin @ basis.Psi)))

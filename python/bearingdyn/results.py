@@ -47,10 +47,12 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     """Write one Dataset, or several by name (as groups), to one netCDF-4 file.
 
     The file is written under another name and moved into place, so that a failure leaves no half file.
-    Raises OSError where the place cannot be written.
+    Raises ValueError if there is nothing to save, OSError where the place cannot be written.
     """
     target = Path(path)
     groups = dict(results) if isinstance(results, Mapping) and not hasattr(results, "dims") else {"": results}
+    if not groups:
+        raise ValueError(f"{target}: nothing to save; give at least one result")
     scratch = target.with_name(target.name + ".part")
     try:
         for i, (name, data) in enumerate(groups.items()):
@@ -111,6 +113,8 @@ def _complex(data: xarray.Dataset) -> xarray.Dataset:
     for name, variable in data.data_vars.items():
         if variable.attrs.get("complex") == 1 and variable.dims[-1] == PARTS:
             attrs = {k: v for k, v in variable.attrs.items() if k != "complex"}
-            values = variable.values[..., 0] + 1j * variable.values[..., 1]
+            # by parts: re + 1j·im makes NaN of an infinite part
+            values = np.empty(variable.shape[:-1], dtype=np.complex128)
+            values.real, values.imag = variable.values[..., 0], variable.values[..., 1]
             data = data.assign({str(name): xarray.Variable(variable.dims[:-1], values, attrs)})
     return data

@@ -252,8 +252,8 @@ def _run(
                 values, error = future.result()
             except BrokenExecutor as broken:
                 broken.add_note(
-                    "A worker process died: the function crashed it or used up the memory, or the script that "
-                    'calls sweep does so outside `if __name__ == "__main__":`.'
+                    "A worker process died: the function crashed it or used up the memory, or the script "
+                    'calls sweep outside `if __name__ == "__main__":`.'
                 )
                 raise
             yield index, Case(todo[index], values, error)

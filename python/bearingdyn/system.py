@@ -199,10 +199,7 @@ class System:
             self.N,
             layers,
             [(core.kernel_tuple(t.bearing.kernel()), t.B) for t in self.bearings],
-            [
-                (core.LOAD_KINDS[t.kind], t.omega, t.p_cos, t.p_sin, t.time, t.value)
-                for t in self.loads
-            ],
+            [(core.LOAD_KINDS[t.kind], t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels,
         )
 
@@ -253,9 +250,7 @@ def _factor(H: Array) -> Array:
     scale[scale == 0.0] = 1.0
     values, vectors = np.linalg.eigh(H / np.outer(scale, scale))
     keep = values > RANK * values[-1]
-    L = scale[:, None] * vectors[:, keep] * np.sqrt(values[keep])
-    L[np.abs(H).sum(axis=1) == 0.0] = 0.0
-    return np.asarray(L)
+    return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
 
 
 def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
@@ -299,32 +294,26 @@ def assemble(app: Application) -> System:
     if n == 0:
         raise ValueError("everything is grounded rigidly; nothing is left to move")
 
-    def spread(part: str, A: Array) -> Array:
-        """Rows or columns of a part's array moved to the system's coordinates (last axis)."""
-        wide = np.zeros((*A.shape[:-1], n))
-        kept = index[part] >= 0
-        np.add.at(wide, (..., index[part][kept]), A[..., kept])
-        return wide
-
-    def add(total: Array, part: str, A: Array) -> None:
-        total += spread(part, spread(part, A).T)
+    select = {}  # part coordinates = select @ system coordinates
+    for part, place in index.items():
+        select[part] = np.zeros((place.size, n))
+        moving = np.flatnonzero(place >= 0)
+        select[part][moving, place[moving]] = 1.0
 
     M, C, K, G, N, firm = (np.zeros((n, n)) for _ in range(6))
     layers: list[LayerTerm] = []
     outputs: dict[str, Array] = {}
     for part, element in app.parts.items():
         for total, A in ((M, element.M), (C, element.C), (K, element.K), (G, element.G), (N, element.N)):
-            add(total, part, np.asarray(A))
+            total += select[part].T @ A @ select[part]
         for term in element.viscoelastic:
-            H = np.zeros((n, n))
-            add(H, part, term.H)
-            layers.append(LayerTerm(part, term.material, _factor(H)))
+            layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
         if all(relaxed):
             deviatoric = (2.0 * G0 * t.H for G0, t in zip(relaxed, element.viscoelastic, strict=True))
-            add(firm, part, sum(deviatoric, np.asarray(element.K)))
+            firm += select[part].T @ sum(deviatoric, np.asarray(element.K)) @ select[part]
         for name in (*element.interfaces, *element.outputs):
-            outputs[f"{part}.{name}"] = spread(part, element.rows(name))
+            outputs[f"{part}.{name}"] = element.rows(name) @ select[part]
 
     for support in app.supports.values():
         rows = outputs[support.interface]
@@ -337,9 +326,7 @@ def assemble(app: Application) -> System:
         relative = outputs[hung.inner] - (outputs[hung.outer] if hung.outer != GROUND else 0.0)
         bearings.append(BearingTerm(hung.name, hung.bearing, hung.bearing.coefficients() @ relative))
 
-    system = System(
-        M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs
-    )
+    system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs)
     _check_held(system, firm)
     return system
 

@@ -1,4 +1,4 @@
-"""NumPy twin of the march and of the harmonic response: the specification of csrc/newmark.c and csrc/harmonic.c.
+"""NumPy twin of the march and of the harmonic response: what csrc/newmark.c and csrc/harmonic.c must do.
 
 Dense, in the caller's order of coordinates, with a full Newton iteration on all accelerations in every step:
 
@@ -192,8 +192,8 @@ def random_system(
 ) -> System:
     """A motor in small, coordinates shuffled.
 
-    sizes: coordinates of each block. layers: block, rank and number of branches of each. kernels: of each bearing
-    a function that makes its BearingKernel, the block of its inner and that of its outer ring (the same or −1:
+    sizes: coordinates of each block. layers: block, rank and number of branches of each. kernels: of each
+    bearing a function that makes its BearingKernel, the block of its inner and that of its outer ring (−1:
     ground). Unit masses, frequencies of 30 Hz to 6 kHz, 2 % damping, loads and channels of every kind.
     """
     n = sum(sizes)

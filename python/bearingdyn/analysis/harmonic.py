@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import core
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import HOLD, Equilibrium
 from bearingdyn.application import Application
+from bearingdyn.material import Maxwell
 from bearingdyn.system import System, assemble
 
 if TYPE_CHECKING:
@@ -46,12 +49,16 @@ def frequency_response(
 
     Returns a Dataset with response (frequency, output, input), complex.
 
+    At 0 Hz the response is the static one; the free spin of a shaft, which no such force drives, is left out.
+
     Raises ValueError for an unknown channel or quantity, a negative frequency, bearings without equilibrium;
     ArithmeticError where the dynamic stiffness is singular.
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
     if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f >= 0).all()):
         raise ValueError("frequency must be a list of finite values of zero or more, in Hz")
+    if not math.isfinite(speed):
+        raise ValueError(f"speed is {speed}; it must be finite, in rad/s")
     powers = {"displacement": 0, "velocity": 1, "acceleration": 2}
     if quantity not in powers:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {sorted(powers)}")
@@ -72,9 +79,13 @@ def frequency_response(
     for k, layer in enumerate(system.layers):
         modulus[:, k] = layer.material.complex_modulus(omega)
     # η0 sits in G*(ω) here, so C is the structure's own
-    response = core.harmonic(
-        system.model([], relaxed=False), omega, modulus, K, C, force, row, speed, progress
-    )
+    response = np.zeros((f.size, len(row), len(force)), dtype=np.complex128)
+    for part in (omega > 0, omega == 0):
+        if part.any():
+            model = (system if omega[part][0] > 0 else _at_rest(system, force)).model([], relaxed=False)
+            response[part] = core.harmonic(
+                model, omega[part], modulus[part], K, C, force, row, speed, progress
+            )
     response *= ((1j * omega) ** powers[quantity])[:, None, None]
 
     from bearingdyn.results import dataset
@@ -92,3 +103,15 @@ def frequency_response(
         {"analysis": "frequency response", "speed": speed, "quantity": quantity},
         {"frequency": (f, "Hz"), "output": (list(outputs), ""), "input": (list(inputs), "")},
     )
+
+
+def _at_rest(system: System, force: Array) -> System:
+    """The system with its free motions held, unless a force drives one."""
+    if not all(isinstance(layer.material, Maxwell) for layer in system.layers):
+        return system
+    free = system.free_motions()
+    driven = np.abs(force @ free).max(initial=0.0)
+    if driven > 1e-9 * np.abs(free).max(initial=0.0):
+        return system
+    held = system.M @ free
+    return replace(system, K=system.K + HOLD * (held @ held.T))

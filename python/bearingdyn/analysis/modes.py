@@ -81,16 +81,16 @@ def _linear(source: Equilibrium | Application | System) -> System:
     return system
 
 
-def _swinging(values: NDArray[np.complex128], shapes: NDArray[np.complex128]) -> tuple[
-    NDArray[np.complex128], NDArray[np.complex128]
-]:
+def _swinging(
+    values: NDArray[np.complex128], shapes: NDArray[np.complex128]
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     keep = values.imag > REAL * np.abs(values).max(initial=1.0) * 1e-3
     return values[keep], shapes[:, keep]
 
 
-def _first_order(K: Array, C: Array, system: System, speed: float) -> tuple[
-    NDArray[np.complex128], NDArray[np.complex128]
-]:
+def _first_order(
+    K: Array, C: Array, system: System, speed: float
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     n = system.n
     inverse = np.linalg.inv(system.M)
     A = np.block(

@@ -80,10 +80,12 @@ def transient(
     if not (dt > 0 and math.isfinite(dt)):
         raise ValueError(f"dt is {dt}; the time step must be positive, in s")
     for name, value, least in (("steps", steps, 0), ("settle", settle, 0), ("decimate", decimate, 1)):
-        if int(value) != value or value < least:
+        if not value >= least or value % 1 != 0:
             raise ValueError(f"{name} is {value}; it must be a whole number of at least {least}")
     if not math.isfinite(speed):
         raise ValueError(f"speed is {speed}; it must be finite, in rad/s")
+    if resume is not None and initial:
+        raise ValueError("resume goes on from its own state and initial sets another; give one of the two")
     system = source.system if isinstance(source, Equilibrium) else source
     modal, T = system.modal()
     channels, units = zip(*(_channel(modal, name) for name in record), strict=True) if record else ((), ())
@@ -108,6 +110,7 @@ def transient(
     total = settle + steps
     report = None
     if settle:
+
         def settling(done: int, _: int) -> object:
             return progress(done, total) if progress else None
 
@@ -116,6 +119,7 @@ def transient(
         )
         start = False
     if report is None or report.status == 0:
+
         def marching(done: int, _: int) -> object:
             return progress(settle + done, total) if progress else None
 
@@ -127,7 +131,9 @@ def transient(
 
     result = _result(rows, state, report, model, scheme, record, units, decimate, settle)
     if report.status == core.INTERRUPTED:
-        raise core.Interrupted(f"interrupted at t = {report.t:.6g} s; what was marched is in `partial`", result)
+        raise core.Interrupted(
+            f"interrupted at t = {report.t:.6g} s; what was marched is in `partial`", result
+        )
     if report.status != 0:
         place = f", worst in bearing {system.bearings[report.bearing].name!r}" if report.bearing >= 0 else ""
         raise core.SolverError(

@@ -1,0 +1,20 @@
+"""Figures: each function draws one, into the axes it is given or a figure of its own, and returns the axes.
+
+Amplitudes are zero-to-peak. Colours can be told apart by colour-blind readers (Okabe and Ito). The style
+holds inside a call and leaves matplotlib's own settings alone. Where a figure has two panels, the axes given
+are halved and the upper ones returned; ``ax.figure`` is the whole.
+"""
+
+from bearingdyn.plot.material import isotherms, layer_stiffness, master, shifts
+from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum
+
+__all__ = [
+    "ball_loads",
+    "frequency_response",
+    "isotherms",
+    "layer_stiffness",
+    "master",
+    "orbit",
+    "shifts",
+    "spectrum",
+]

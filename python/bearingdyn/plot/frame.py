@@ -1,0 +1,124 @@
+"""What the figures share: style, colours, panels, ticks and legend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+DASHES = ("-", "--", "-.", (0, (1, 1)))
+STYLE: Mapping[str, Any] = {
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 9.0,
+    "axes.linewidth": 0.7,
+    "axes.grid": False,
+    "lines.linewidth": 1.1,
+    "legend.fontsize": 8.5,
+    "legend.frameon": False,
+    "figure.dpi": 110.0,
+    "savefig.dpi": 160.0,
+}
+LEGEND_COLUMNS = 4
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """The package's own look, for as long as the context is open."""
+    import matplotlib
+
+    settings: Any = STYLE  # its keys are matplotlib's, which a type would have to list
+    with matplotlib.rc_context(settings):
+        yield
+
+
+def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = None) -> Axes:
+    """Axes in a figure of their own; width and height in inches."""
+    import matplotlib.pyplot as plt
+
+    figure = plt.figure(figsize=(width, height), layout="constrained")
+    return figure.add_subplot(projection=projection)
+
+
+def halve(ax: Axes, share: float = 0.45) -> Axes:
+    """New axes that take the lower share of the room of `ax`, on the same horizontal axis."""
+    figure = ax.figure
+    spec = ax.get_subplotspec()
+    if spec is not None:
+        halves = spec.subgridspec(2, 1, height_ratios=[1 - share, share])
+        ax.set_subplotspec(halves[0])
+        lower = figure.add_subplot(halves[1], sharex=ax)
+    else:
+        box = ax.get_position()
+        gap = 0.03 * box.height
+        cut = box.y0 + share * box.height
+        ax.set_position((box.x0, cut + gap, box.width, box.y1 - cut - gap))
+        lower = figure.add_axes((box.x0, box.y0, box.width, cut - gap - box.y0), sharex=ax)
+    ax.tick_params(axis="x", which="both", labelbottom=False)
+    return lower
+
+
+def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
+    """Frame, ticks and grid; title on the left, the legend in rows between it and the data."""
+    ax.spines[["top", "right"]].set_visible(False)
+    # said here since ticks are made when they are drawn, outside the style's context
+    ax.tick_params(which="both", labelsize=8.5, width=0.7)
+    ax.tick_params(which="major", length=3.5)
+    ax.tick_params(which="minor", length=2.0)
+    ax.grid(which="major", color="0.9", linewidth=0.6)
+    ax.set_axisbelow(True)
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.label.set_fontsize(STYLE["axes.labelsize"])
+    rows = 0
+    if legend:
+        handles, labels = ax.get_legend_handles_labels()
+        # about twelve letters an inch, five for the sample of the line
+        room = max(1, int(12 * ax.bbox.width / ax.figure.dpi / (max(map(len, labels)) + 5)))
+        columns = min(len(labels), LEGEND_COLUMNS, room)
+        rows = -(-len(labels) // columns)
+        columns = -(-len(labels) // rows)
+        ax.legend(
+            handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns,
+            borderaxespad=0.2, borderpad=0.2, handlelength=2.2, columnspacing=1.4,
+        )  # fmt: skip
+    if title:
+        ax.set_title(title, loc="left", pad=6.0 + 14.0 * rows)
+
+
+def _written_out(axis: Axis, decades: float) -> None:
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    plain = StrMethodFormatter("{x:g}")
+    axis.set_major_formatter(plain)
+    axis.set_minor_formatter(plain if decades < 1.5 else NullFormatter())
+    if decades < 1.5:
+        axis.set_minor_locator(LogLocator(subs=(1.5, 2, 3, 4, 6, 8) if decades < 0.8 else (2, 5)))
+
+
+def frame_log(ax: Axes, values: NDArray[np.float64]) -> None:
+    """A log axis over the measured values, whatever else is drawn, its numbers written out."""
+    low, high = float(values.min()), float(values.max())
+    margin = max((high / low) ** 0.06, 1.05)
+    ax.set_ylim(low / margin, high * margin)
+    _written_out(ax.yaxis, np.log10(high / low))
+
+
+def colour(k: int) -> str:
+    """Colour of the k-th curve."""
+    return COLOURS[k % len(COLOURS)]
+
+
+def some(datasets: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The results by label; ValueError if there are none."""
+    if not datasets:
+        raise ValueError("there is nothing to draw; give at least one result with its label")
+    return datasets

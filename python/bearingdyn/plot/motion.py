@@ -1,0 +1,232 @@
+"""Figures of responses, orbits, spectra and ball loads."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.analysis import BearingState
+from bearingdyn.plot.frame import COLOURS, DASHES, colour, finish, halve, new_axes, some, style
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+GREY = "0.35"
+# a spectrum is drawn this far below its largest line: 120 dB, below which round-off begins
+DEPTH = 1e-6
+# °; a phase begins in the turn below it
+PHASE_END = 135.0
+POINT = 1.0 / 72.0  # inch
+
+
+def frequency_response(
+    datasets: Mapping[str, xarray.Dataset],
+    output: str,
+    input: str,
+    ax: Axes | None = None,
+    *,
+    phase: bool = False,
+) -> Axes:
+    """Magnitude of a response by bd.frequency_response against frequency, several by label, on a log axis.
+
+    With `phase` the axes are halved and the phase stands below; the axes of the magnitude are returned. It is
+    unwrapped: it begins between −225° and 135° and goes on without jumps.
+
+    Raises ValueError if a label lacks the output or the input, or if they are of different quantities.
+    """
+    curves = {}
+    for label, data in some(datasets).items():
+        for kind, wanted in (("output", output), ("input", input)):
+            known = [str(c) for c in data[kind].values]
+            if wanted not in known:
+                raise ValueError(f"{label!r} has no {kind} {wanted!r}; there are {known}")
+        curves[label] = data["response"].sel(output=output, input=input)
+    quantities = {str(data.attrs["quantity"]) for data in datasets.values()}
+    if len(quantities) > 1:
+        raise ValueError(f"responses of {sorted(quantities)} do not go into one figure; draw one of each")
+    quantity = quantities.pop()
+    from matplotlib.ticker import MultipleLocator
+
+    unit = _response_unit(quantity, output, input)
+    with style():
+        ax = ax or new_axes(height=4.8 if phase else 3.4)
+        lower = halve(ax, share=0.3) if phase else None
+        for k, (label, curve) in enumerate(curves.items()):
+            look: dict[str, Any] = {"color": colour(k), "linestyle": DASHES[k % len(DASHES)]}
+            f, value = curve["frequency"].values, curve.values
+            ax.plot(f, np.abs(value), label=label, **look)
+            if lower is not None:
+                lower.plot(f, _continuous_phase(value), **look)
+        ax.set_yscale("log")
+        ax.set_ylabel(f"{quantity}, zero-to-peak, {unit}")
+        bottom = lower or ax
+        bottom.set_xlabel("frequency, Hz")
+        _span(bottom, *(c["frequency"].values for c in curves.values()))
+        if lower is not None:
+            lower.set_ylabel("phase, °")
+            turns = np.ptp(lower.get_ylim()) / 360
+            lower.yaxis.set_major_locator(MultipleLocator(90 * max(1, math.ceil(turns / 1.5))))
+            finish(lower)
+        finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=True)
+    return ax
+
+
+def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
+    """Orbits by bd.orbit, several by label, in µm about their means, both axes to one scale."""
+    first = next(iter(some(datasets).values()))
+    with style():
+        ax = ax or new_axes(width=4.6, height=4.9)
+        curves = [(d["x"].values * 1e6, d["y"].values * 1e6) for d in datasets.values()]
+        sizes = [float(np.hypot(x, y).max(initial=0.0)) for x, y in curves]
+        for k, (label, (x, y)) in enumerate(zip(datasets, curves, strict=True)):
+            above = 2.0 + sum(size > sizes[k] for size in sizes) / len(sizes)  # the smaller orbit on top
+            ax.plot(x, y, color=colour(k), linewidth=0.6, label=label, zorder=above)
+        for axis, name in ((ax.xaxis, "x"), (ax.yaxis, "y")):
+            meanings = {str(data[name].attrs.get("long_name", name)) for data in datasets.values()}
+            meaning = str(first[name].attrs["long_name"]) if len(meanings) == 1 else f"{name} about its mean"
+            axis.set_label_text(f"{meaning}, µm")
+        ax.set_aspect("equal", adjustable="datalim")
+        ax.margins(0.08)
+        finish(ax, "Orbit about the static deflection", legend=True)
+    return ax
+
+
+def spectrum(
+    datasets: Mapping[str, xarray.Dataset],
+    lines: Mapping[str, float] | None = None,
+    ax: Axes | None = None,
+    *,
+    f_max: float | None = None,
+) -> Axes:
+    """Amplitude spectra by bd.spectrum, several by label, on a log axis 120 dB deep at most.
+
+    lines: name -> frequency, Hz, such as {"BPFO": 107.4}: marked and named where they fall inside the figure.
+    f_max: highest frequency drawn, Hz; the whole of the spectra when not given.
+
+    Raises ValueError if f_max is not positive or the spectra have different units.
+    """
+    if f_max is not None and not f_max > 0:
+        raise ValueError(f"f_max is {f_max}; it must be a positive frequency, in Hz")
+    units = {str(data["amplitude"].attrs["units"]) for data in some(datasets).values()}
+    if len(units) > 1:
+        raise ValueError(f"spectra in {sorted(units)} do not go into one figure; draw one of each")
+    end = f_max or max(float(data["frequency"].values[-1]) for data in datasets.values())
+    channels = sorted({str(data.attrs["channel"]) for data in datasets.values()})
+    with style():
+        ax = ax or new_axes(width=6.8)
+        largest, smallest = 0.0, np.inf
+        for k, (label, data) in enumerate(datasets.items()):
+            shown = (data["frequency"].values > 0) & (data["frequency"].values <= end)
+            f, amplitude = data["frequency"].values[shown], data["amplitude"].values[shown]
+            ax.plot(f, amplitude, color=colour(k), linewidth=0.8, label=label, zorder=2 + 0.1 * k)
+            largest = max(largest, float(amplitude.max(initial=0.0)))
+            smallest = min(smallest, float(amplitude.min(initial=np.inf)))
+        ax.set_xlim(0.0, end)
+        room = _mark(ax, {name: f for name, f in (lines or {}).items() if 0 <= f <= end})
+        if largest > 0:
+            ax.set_yscale("log")
+            low = max(0.5 * smallest, DEPTH * largest)
+            ax.set_ylim(low, low * (2 * largest / low) ** (1 / (1 - room)))
+        ax.set_xlabel("frequency, Hz")
+        ax.set_ylabel(f"amplitude, zero-to-peak, {units.pop()}")
+        finish(ax, f"Spectrum of {', '.join(channels)}", legend=True)
+    return ax
+
+
+def ball_loads(loads: BearingState | ArrayLike, ax: Axes | None = None, *, angle: float = 0.0) -> Axes:
+    """Load of each ball, N, around the bearing: azimuth from x (right) towards y (up).
+
+    loads: a bearing of an equilibrium, or (Z,) N. angle: azimuth of the first ball, rad. ax: polar.
+
+    Raises ValueError if the loads are not a list of finite numbers or the axes are not polar.
+    """
+    Q = np.asarray(loads.loads if isinstance(loads, BearingState) else loads, dtype=np.float64)
+    if Q.ndim != 1 or Q.size == 0 or not np.isfinite(Q).all():
+        raise ValueError(f"loads has shape {Q.shape}; give one finite load per ball, N")
+    if ax is not None and ax.name != "polar":
+        raise ValueError(f"ax has the projection {ax.name!r}; ball loads need projection='polar'")
+    from matplotlib.ticker import MaxNLocator
+
+    psi = angle + 2 * np.pi * np.arange(Q.size) / Q.size
+    loaded = Q > 0
+    with style():
+        ax = ax or new_axes(width=4.4, height=4.6, projection="polar")
+        scale: Any = ax  # polar
+        ax.bar(psi, Q, width=0.5 * 2 * np.pi / Q.size, color=COLOURS[0], linewidth=0)
+        largest = float(Q.max())
+        top = 1.1 * largest if largest > 0 else 1.0
+        ax.set_ylim(0.0, top)
+        # the scale stands between two balls, on the side that carries least
+        neighbours = Q + np.roll(Q, -1)
+        between = psi[int(np.argmin(neighbours))] + np.pi / Q.size
+        ax.yaxis.set_major_locator(MaxNLocator(4))
+        scale.set_rlabel_position(float(np.degrees(between)) % 360)
+        ax.set_xticks(psi % (2 * np.pi), [f"{k + 1}" for k in range(Q.size)])
+        ax.set_xlabel(f"ball number at its azimuth; {np.count_nonzero(loaded)} of {Q.size} loaded")
+        ax.set_ylabel("ball load, N", labelpad=24)
+        ax.set_title(f"Ball loads, the largest {largest:.4g} N", pad=14)
+        ax.tick_params(labelsize=8, colors=GREY)
+        ax.grid(color="0.85", linewidth=0.6)
+        ax.set_axisbelow(True)
+    return ax
+
+
+def _span(ax: Axes, *grids: NDArray[np.float64]) -> None:
+    """The whole frequency range of the curves, on a log axis where it is wide and does not touch zero."""
+    low, high = min(float(g.min()) for g in grids), max(float(g.max()) for g in grids)
+    if low > 0 and high / low >= 50:
+        ax.set_xscale("log")
+    if high > low:
+        ax.set_xlim(low, high)
+
+
+def _is_rotation(channel: str) -> bool:
+    return channel.rpartition(".")[2] in ("θx", "θy", "θz", "rx", "ry", "rz")
+
+
+def _cause(channel: str) -> str:
+    return "moment" if _is_rotation(channel) else "force"
+
+
+def _response_unit(quantity: str, output: str, input: str) -> str:
+    motion = "rad" if _is_rotation(output) else "m"
+    rate = {"displacement": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
+    return f"{f'({motion}{rate})' if rate else motion}/{'(N m)' if _is_rotation(input) else 'N'}"
+
+
+def _continuous_phase(response: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Unwrapped phase, °, its first value in the turn below PHASE_END: no curve begins at that angle."""
+    degrees = np.degrees(np.unwrap(np.angle(response)))
+    return np.asarray(degrees - 360.0 * np.ceil((degrees[0] - PHASE_END) / 360.0))
+
+
+def _mark(ax: Axes, lines: Mapping[str, float]) -> float:
+    """Dashed verticals with their names at the top, on the side where there is room, else a row lower.
+
+    Returns the share of the height of the axes that the first row of names takes.
+    """
+    if not lines:
+        return 0.0
+    size = 8.0
+    # in shares of the axes: height of the longest name, a letter being 0.6 of its size wide, and its width
+    letter = size * POINT * ax.figure.dpi
+    height = max(map(len, lines)) * 0.6 * letter / ax.bbox.height + 0.02
+    width = 1.5 * letter / ax.bbox.width
+    ends: list[float] = []  # right edge of the last name in each row
+    for name, frequency in sorted(lines.items(), key=lambda item: item[1]):
+        x = frequency / ax.get_xlim()[1]
+        places = [(row, left) for row, end in enumerate(ends) for left in (x - width, x) if left >= end]
+        row, left = places[0] if places else (len(ends), max(x - width, 0.0))
+        ends[row : row + 1] = [left + width]
+        ax.axvline(frequency, color=GREY, linestyle=(0, (3, 3)), linewidth=0.7, zorder=1)
+        ax.text(
+            left + 0.5 * width, 0.985 - row * height, name, rotation=90, transform=ax.transAxes,
+            ha="center", va="top", fontsize=size, color=GREY, zorder=5,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.5},
+        )  # fmt: skip
+    return min(height + 0.01, 0.5)

@@ -1,0 +1,42 @@
+"""Small applications that several tests compute."""
+
+from __future__ import annotations
+
+from bearingdyn.application import Application
+from bearingdyn.bearing import BallBearing
+from bearingdyn.fem.beam import Section
+from bearingdyn.material import Maxwell
+from bearingdyn.parts import Layer, RigidBody, Shaft
+
+RUBBER = Maxwell(G0=1e6, G=[2e6, 3e6], tau=[1e-3, 1e-4], eta0=3.0, K=2e9, density=1200.0)
+BEARING = BallBearing(8, 12.303e-3, 52e-3, 0.52, 0.53, clearance=10e-6, damping=30.0)
+
+
+def oscillator(m: float = 2.0, c: float = 40.0, k: float = 5e5) -> Application:
+    """A rigid body on equal springs and dampers in all directions."""
+    app = Application()
+    app.add("body", RigidBody(m, (1.0, 1.0, 1.0)))
+    app.ground("body.centre", stiffness=(k,) * 6, damping=(c,) * 6)
+    return app
+
+
+def motor(rubber: Maxwell = RUBBER) -> Application:
+    """A flexible shaft on two preloaded bearings; the left one's ring in a layer in a block on springs."""
+    app = Application()
+    shaft = Shaft(
+        [Section(0.3, 0.03)], seats={"left": 0.06, "right": 0.24}, points={"end": 0.0}, damping=0.002, f_max=8e3
+    )
+    app.add("shaft", shaft)
+    app.add("ring", RigidBody.ring(0.03, 0.036, 0.019))
+    app.add("layer", Layer(0.036, 0.039, 0.019, rubber, moduli=(1e6, 6e6), refinement=0.5))
+    app.add("block", RigidBody(5.0, (0.03, 0.03, 0.03)))
+    app.add("cap", RigidBody(1.0, (1e-3,) * 3))
+    app.connect("ring.centre", "layer.inner")
+    app.connect("layer.outer", "block.centre")
+    app.ground("block.centre", stiffness=(1e8,) * 3 + (1e5,) * 3, damping=(1e3,) * 3 + (1.0,) * 3)
+    app.ground("cap.centre", stiffness=(1e9, 1e9, 1e5, 1e6, 1e6, 1e6), damping=(1e3,) * 3 + (1.0,) * 3)
+    app.bearing("left", BEARING, inner="shaft.left", outer="ring.centre")
+    app.bearing("right", BEARING, inner="shaft.right", outer="cap.centre")
+    app.load("cap.centre", (0, 0, 180.0, 0, 0, 0))
+    app.load("shaft.end", (0, -50.0, 0, 0, 0, 0))
+    return app
