@@ -1,15 +1,15 @@
 """The paper's section 4: a motor on two ball bearings, with and without a rubber layer around each.
 
-A flexible shaft turns in two 6305 bearings, each in a flexible pedestal. Between the outer ring and the bore of
-the pedestal lies nothing, or a ring of rubber bonded to both. The equations of motion are
+A flexible shaft turns in two 6305 bearings, each in a flexible pedestal. Between the outer ring and the bore
+of the pedestal lies nothing, or a ring of rubber bonded to both. The equations of motion are
 
     M ẍ + (C + Ω G) ẋ + (K + Ω N) x + layers + balls = f(t)
 
 with the layer's shear modulus G*(ω) in the frequency domain and its Maxwell branches in the time domain, the
 same material in both. Run it as `python examples/motor.py`; it writes out/motor.nc and the figures to out/.
 
-The paper does not publish its geometry. This one is our own: it bears 5 kN a bearing, and its layer-free bending
-modes lie near the paper's 382, 1885, 2027 and 4756 Hz (the table says how near).
+The paper does not publish its geometry. This one is our own: it bears 5 kN a bearing, and its layer-free
+bending modes lie near the paper's 382, 1885, 2027 and 4756 Hz (the table says how near).
 """
 
 from __future__ import annotations
@@ -70,8 +70,8 @@ class Design:
 def rubber(path: Path = MEASURED) -> tuple[bd.Maxwell, bd.DMAData, bd.MasterCurve]:
     """Measured rubber: its Maxwell model at 20 °C, the data and the master curve.
 
-    Points above 20 Hz carry the resonance of the fixture and are left out. Where the measurement is absent, the
-    sample shipped with the package serves: data made from a stated model, not measured.
+    Points above 20 Hz carry the resonance of the fixture and are left out. Where the measurement is absent,
+    the sample shipped with the package serves: data made from a stated model, not measured.
     """
     dma = bd.read_dma(path if path.exists() else bd.sample_dma_path()).select(f_max=20.0)
     master = bd.master_curve(dma, T_ref=20.0)
@@ -230,7 +230,8 @@ def describe_rubber(material: bd.Maxwell, source: str) -> None:
     print(f"rubber from {source}: five branches, {BAND[0]:g}–{BAND[1]:g} Hz, 20 °C")
     if fit is not None:
         print(
-            f"  error of the fit: G′ {100 * fit.storage_rms:.1f} % rms, tan δ {100 * fit.tan_delta_rms:.1f} % rms"
+            f"  error of the fit: G′ {100 * fit.storage_rms:.1f} % rms, "
+            f"tan δ {100 * fit.tan_delta_rms:.1f} % rms"
         )
 
 
@@ -244,9 +245,9 @@ def describe_layer(design: Design, eq: bd.Equilibrium, loaded: bd.Equilibrium) -
     strain = float(np.max(layer.nominal_strain(relative)))
     bearing_k = eq.bearings["left"].radial_stiffness
     print(
-        f"  {design.label}: |k| at 1 kHz {abs(dynamic) / 1e6:.1f} N/µm, {abs(dynamic) / bearing_k:.2f} of the "
-        f"bearing's {bearing_k / 1e6:.0f}; tan δ of the rubber {float(material.loss_factor(ONE_KHZ)):.2f}; "
-        f"static strain {100 * strain:.1f} %"
+        f"  {design.label}: |k| at 1 kHz {abs(dynamic) / 1e6:.1f} N/µm, {abs(dynamic) / bearing_k:.2f} of "
+        f"the bearing's {bearing_k / 1e6:.0f}; tan δ of the rubber "
+        f"{float(material.loss_factor(ONE_KHZ)):.2f}; static strain {100 * strain:.1f} %"
     )
     if strain > 0.05:
         print(f"    warning: the static strain of {100 * strain:.1f} % is above 5 %")
@@ -281,9 +282,9 @@ def transient_table(label: str, result: xarray.Dataset, settle: int, seconds: fl
     strongest = float(lines["frequency"].values[np.argmax(lines["amplitude"].values)])
     print(
         f"  {label:<18} ring-down {settle} steps ({settle * STEP:.2f} s); orbit "
-        f"{np.ptp(data['shaft.middle.x']) * 1e6:.3f} × {np.ptp(data['shaft.middle.y']) * 1e6:.3f} µm; strongest "
-        f"line {strongest:.0f} Hz\n{'':<20} end velocity {np.std(v) * 1e3:.3f} mm/s rms; at least {int(loaded)} "
-        f"of 7 balls loaded; {1e6 * seconds / (settle + STEPS):.2f} µs a step"
+        f"{np.ptp(data['shaft.middle.x']) * 1e6:.3f} × {np.ptp(data['shaft.middle.y']) * 1e6:.3f} µm; "
+        f"strongest line {strongest:.0f} Hz\n{'':<20} end velocity {np.std(v) * 1e3:.3f} mm/s rms; at least "
+        f"{int(loaded)} of 7 balls loaded; {1e6 * seconds / (settle + STEPS):.2f} µs a step"
     )
 
 
@@ -368,8 +369,8 @@ def main() -> int:
 
     print(
         f"\n{SPEED * 30 / math.pi:.0f} rpm, {RADIAL / 1e3:g} kN: {STEPS} steps of {STEP * 1e6:g} µs, "
-        f"{1 / (STEPS * STEP):g} Hz resolution; ball pass {ball_pass():.1f} Hz; thrown away before: the ring-down "
-        f"to {100 * REMAINS:g} % of the slowest mode"
+        f"{1 / (STEPS * STEP):g} Hz resolution; ball pass {ball_pass():.1f} Hz; thrown away before: the "
+        f"ring-down to {100 * REMAINS:g} % of the slowest mode"
     )
     runs: dict[str, xarray.Dataset] = {}
     for label in ("no layer", "layer, high loss"):

@@ -177,7 +177,7 @@ def test_response_is_drawn_as_its_magnitude_on_a_log_axis():
     assert [t.get_text() for t in ax.get_legend().get_texts()] == ["no layer", "layer"]
     first, second = curves(ax)
     np.testing.assert_allclose(first.get_ydata(), 2 * np.asarray(second.get_ydata()), rtol=1e-14)  # rounding
-    # at resonance 1e-7/0.04; the grid steps by 2.3 %, so its nearest point is within 1.2 % of it, |1 − r²| < 0.024:
+    # at resonance 1e-7/0.04; the grid steps by 2.3 %, so |1 − r²| < 0.024 at its nearest point, and
     # 1/√(0.024² + 0.04²) is 14 % below 1/0.04
     assert np.max(first.get_ydata()) == pytest.approx(1e-7 / 0.04, rel=0.15)
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")

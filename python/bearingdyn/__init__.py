@@ -1,4 +1,4 @@
-"""Dynamics of rotors on ball bearings with viscoelastic layers, from the measured rubber to the running motor.
+"""Dynamics of rotors on ball bearings with viscoelastic layers, from measured rubber to a running motor.
 
 SI units everywhere; z along the shaft, y vertical; interfaces in the order (x, y, z, θx, θy, θz).
 """

@@ -234,7 +234,7 @@ class Application:
         self._rows(where)
         if not (moment >= 0 and math.isfinite(moment)) or not math.isfinite(phase):
             raise ValueError(
-                f"unbalance at {where} is {moment} kg m at {phase} rad; it must be zero or positive and finite"
+                f"unbalance at {where} is {moment} kg m at {phase} rad; it must be finite and not negative"
             )
         self.loads.append(Load(where, "rotating", np.zeros(6), phase=phase, unbalance=moment))
 
@@ -276,8 +276,8 @@ class Application:
             for interface in element.interfaces:
                 if f"{part}.{interface}" not in used:
                     raise ValueError(
-                        f"interface {part}.{interface} is not connected; connect it, ground it, hang a bearing "
-                        f'on it, or declare app.free("{part}.{interface}")'
+                        f"interface {part}.{interface} is not connected; connect it, ground it, hang a "
+                        f'bearing on it, or declare app.free("{part}.{interface}")'
                     )
 
     def _mass(self, part: str) -> float | None:

@@ -41,7 +41,7 @@ ISAS = {"best": 0, "base": 1, "avx2": 2, "avx512": 3}
 
 
 class SolverError(RuntimeError):
-    """A march that could not go on. `partial` holds what was computed up to then, `report` where it stopped."""
+    """A march that could not go on: `report` says where, `partial` holds what was computed up to then."""
 
     def __init__(self, message: str, report: Report, partial: object = None) -> None:
         super().__init__(message)
@@ -125,7 +125,7 @@ def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Ar
 def bearing_force(
     kernel: BearingKernel, z: Array, z_rate: Array, angle: float, cage_speed: float
 ) -> tuple[Array, Array, Array, Array]:
-    """Force g (n,) = +∇V on a bearing's coefficients, tangents dg/dz and dg/dż (n, n), ball loads (Z,) in N."""
+    """Force g (n,) = +∇V on a bearing's coefficients, tangents dg/dz, dg/dż (n, n), ball loads (Z,) in N."""
     return _core.bearing_force(kernel_tuple(kernel), z, z_rate, angle, cage_speed)
 
 

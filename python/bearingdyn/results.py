@@ -56,7 +56,7 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     scratch = target.with_name(target.name + ".part")
     try:
         for i, (name, data) in enumerate(groups.items()):
-            _plain(data).to_netcdf(  # type: ignore[arg-type]
+            _plain(data).to_netcdf(
                 scratch, mode="w" if i == 0 else "a", group=name or None, engine="h5netcdf"
             )
         scratch.replace(target)

@@ -85,7 +85,7 @@ def sweep(
         Any executor of `concurrent.futures`, or one that behaves like it. None: processes, as many as there
         are processors, started afresh ("spawn"), BLAS with one thread in each. These import the function by
         name: it must stand at the top level of a module or script, and a script must call `sweep` below
-        ``if __name__ == "__main__":``.
+        ``if __name__ == "__main__":``. Ctrl-C ends the study when the cases being computed are done.
     store
         Folder, made where missing: each finished case is written there at once, as JSON under the hash of its
         parameters, and taken from there when the study is run again. Failed cases are not written and so are

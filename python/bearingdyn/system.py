@@ -110,7 +110,7 @@ class System:
         component = ALIASES.get(component, component)
         if component not in COMPONENTS[: rows.shape[0]]:
             raise ValueError(
-                f"{channel!r}: {place} has the components {list(COMPONENTS[: rows.shape[0]])}, not {component!r}"
+                f"{channel!r}: {place} has {list(COMPONENTS[: rows.shape[0]])}, not {component!r}"
             )
         return np.asarray(rows[COMPONENTS.index(component)])
 
@@ -182,8 +182,8 @@ class System:
         return np.asarray(shapes[:, squares <= 0.0])
 
     def model(self, channels: list[tuple[int, Array | None, int, int]], relaxed: bool = True) -> core.Model:
-        """The core's model. With `relaxed`, layers carry G0 inside K, as the march wants; else K leaves all of
-        their deviatoric part to a modulus given per frequency."""
+        """The core's model. With `relaxed`, layers carry G0 inside K, as the march wants; else K leaves all
+        of their deviatoric part to a modulus given per frequency."""
         C = self.viscous() if relaxed else self.C
         K = self.stiffness("relaxed") if relaxed else self.K
         empty = np.zeros(0)
@@ -304,8 +304,9 @@ def assemble(app: Application) -> System:
     layers: list[LayerTerm] = []
     outputs: dict[str, Array] = {}
     for part, element in app.parts.items():
-        for total, A in ((M, element.M), (C, element.C), (K, element.K), (G, element.G), (N, element.N)):
-            total += select[part].T @ A @ select[part]
+        own = (element.M, element.C, element.K, element.G, element.N)
+        for total, A in zip((M, C, K, G, N), own, strict=True):
+            total += select[part].T @ np.asarray(A) @ select[part]
         for term in element.viscoelastic:
             layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
@@ -347,7 +348,8 @@ def _loads(app: Application, outputs: Mapping[str, Array]) -> tuple[LoadTerm, ..
             u = load.unbalance
             terms.append(LoadTerm("rotating", 0.0, u * along, u * across, nothing, nothing))
         elif load.kind == "sampled":
-            assert load.time is not None and load.value is not None
+            assert load.time is not None
+            assert load.value is not None
             terms.append(LoadTerm("sampled", 0.0, force, zero, load.time, load.value))
         else:
             terms.append(LoadTerm("constant", 0.0, force, zero, nothing, nothing))
@@ -362,7 +364,7 @@ def _check_held(system: System, firm: Array) -> None:
     unsupported = np.flatnonzero(np.diag(system.M) <= 0.0)
     if unsupported.size:
         raise ValueError(
-            f"{unsupported.size} coordinates have no mass (the first: {_describe(system, int(unsupported[0]))}); "
+            f"{unsupported.size} coordinates have no mass (first: {_describe(system, int(unsupported[0]))}); "
             f"give every body a mass and moments of inertia"
         )
     load = system.static_load()

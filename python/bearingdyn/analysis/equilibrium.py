@@ -97,7 +97,7 @@ def equilibrium(app: Application | System, angle: float = 0.0) -> Equilibrium:
     """
     system = app if isinstance(app, System) else assemble(app)
     modal, T = system.modal()
-    # motions that nothing holds (the spin of shafts) are held here: no load drives them, and they stay at zero
+    # motions that nothing holds (the spin of shafts) are held here: no load drives them
     free = T.T @ system.M @ system.free_motions()
     structure = modal.stiffness() + HOLD * (free @ free.T)
     load = modal.static_load()

@@ -159,8 +159,8 @@ def _channel(system: System, name: str) -> tuple[Channel, str]:
         if rest in ("force.x", "force.y", "force.z"):
             return (core.CHANNEL_KINDS["force"], None, which, "xyz".index(rest[-1])), "N"
         raise ValueError(
-            f"channel {name!r}: bearing {head!r} offers loaded, ball1 … ball{system.bearings[which].bearing.Z}, "
-            f"force.x, force.y and force.z"
+            f"channel {name!r}: bearing {head!r} offers loaded, ball1 … "
+            f"ball{system.bearings[which].bearing.Z}, force.x, force.y and force.z"
         )
     place, _, quantity = name.rpartition(".")
     if quantity not in QUANTITIES:

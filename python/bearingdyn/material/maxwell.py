@@ -321,12 +321,13 @@ class Maxwell:
         return weighed.with_modulus(abs(modulus), omega)
 
     def with_relaxation(self, loss_factor: float, omega: float) -> Maxwell:
-        """A causal material of the same |G*(omega)| with one more relaxation, τ = 1/omega, that raises the loss
-        factor there to the one given.
+        """A causal material of the same |G*(omega)| with one more relaxation, τ = 1/omega, that raises the
+        loss factor there to the one given.
 
-        A branch of strength s adds s/2 to G′ and to G″ at its own frequency, so s = 2(tan δ G′ − G″)/(1 − tan δ);
-        then all strengths are scaled together until |G*(omega)| is what it was. Against `with_loss_factor` it
-        keeps more of the relaxed modulus G0, and so of the static stiffness, for the same damping at omega.
+        A branch of strength s adds s/2 to G′ and to G″ at its own frequency, so s = 2(tan δ G′ − G″)/(1 −
+        tan δ); then all strengths are scaled together until |G*(omega)| is what it was. Against
+        `with_loss_factor` it keeps more of the relaxed modulus G0, and so of the static stiffness, for the
+        same damping at omega.
 
         Parameters
         ----------

@@ -42,7 +42,8 @@ class Housing:
     width along x, height along y, length along z, m; a small length makes a plate-like pedestal.
     bore_diameter, m; bore_height: height of the bore's axis above the base, m (default: mid-height).
     feet: what is held at the base: the whole base (None) or two strips (Feet).
-    damping: ratio ζ of every mode of the housing held at its feet. f_max: fixed-interface modes are kept up to this, Hz.
+    damping: ratio ζ of every mode of the housing held at its feet.
+    f_max: fixed-interface modes are kept up to this, Hz.
     points: name -> (x, y, z), m, from the bore's axis at mid-length: further outputs, at the nearest node.
     element_size: longest wanted side of an element, m (default: some 300 elements).
 
