@@ -24,7 +24,11 @@ def motor(rubber: Maxwell = RUBBER) -> Application:
     """A flexible shaft on two preloaded bearings; the left one's ring in a layer in a block on springs."""
     app = Application()
     shaft = Shaft(
-        [Section(0.3, 0.03)], seats={"left": 0.06, "right": 0.24}, points={"end": 0.0}, damping=0.002, f_max=8e3
+        [Section(0.3, 0.03)],
+        seats={"left": 0.06, "right": 0.24},
+        points={"end": 0.0},
+        damping=0.002,
+        f_max=8e3,
     )
     app.add("shaft", shaft)
     app.add("ring", RigidBody.ring(0.03, 0.036, 0.019))

@@ -50,10 +50,10 @@ def test_a_name_is_given_once():
     app = pair()
     with pytest.raises(ValueError, match="'shaft' is there already"):
         app.add("shaft", BODY)
-    with pytest.raises(ValueError, match="'shaft'.*taken"):
+    with pytest.raises(ValueError, match=r"'shaft'.*taken"):
         app.bearing("shaft", BEARING, inner="shaft.left", outer="ground")
     app.bearing("front", BEARING, inner="shaft.left", outer="ground")
-    with pytest.raises(ValueError, match="'front'.*taken"):
+    with pytest.raises(ValueError, match=r"'front'.*taken"):
         app.bearing("front", BEARING, inner="shaft.right", outer="ground")
     with pytest.raises(ValueError, match="'front' is there already"):
         app.add("front", BODY)

@@ -113,7 +113,10 @@ def test_preload_passes_through_both_bearings():
     assert state.bearings["left"].radial_stiffness == pytest.approx(own[0, 0], rel=1e-9)
 
 
-@given(st.lists(st.floats(-2e3, 2e3), min_size=3, max_size=3), st.lists(st.floats(-20, 20), min_size=2, max_size=2))
+@given(
+    st.lists(st.floats(-2e3, 2e3), min_size=3, max_size=3),
+    st.lists(st.floats(-20, 20), min_size=2, max_size=2),
+)
 @settings(max_examples=25, deadline=None)
 def test_forces_and_moments_balance_under_any_load(force, moment):
     load = np.array([*force, *moment, 0.0])
@@ -138,7 +141,9 @@ def test_forces_and_moments_balance_under_any_load(force, moment):
         Y = kernel.y0 + b.z[0] * np.cos(psi) + b.z[1] * np.sin(psi)
         length = np.hypot(X, Y)
         radial, axial = b.loads * Y / length, b.loads * X / length
-        arms = np.array([radial * np.cos(psi), radial * np.sin(psi), axial, axial * np.cos(psi), axial * np.sin(psi)])
+        arms = np.array(
+            [radial * np.cos(psi), radial * np.sin(psi), axial, axial * np.cos(psi), axial * np.sin(psi)]
+        )
         np.testing.assert_allclose(b.g, arms.sum(axis=1), rtol=1e-9, atol=1e-9 * scale)
         assert (b.loads >= 0).all()
     # the whole system is at rest: K x + Bᵀ g = f

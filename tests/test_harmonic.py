@@ -26,14 +26,24 @@ OUTPUTS = ["shaft.end.y", "shaft.right.θx", "ring.centre.x", "block.centre.z"]
 
 
 def dense(
-    system: System, K_b: np.ndarray, C_b: np.ndarray, f: float, inputs: list[str], outputs: list[str], speed: float
+    system: System,
+    K_b: np.ndarray,
+    C_b: np.ndarray,
+    f: float,
+    inputs: list[str],
+    outputs: list[str],
+    speed: float,
 ) -> np.ndarray:
     """Paper (20), term by term: −ω²M + iω(C + ΩG) + K + ΩN + Σ 2 G*(ω) H, bearings as K_b + iω C_b."""
     w = 2 * math.pi * f
     D = -(w**2) * system.M + 1j * w * (system.C + speed * system.G) + system.K + speed * system.N
     for term in system.layers:
         m = term.material
-        G = m.G0 + 1j * w * m.eta0 + sum(g * 1j * w * t / (1 + 1j * w * t) for g, t in zip(m.G, m.tau, strict=True))
+        G = (
+            m.G0
+            + 1j * w * m.eta0
+            + sum(g * 1j * w * t / (1 + 1j * w * t) for g, t in zip(m.G, m.tau, strict=True))
+        )
         D = D + 2 * G * term.L @ term.L.T
     D = D + system.B.T @ (K_b + 1j * w * C_b) @ system.B
     force = np.array([system.row(i) for i in inputs]).T
@@ -121,7 +131,9 @@ def test_response_is_reciprocal_at_rest(state):
 
 def test_passive_structure_dissipates(state):
     places = ["shaft.end.y", "block.centre.z", "ring.centre.x"]
-    H = frequency_response(state, np.geomspace(5, 6000, 60), places, places, quantity="velocity").response.values
+    H = frequency_response(
+        state, np.geomspace(5, 6000, 60), places, places, quantity="velocity"
+    ).response.values
     power = 0.5 * (H + np.conj(np.swapaxes(H, 1, 2)))  # ½ Re fᴴ v ≥ 0 for every f
     lowest = np.linalg.eigvalsh(power)[:, 0]
     assert (lowest > -1e-12 * np.abs(H).max(axis=(1, 2))).all()
@@ -149,7 +161,9 @@ def test_loss_factor_of_a_layer_shows_in_its_dynamic_stiffness():
 
 def test_peaks_stand_at_the_damped_modes(state):
     found = modes(state, damped=True)
-    light = (found.frequency.values > 100) & (found.damping_ratio.values < 0.05) & (found.frequency.values < 4e3)
+    light = (
+        (found.frequency.values > 100) & (found.damping_ratio.values < 0.05) & (found.frequency.values < 4e3)
+    )
     assert light.any()
     for f0, zeta in zip(found.frequency.values[light], found.damping_ratio.values[light], strict=True):
         grid = f0 * np.linspace(1 - 3 * zeta - 1e-3, 1 + 3 * zeta + 1e-3, 201)
@@ -204,7 +218,9 @@ def test_result_has_names_and_units(state):
 
 def test_progress_is_told_and_may_stop(state):
     seen = []
-    frequency_response(state, np.linspace(1, 100, 40), INPUTS, OUTPUTS, progress=lambda a, b: seen.append((a, b)))
+    frequency_response(
+        state, np.linspace(1, 100, 40), INPUTS, OUTPUTS, progress=lambda a, b: seen.append((a, b))
+    )
     assert seen[-1] == (40, 40)
 
 
@@ -213,7 +229,9 @@ def test_layer_at_its_modulus_follows_the_full_model():
     layer = Layer(0.036, 0.039, 0.019, RUBBER)
     app = Application()
     app.add("ring", RigidBody(1e-9, (1e-13,) * 3))
-    app.add("layer", Layer(0.036, 0.039, 0.019, Maxwell(1e6, [2e6, 3e6], [1e-3, 1e-4], 3.0, K=2e9, density=1e-6)))
+    app.add(
+        "layer", Layer(0.036, 0.039, 0.019, Maxwell(1e6, [2e6, 3e6], [1e-3, 1e-4], 3.0, K=2e9, density=1e-6))
+    )
     app.connect("ring.centre", "layer.inner")
     app.ground("layer.outer")
     places = [f"ring.centre.{c}" for c in ("x", "z", "θy", "θz")]

@@ -117,7 +117,11 @@ def dynamic_stiffness(system: System, value: complex, speed: float) -> list[np.n
     terms = [value**2 * system.M, value * (system.C + speed * system.G), system.K + speed * system.N]
     for term in system.layers:
         m = term.material
-        G = m.G0 + m.eta0 * value + sum(g * value * t / (1 + value * t) for g, t in zip(m.G, m.tau, strict=True))
+        G = (
+            m.G0
+            + m.eta0 * value
+            + sum(g * value * t / (1 + value * t) for g, t in zip(m.G, m.tau, strict=True))
+        )
         terms.append(2 * G * term.L @ term.L.T)
     return terms
 

@@ -53,7 +53,11 @@ def test_energy_of_the_lines_is_that_of_the_signal():
 
 
 def test_orbit_is_about_the_static_deflection():
-    data = record(400, x=lambda t: 3e-6 + 1e-6 * np.cos(10 * np.pi * t), y=lambda t: -7e-6 + 2e-6 * np.sin(10 * np.pi * t))
+    data = record(
+        400,
+        x=lambda t: 3e-6 + 1e-6 * np.cos(10 * np.pi * t),
+        y=lambda t: -7e-6 + 2e-6 * np.sin(10 * np.pi * t),
+    )
     found = orbit(data, "x", "y")
     assert found.attrs["mean_x"] == pytest.approx(3e-6, rel=1e-9)
     assert found.attrs["mean_y"] == pytest.approx(-7e-6, rel=1e-9)

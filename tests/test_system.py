@@ -1,4 +1,4 @@
-"""The assembled system: what is held, what is free, and matrices that keep their meaning in other coordinates."""
+"""The assembled system: what is held, what is free, and what other coordinates leave as it was."""
 
 from __future__ import annotations
 
@@ -55,7 +55,9 @@ class TestFreeMotions:
         app = layered_rotor()
         app.add("shaft", Shaft([Section(0.2, 0.02)], seats={"seat": 0.1}, f_max=3e3))
         app.free("shaft.seat")
-        with pytest.raises(ValueError, match=r"'shaft' is free to move in (x|y|z|θx|θy) \(seen at shaft\.seat\)"):
+        with pytest.raises(
+            ValueError, match=r"'shaft' is free to move in (x|y|z|θx|θy) \(seen at shaft\.seat\)"
+        ):
             assemble(app)
 
     def test_a_housing_on_no_ground_is_named(self):
@@ -74,7 +76,9 @@ class TestFreeMotions:
         load[missing] = 1.0
         app.load("body.centre", load)
         # about z a body may spin, but a torque may not turn it
-        message = f"'body' is free to move in {DIRECTIONS[missing]} " if missing < 5 else "turns a shaft about z"
+        message = (
+            f"'body' is free to move in {DIRECTIONS[missing]} " if missing < 5 else "turns a shaft about z"
+        )
         with pytest.raises(ValueError, match=message):
             assemble(app)
 
@@ -126,7 +130,7 @@ class TestCreep:
     def test_dead_load_through_a_creeping_layer_is_refused(self, load):
         app = layered_rotor(CREEPING)
         app.load("rotor.centre", load)
-        with pytest.raises(ValueError, match="layer 'layer' has G0 = 0.*creeps"):
+        with pytest.raises(ValueError, match=r"layer 'layer' has G0 = 0.*creeps"):
             assemble(app)
 
     def test_springs_in_one_direction_do_not_carry_another(self):

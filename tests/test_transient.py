@@ -174,7 +174,9 @@ def test_equilibrium_stays_where_it_is(state):
     start = state.displacement("shaft.end")[1]
     # forces balance to 1e-12 of all ball loads (some 2 kN) on 1e6 N/m: 1e-15 m
     assert np.abs(y - start).max() < 1e-13
-    assert (found.record.sel(channel="left.loaded").values == np.count_nonzero(state.bearings["left"].loads)).all()
+    assert (
+        found.record.sel(channel="left.loaded").values == np.count_nonzero(state.bearings["left"].loads)
+    ).all()
 
 
 def test_energy_of_a_layered_rotor_on_turning_bearings_adds_up():
@@ -249,13 +251,15 @@ def test_resume_refuses_the_state_of_another_application(state):
     other = transient(equilibrium(oscillator()), speed=0.0, dt=1e-4, steps=1, record=[])
     with pytest.raises(ValueError, match="state"):
         march(state, resume=other)
-    with pytest.raises(ValueError, match="resume.*initial"):
+    with pytest.raises(ValueError, match=r"resume.*initial"):
         march(state, resume=march(state, steps=1), initial={"shaft.end": np.zeros(6)})
 
 
 def test_initial_places_are_taken(state):
     wanted = np.array([1e-6, -2e-6, 3e-6, 1e-5, -2e-5, 0.0])
-    found = march(state, steps=1, dt=1e-12, initial={"block.centre": wanted}, record=["block.centre.x", "cap.centre.z"])
+    found = march(
+        state, steps=1, dt=1e-12, initial={"block.centre": wanted}, record=["block.centre.x", "cap.centre.z"]
+    )
     # one step of a picosecond: nothing has moved yet
     assert found.record.values[0, 0] == pytest.approx(1e-6, abs=1e-15)
     assert found.record.values[0, 1] == pytest.approx(state.displacement("cap.centre")[2], abs=1e-15)
@@ -286,7 +290,12 @@ def test_channels_carry_names_and_units(state):
 
 
 def test_bearing_channels_are_balls_and_their_sum(state):
-    names = [f"left.ball{j}" for j in range(1, 9)] + ["left.force.x", "left.force.y", "left.force.z", "left.loaded"]
+    names = [f"left.ball{j}" for j in range(1, 9)] + [
+        "left.force.x",
+        "left.force.y",
+        "left.force.z",
+        "left.loaded",
+    ]
     found = march(state, speed=0.0, steps=1, record=names).record.values[0]
     bearing = state.bearings["left"]
     # equilibrium holds: 1e-12 of the loads, through one step
@@ -297,7 +306,14 @@ def test_bearing_channels_are_balls_and_their_sum(state):
 
 def test_attributes_tell_how_it_was_made(state):
     found = march(state, decimate=10, settle=20)
-    for name, value in {"speed": 300.0, "dt": 1e-5, "decimate": 10, "settle": 20, "steps": 1000, "complete": 1}.items():
+    for name, value in {
+        "speed": 300.0,
+        "dt": 1e-5,
+        "decimate": 10,
+        "settle": 20,
+        "steps": 1000,
+        "complete": 1,
+    }.items():
         assert found.attrs[name] == value
 
 
@@ -358,7 +374,7 @@ def test_divergence_keeps_what_was_computed(state):
 
 
 def test_newton_without_convergence_names_its_bearing(state):
-    with pytest.raises(core.SolverError, match="worst in bearing '(left|right)'.*smaller dt") as caught:
+    with pytest.raises(core.SolverError, match=r"worst in bearing '(left|right)'.*smaller dt") as caught:
         march(state, dt=1e-4, steps=100, scheme=core.Scheme(1e-4, max_iterations=1), speed=3000.0)
     assert caught.value.partial.attrs["complete"] == 0
     assert caught.value.report.bearing in (0, 1)
@@ -401,5 +417,5 @@ def test_a_layer_needs_a_maxwell_model_in_time():
             return 1e6 * (1 + 0.3j) + 0 * omega
 
     layers = tuple(replace(t, material=Table()) for t in system.layers)
-    with pytest.raises(ValueError, match="Table.*Maxwell"):
+    with pytest.raises(ValueError, match=r"Table.*Maxwell"):
         transient(replace(system, layers=layers), speed=0.0, dt=1e-5, steps=1, record=[])

@@ -7,8 +7,16 @@ import math
 import pytest
 
 import verification
+from verified.row import Row
 
-QUICK = ["Maxwell model", "Lubricant", "Hertz contact", "Bearings of ISO/TS 16281", "Bearing 6202 under preload", "Rigid rotor"]
+QUICK = [
+    "Maxwell model",
+    "Lubricant",
+    "Hertz contact",
+    "Bearings of ISO/TS 16281",
+    "Bearing 6202 under preload",
+    "Rigid rotor",
+]
 
 
 @pytest.mark.parametrize("title", QUICK)
@@ -31,7 +39,7 @@ def test_every_family_holds_and_is_written():
 
 
 def test_a_wrong_number_does_not_hold():
-    row = verification.Row("case", "source", 1.0, 1.0 + 2e-3, 1e-3, "reason")
+    row = Row("case", "source", 1.0, 1.0 + 2e-3, 1e-3, "reason")
     assert row.error == pytest.approx(2e-3)
     assert not row.holds
-    assert not verification.Row("case", "source", 1.0, math.nan, 1e-3, "reason").holds
+    assert not Row("case", "source", 1.0, math.nan, 1e-3, "reason").holds

@@ -48,6 +48,9 @@ class SolverError(RuntimeError):
         self.report = report
         self.partial = partial
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (str(self), self.report, self.partial)
+
 
 class Interrupted(KeyboardInterrupt):
     """A march ended by the user. `partial` holds what was computed up to then."""
@@ -55,6 +58,9 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, message: str, partial: object = None) -> None:
         super().__init__(message)
         self.partial = partial
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (str(self), self.partial)
 
 
 @dataclass(frozen=True)

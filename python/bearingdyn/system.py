@@ -231,6 +231,12 @@ def _natural(K: Array, M: Array) -> tuple[Array, Array]:
     return squares, shapes
 
 
+def is_rotation(channel: str) -> bool:
+    """Whether a channel "place.component" is a rotation."""
+    component = channel.rpartition(".")[2]
+    return ALIASES.get(component, component) in COMPONENTS[3:]
+
+
 def _static_modulus(layer: LayerTerm, modulus: str) -> float:
     if not isinstance(layer.material, Maxwell):
         raise ValueError(

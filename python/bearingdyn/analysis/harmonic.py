@@ -14,7 +14,7 @@ from bearingdyn import core
 from bearingdyn.analysis.equilibrium import HOLD, Equilibrium
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
-from bearingdyn.system import System, assemble
+from bearingdyn.system import System, assemble, is_rotation
 
 if TYPE_CHECKING:
     import xarray
@@ -90,19 +90,28 @@ def frequency_response(
 
     from bearingdyn.results import dataset
 
-    units = {"displacement": "m/N", "velocity": "m/(N s)", "acceleration": "m/(N s²)"}
     return dataset(
         {
             "response": (
                 ("frequency", "output", "input"),
                 response,
-                units[quantity],
+                _unit(quantity, [*outputs], [*inputs]),
                 f"complex {quantity}, zero-to-peak, per unit force",
             ),
         },
         {"analysis": "frequency response", "speed": speed, "quantity": quantity},
         {"frequency": (f, "Hz"), "output": (list(outputs), ""), "input": (list(inputs), "")},
     )
+
+
+def _unit(quantity: str, outputs: Sequence[str], inputs: Sequence[str]) -> str:
+    """Unit of the response; of its entries together where rotations or moments stand among them."""
+    turning = [any(is_rotation(name) for name in names) for names in (outputs, inputs)]
+    time = {"displacement": "", "velocity": " s", "acceleration": " s²"}[quantity]
+    motion, force = ("m, rad" if turning[0] else "m"), ("N, N m" if turning[1] else "N")
+    if any(turning):
+        return f"({motion})/({force}){' per' + time if time else ''}"
+    return f"m/({force}{time})" if time else f"m/{force}"
 
 
 def _at_rest(system: System, force: Array) -> System:

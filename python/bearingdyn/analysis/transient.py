@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.system import QUANTITIES, System
+from bearingdyn.system import QUANTITIES, System, is_rotation
 
 if TYPE_CHECKING:
     import xarray
@@ -166,7 +166,7 @@ def _channel(system: System, name: str) -> tuple[Channel, str]:
     if quantity not in QUANTITIES:
         place, quantity = name, "displacement"
     unit = UNITS[quantity]
-    if place.rpartition(".")[2] in ("θx", "θy", "θz", "rx", "ry", "rz"):
+    if is_rotation(place):
         unit = unit.replace("m", "rad", 1)
     return (core.CHANNEL_KINDS[quantity], system.row(place), 0, 0), unit
 
