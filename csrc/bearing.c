@@ -89,5 +89,12 @@ bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const 
     }
     memcpy(loads, work.force, (size_t)data->n_balls * sizeof *loads);
     free(memory);
-    return BD_OK;
+
+    /* 0 times a number that is not finite is NaN */
+    double poison = 0.0;
+    for (size_t k = 0; k < n; k++)
+        poison += 0.0 * g[k];
+    for (size_t kl = 0; kl < n * n; kl++)
+        poison += 0.0 * K[kl] + 0.0 * C[kl];
+    return poison == 0.0 ? BD_OK : BD_NOT_FINITE;
 }

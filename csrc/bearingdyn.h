@@ -260,7 +260,8 @@ void bd_work_free(bd_work *work);               /* safe on NULL */
 bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                      bd_work *work);
 
-/* The acceleration that satisfies (1) at the state's own displacement, velocity and branch stress. */
+/* The acceleration that satisfies (1) at the state's own displacement, velocity and branch stress.
+ * Notes:    before bd_prepare, whose operators it overwrites; without BD_OK the acceleration is void */
 bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                    bd_work *work, double *flat);
 
@@ -273,7 +274,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
                    long long n_steps, long long decimate, double *record, bd_report *report);
 
 /* Force and tangents of one bearing by itself, rows padded to the caller's n_coefs.
- * Returned: g (n_coefs), K and C (n_coefs x n_coefs row-major) = dg/dz, dg/dzdot, loads (n_balls) */
+ * Returned: g (n_coefs), K and C (n_coefs x n_coefs row-major) = dg/dz, dg/dzdot, loads (n_balls);
+ *           BD_NOT_FINITE where they overflow */
 bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const double *z_rate,
                             double angle, double cage_speed, double *g, double *K, double *C,
                             double *loads);
@@ -297,7 +299,8 @@ void bd_harmonic_work_free(bd_harmonic_work *work);
 /* Response at frequencies first .. first + count - 1.
  * Returned: response (n_omega x n_out x n_in) complex interleaved, those rows written
  * Notes:    each block of the structure is solved by itself and the blocks are joined through the few
- *           bearing coefficients; at omega = 0, where a free block is singular, all is solved as one.
+ *           bearing coefficients; where a block by itself is singular or nearly so (one that floats, at low
+ *           frequency), all is solved as one.
  * Reference: paper eq (20), with G' (omega) in its deviatoric part. */
 bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const bd_lapack *lapack,
                       bd_harmonic_work *work, int first, int count, double *response);

@@ -222,7 +222,12 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
     return 0;
 }
 
-/* Block by block, then joined through the bearings; the answer is left in RX's first n_in columns. */
+/* Joining the blocks cancels as many digits as I + Z B X_B is large: near a resonance of a block by itself, and
+ * at low frequency where a block floats. Beyond this all is solved as one. */
+static const double largest_joint = 1e6;
+
+/* Block by block, then joined through the bearings; the answer is left in RX's first n_in columns.
+ * Returned: 0, or nonzero where that would be singular or lose too many digits. */
 static int solve_blocks(const bd_model *model, const bd_harmonic_data *data, const bd_lapack *lapack,
                         bd_harmonic_work *work, int index)
 {
@@ -235,16 +240,21 @@ static int solve_blocks(const bd_model *model, const bd_harmonic_data *data, con
             return 1;
 
     /* (I + Z B X_B) g = Z B X_F */
+    double largest = 0.0;
     for (size_t c = 0; c < n_in + m; c++)
         for (size_t k = 0; k < m; k++) {
             complex_t sum = c == n_in + k ? 1.0 : 0.0;
             for (size_t l = 0; l < m; l++)
                 sum += work->Z[k * m + l] * work->BX[c * m + l];
-            if (c < n_in)
+            if (c < n_in) {
                 work->g[c * m + k] = sum;
-            else
+            } else {
                 work->A[(c - n_in) * m + k] = sum;
+                largest = fmax(largest, fabs(creal(sum)) + fabs(cimag(sum)));
+            }
         }
+    if (!(largest <= largest_joint))
+        return 1;
     if (bd_solve_complex(lapack, model->n_coefs, (double *)work->A, work->pivots, data->n_in,
                          (double *)work->g))
         return 1;
@@ -268,9 +278,10 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
         for (size_t kl = 0; kl < m * m; kl++)
             work->Z[kl] = complex_of(work->Kb[kl], omega * work->Cb[kl]);
         /* at rest a block that floats is singular by itself, though held by its bearings */
-        const bool whole = omega == 0.0 || model->n_blocks == 1;
-        if (whole ? solve_whole(model, data, lapack, work, index)
-                  : solve_blocks(model, data, lapack, work, index))
+        bool whole = omega == 0.0 || model->n_blocks == 1;
+        if (!whole)
+            whole = solve_blocks(model, data, lapack, work, index) != 0;
+        if (whole && solve_whole(model, data, lapack, work, index))
             return BD_SINGULAR_DYNAMIC;
 
         for (size_t o = 0; o < n_out; o++)
@@ -281,6 +292,8 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
                         value += work->row[o * n + i] * work->X[c * n + i];
                 else
                     value = work->RX[c * n_out + o];
+                if (!isfinite(creal(value)) || !isfinite(cimag(value)))
+                    return BD_NOT_FINITE;
                 out[2 * (o * n_in + c)] = creal(value);
                 out[2 * (o * n_in + c) + 1] = cimag(value);
             }

@@ -163,3 +163,27 @@ def test_harmonic_is_the_twins(name: str) -> None:
     scale = np.abs(expected).max(axis=(1, 2), keepdims=True)
     # bearings of some 1e8 N/m against blocks of 1e4 N/m: four digits cancel in joining the blocks
     assert (np.abs(got - expected) / scale).max() < 1e-10
+
+
+def test_harmonic_of_a_block_that_floats_is_the_twins() -> None:
+    """A rotor held by its bearings alone: at low frequency it is next to singular by itself.
+
+    Stiffnesses of 1e8 N/m against ω²M: joining the blocks alone would lose 11 digits at 1 mHz.
+    """
+    system, _, rng = make("motor", seed=2)
+    floating = np.flatnonzero(system.bearings[0][1][0] * system.bearings[1][1][0])
+    assert len(floating) == 7
+    for matrix in (system.K, system.C, system.G, system.N):
+        matrix[np.ix_(floating, floating)] = 0.0
+    model = c_model(system)
+    assert model.blocks == 3
+    A = rng.standard_normal((10, 10))
+    Kb, Cb = 1e8 * (A @ A.T + np.eye(10)), 30.0 * np.eye(10)
+    forces, rows = rng.standard_normal((2, 18)), rng.standard_normal((2, 18))
+    omega = 2 * np.pi * np.geomspace(1e-3, 1e3, 25)
+    modulus = np.full((25, 2), 1e6 + 2e5j)
+    got = core.harmonic(model, omega, modulus, Kb, Cb, forces, rows)
+    expected = twin.harmonic(system, omega, modulus, Kb, Cb, forces, rows, 0.0)
+    scale = np.abs(expected).max(axis=(1, 2), keepdims=True)
+    # joined only while at most 6 digits of 16 cancel; one or two more for the condition of the parts
+    assert (np.abs(got - expected) / scale).max() < 1e-8
