@@ -88,8 +88,8 @@ def test_a_name_is_given_once():
         (lambda a: a.load("shaft.left", (1,) * 6, time=[0, 1], value=[1.0]), "2 samples and value 1"),
         (lambda a: a.load("shaft.left", (1,) * 6, time=[0, 2, 1], value=[0, 1, 2]), "time must increase"),
         (lambda a: a.load("shaft.left", (1,) * 6, time=[0, 1], value=[0, np.nan]), "finite"),
-        (lambda a: a.unbalance("shaft.end", -1e-4), "zero or positive"),
-        (lambda a: a.unbalance("shaft.end", np.nan), "zero or positive"),
+        (lambda a: a.unbalance("shaft.end", -1e-4), "finite and not negative"),
+        (lambda a: a.unbalance("shaft.end", np.nan), "finite and not negative"),
     ],
 )
 def test_bad_input_is_named(act, message):

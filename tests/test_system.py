@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from bearingdyn.analysis import equilibrium
+from bearingdyn.analysis import equilibrium, frequency_response, modes, transient
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.fem.beam import Section
 from bearingdyn.material import Maxwell
-from bearingdyn.parts import Layer, RigidBody, Shaft
+from bearingdyn.parts import Layer, RigidBody, Ring, Shaft
 from bearingdyn.system import System, assemble
 
 RUBBER = Maxwell(G0=1e6, G=[2e6, 3e6], tau=[1e-3, 1e-5], eta0=5.0, K=2e9, density=1200.0)
@@ -148,10 +148,72 @@ class TestCreep:
         # 100 N on 1e7 N/m; the layer's axial shapes keep 1e-5 of that as a resistance to volume
         assert equilibrium(app).displacement("ring.centre")[2] == pytest.approx(1e-5, rel=1e-4)
 
+    def test_a_shaft_beside_the_layer_carries_the_load(self):
+        deflection = []
+        for with_layer in (False, True):
+            app = Application()
+            app.add("shaft", Shaft([Section(0.1, 0.02)], seats={"free": 0.0, "held": 0.1}, f_max=3e3))
+            app.ground("shaft.held")
+            if with_layer:
+                app.add("layer", layer(CREEPING))
+                app.connect("shaft.free", "layer.inner")
+                app.ground("layer.outer")
+            else:
+                app.free("shaft.free")
+            app.load("shaft.free", (0, 100.0, 0, 0, 0, 0))
+            deflection.append(equilibrium(app).displacement("shaft.free")[1])
+        bending = 100 * 0.1**3 / (3 * 210e9 * math.pi / 64 * 0.02**4)
+        k = 6 * 1.3**2 / (7 + 12 * 0.3 + 4 * 0.3**2)
+        shear = 100 * 0.1 / (k * 210e9 / 2.6 * math.pi / 4 * 0.02**2)
+        # a Timoshenko cantilever, exact at its nodes; round-off of its short elements
+        assert deflection[0] == pytest.approx(bending + shear, rel=1e-6)
+        # what the creeping layer's shapes resist to volume
+        assert deflection[1] == pytest.approx(deflection[0], rel=1e-3)
+
     def test_without_dead_load_a_creeping_layer_is_no_obstacle(self):
         app = layered_rotor(CREEPING)
         app.load("rotor.centre", (0, 10.0, 0, 0, 0, 0), frequency=100.0)
         assert not equilibrium(app).x.any()
+
+
+class TestTurning:
+    """Damping of a part that turns with the shaft needs its circulatory forces; only a Shaft has them."""
+
+    @staticmethod
+    def rotor_with(part, interface: str) -> Application:
+        app = Application()
+        app.add("rotor", ROTOR)
+        app.add("cap", RigidBody(0.1, (1e-4,) * 3))
+        app.add("part", part)
+        app.connect("rotor.centre", f"part.{interface}")
+        app.free("cap.centre")
+        app.free("part.outer")
+        return app
+
+    def test_a_layer_on_the_shaft_is_refused_at_speed(self):
+        system = assemble(self.rotor_with(layer(), "inner"))
+        system.check_speed(0.0)
+        for call in (
+            lambda: frequency_response(system, [10.0], ["rotor.centre.y"], ["rotor.centre.y"], speed=1.0),
+            lambda: modes(system, speed=1.0, damped=True),
+            lambda: transient(system, speed=1.0, dt=1e-5, steps=1, record=[]),
+        ):
+            with pytest.raises(ValueError, match=r"'part' turns with the shaft"):
+                call()
+
+    def test_a_damped_ring_on_the_shaft_likewise_but_not_an_undamped_one(self):
+        damped = assemble(self.rotor_with(Ring(0.02, 0.03, 0.01, damping=0.01), "inner"))
+        with pytest.raises(ValueError, match=r"'part' turns with the shaft"):
+            damped.check_speed(100.0)
+        assemble(self.rotor_with(Ring(0.02, 0.03, 0.01), "inner")).check_speed(100.0)
+
+    def test_a_layer_outside_the_bearings_and_a_damped_shaft_may_turn(self, system):
+        system.check_speed(500.0)
+        app = layered_rotor()
+        app.add("shaft", Shaft([Section(0.2, 0.02)], seats={"seat": 0.1}, damping=0.01, f_max=3e3))
+        app.connect("shaft.seat", "rotor.centre")
+        assemble(app).check_speed(500.0)
+        assert app.turning_parts() == {"shaft", "rotor"}
 
 
 class TestModalCoordinates:

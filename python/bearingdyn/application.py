@@ -263,6 +263,16 @@ class Application:
         lines += [f"  {load.where}: {load.kind} {np.round(load.vector, 6).tolist()}" for load in self.loads]
         return "\n".join(lines)
 
+    def turning_parts(self) -> set[str]:
+        """Parts that turn with the shaft: those with gyroscopic forces, and what is connected to them."""
+        turning = {name for name, element in self.parts.items() if np.any(element.G)}
+        pairs = [{c.a.partition(".")[0], c.b.partition(".")[0]} for c in self.connections]
+        while True:
+            joined = {name for pair in pairs if pair & turning for name in pair}
+            if joined <= turning:
+                return turning
+            turning |= joined
+
     def check_joints(self) -> None:
         """Every interface must be used or declared free.
 

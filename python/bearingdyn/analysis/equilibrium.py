@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -96,6 +97,13 @@ def equilibrium(app: Application | System, angle: float = 0.0) -> Equilibrium:
     Raises ValueError where a body is free to move, ArithmeticError where no balance is found.
     """
     system = app if isinstance(app, System) else assemble(app)
+    if not math.isfinite(angle):
+        raise ValueError(f"angle is {angle}; the cage angle must be finite, in rad")
+    # the angle stays with the system, so that what starts from here finds the balls where they are
+    turned = tuple(
+        replace(t, bearing=replace(t.bearing, angle0=t.bearing.angle0 + angle)) for t in system.bearings
+    )
+    system = replace(system, bearings=turned)
     modal, T = system.modal()
     # motions that nothing holds (the spin of shafts) are held here: no load drives them
     free = T.T @ system.M @ system.free_motions()
@@ -108,7 +116,7 @@ def equilibrium(app: Application | System, angle: float = 0.0) -> Equilibrium:
 
     def press(z: Array) -> list[tuple[Array, Array, Array, Array]]:
         return [
-            core.bearing_force(k, z[a:b], rest, k.angle0 + angle, 0.0)
+            core.bearing_force(k, z[a:b], rest, k.angle0, 0.0)
             for k, a, b, rest in zip(kernels, sizes, sizes[1:], still, strict=False)
         ]
 

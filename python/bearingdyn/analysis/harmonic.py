@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -51,14 +50,13 @@ def frequency_response(
 
     At 0 Hz the response is the static one; the free spin of a shaft, which no such force drives, is left out.
 
-    Raises ValueError for an unknown channel or quantity, a negative frequency, bearings without equilibrium;
+    Raises ValueError for an unknown channel or quantity, a negative frequency, bearings without equilibrium,
+    a damped part that would turn;
     ArithmeticError where the dynamic stiffness is singular.
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
     if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f >= 0).all()):
         raise ValueError("frequency must be a list of finite values of zero or more, in Hz")
-    if not math.isfinite(speed):
-        raise ValueError(f"speed is {speed}; it must be finite, in rad/s")
     powers = {"displacement": 0, "velocity": 1, "acceleration": 2}
     if quantity not in powers:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {sorted(powers)}")
@@ -71,6 +69,7 @@ def frequency_response(
                 "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
             )
         K = C = np.zeros((0, 0))
+    system.check_speed(speed)
     force = np.array([system.row(name) for name in inputs]).reshape(-1, system.n)
     row = np.array([system.row(name) for name in outputs]).reshape(-1, system.n)
 

@@ -38,9 +38,10 @@ def modes(
     Returns a Dataset over "mode": frequency (Hz), damping_ratio, eigenvalue (rad/s, complex), shape (mode,
     coordinate) complex, of the system's coordinates; motion of a place is rows(place) @ shape.
 
-    Raises ValueError for bearings without an equilibrium.
+    Raises ValueError for bearings without an equilibrium, or a damped part that would turn at speed.
     """
     system = _linear(source)
+    system.check_speed(speed)
     if damped:
         values, shapes = _damped(system, speed)
     elif speed == 0.0:

@@ -71,7 +71,7 @@ def transient(
     Raises
     ------
     ValueError
-        For dt ≤ 0, negative steps, an unknown channel, before any work.
+        For dt ≤ 0, negative steps, an unknown channel, a damped part that would turn, before any work.
     SolverError
         When Newton's iteration diverges; its `partial` is the Dataset up to there.
     Interrupted
@@ -82,11 +82,10 @@ def transient(
     for name, value, least in (("steps", steps, 0), ("settle", settle, 0), ("decimate", decimate, 1)):
         if not value >= least or value % 1 != 0:
             raise ValueError(f"{name} is {value}; it must be a whole number of at least {least}")
-    if not math.isfinite(speed):
-        raise ValueError(f"speed is {speed}; it must be finite, in rad/s")
     if resume is not None and initial:
         raise ValueError("resume goes on from its own state and initial sets another; give one of the two")
     system = source.system if isinstance(source, Equilibrium) else source
+    system.check_speed(speed)
     modal, T = system.modal()
     channels, units = zip(*(_channel(modal, name) for name in record), strict=True) if record else ((), ())
     model = modal.model(list(channels))
@@ -99,12 +98,8 @@ def transient(
         state, start = np.asarray(resume["state"].values, dtype=np.float64), False
     else:
         x = source.x.copy() if isinstance(source, Equilibrium) else np.zeros(system.n)
-        for name, target in (initial or {}).items():
-            rows = system.rows(name)
-            wanted = np.asarray(target, dtype=np.float64)
-            if wanted.shape != (rows.shape[0],) or not np.isfinite(wanted).all():
-                raise ValueError(f"initial[{name!r}] must be {rows.shape[0]} finite numbers, not {target!r}")
-            x += np.linalg.pinv(rows) @ (wanted - rows @ x)
+        if initial:
+            x = _moved(system, x, initial)
         state, start = model.state(0.0, T.T @ system.M @ x, np.zeros(system.n)), True
 
     total = settle + steps
@@ -143,6 +138,22 @@ def transient(
             result,
         )
     return result
+
+
+def _moved(system: System, x: Array, initial: Mapping[str, ArrayLike]) -> Array:
+    """Coordinates nearest to x (n,) that put every place where it is wanted."""
+    for name, target in initial.items():
+        given = np.asarray(target, dtype=np.float64)
+        if given.shape != (len(system.rows(name)),) or not np.isfinite(given).all():
+            raise ValueError(
+                f"initial[{name!r}] must be {len(system.rows(name))} finite numbers, not {target!r}"
+            )
+    rows = np.vstack([system.rows(name) for name in initial])
+    wanted = np.concatenate([np.asarray(target, dtype=np.float64) for target in initial.values()])
+    x = x + np.linalg.pinv(rows) @ (wanted - rows @ x)
+    if np.abs(rows @ x - wanted).max() > 1e-9 * np.abs(wanted).max(initial=1e-9):
+        raise ValueError(f"initial asks {sorted(initial)} for a motion they cannot make together")
+    return x
 
 
 def _channel(system: System, name: str) -> tuple[Channel, str]:

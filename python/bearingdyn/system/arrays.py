@@ -18,7 +18,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from bearingdyn import core
-from bearingdyn.application import COMPONENTS, GROUND, Application
+from bearingdyn.application import COMPONENTS
 from bearingdyn.bearing import BallBearing
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.material import Maxwell
@@ -27,8 +27,6 @@ Array = NDArray[np.float64]
 
 QUANTITIES = ("displacement", "velocity", "acceleration")
 ALIASES = {"rx": "θx", "ry": "θy", "rz": "θz"}
-# below this share of the largest (scaled) eigenvalue a deviatoric matrix has no strain: its rigid motions
-RANK = 1e-11
 # below this share of the largest eigenvalue of (K, M) its round-off may hide a slow mode
 SLOW = 1e-6
 # round-off left in φᵀKφ, as a share of |φ|ᵀ|K||φ|, and in the slow modes, as a share of the fastest of them
@@ -80,6 +78,8 @@ class System:
     bearings: tuple[BearingTerm, ...]
     loads: tuple[LoadTerm, ...]
     outputs: Mapping[str, Array]
+    standstill: tuple[str, ...] = ()
+    """Parts that turn with the shaft, but whose damping is written for the fixed frame."""
 
     @property
     def n(self) -> int:
@@ -114,6 +114,20 @@ class System:
             )
         return np.asarray(rows[COMPONENTS.index(component)])
 
+    def check_speed(self, speed: float) -> None:
+        """Refuse a speed (rad/s) that is not finite, or at which a part's damping would be wrong: ValueError.
+
+        Damping of material that turns acts on ẋ − Ω J x; without its circulatory part a whirl that it drives
+        unstable would look damped.
+        """
+        if not math.isfinite(speed):
+            raise ValueError(f"speed is {speed}; it must be finite, in rad/s")
+        if speed != 0.0 and self.standstill:
+            raise ValueError(
+                f"{self.standstill[0]!r} turns with the shaft, and its damping is known for a part at rest "
+                f"only; put it outside the bearings, or compute at speed 0"
+            )
+
     def static_load(self) -> Array:
         """Sum of the constant loads, (n,)."""
         return sum((p.p_cos for p in self.loads if p.kind == "constant"), np.zeros(self.n))
@@ -122,7 +136,7 @@ class System:
         """K with every layer at its "relaxed" modulus G0 or its "instantaneous" one, (n, n)."""
         K = self.K.copy()
         for layer in self.layers:
-            G = _static_modulus(layer, modulus)
+            G = static_modulus(layer, modulus)
             K += 2.0 * G * (layer.L @ layer.L.T)
         return K
 
@@ -167,18 +181,18 @@ class System:
         squares = np.zeros(self.n)
         for block in self.blocks():
             inside = np.ix_(block, block)
-            squares[block], T[inside] = _natural(K[inside], self.M[inside])
+            squares[block], T[inside] = natural(K[inside], self.M[inside])
         modal = self.transformed(T)
         relaxed = np.zeros((self.n, self.n))
         for layer in modal.layers:
-            relaxed += 2.0 * _static_modulus(layer, "relaxed") * (layer.L @ layer.L.T)
+            relaxed += 2.0 * static_modulus(layer, "relaxed") * (layer.L @ layer.L.T)
         # K + relaxed, formed again in `stiffness`, is diagonal to the last bit
         return replace(modal, M=np.eye(self.n), K=np.diag(squares) - relaxed), T
 
     def free_motions(self, modulus: str = "relaxed") -> Array:
         """Motions (n, m) that nothing holds, bearings counted as springs, mass-normalised."""
         K = self.stiffness(modulus) + TEST_SPRING * (self.B.T @ self.B)
-        squares, shapes = _natural(K, self.M)
+        squares, shapes = natural(K, self.M)
         return np.asarray(shapes[:, squares <= 0.0])
 
     def model(self, channels: list[tuple[int, Array | None, int, int]], relaxed: bool = True) -> core.Model:
@@ -204,7 +218,7 @@ class System:
         )
 
 
-def _natural(K: Array, M: Array) -> tuple[Array, Array]:
+def natural(K: Array, M: Array) -> tuple[Array, Array]:
     """ω² (n,) and mass-normalised shapes (n, n) of a symmetric (K, M); what is only round-off is zero.
 
     A suspension of 1 Hz beside a layer's inner mode of 1 MHz is 1e-12 of it: the slow modes are therefore
@@ -237,7 +251,7 @@ def is_rotation(channel: str) -> bool:
     return ALIASES.get(component, component) in COMPONENTS[3:]
 
 
-def _static_modulus(layer: LayerTerm, modulus: str) -> float:
+def static_modulus(layer: LayerTerm, modulus: str) -> float:
     if not isinstance(layer.material, Maxwell):
         raise ValueError(
             f"layer {layer.part!r} has the material {type(layer.material).__name__}; statics and the time "
@@ -248,184 +262,3 @@ def _static_modulus(layer: LayerTerm, modulus: str) -> float:
     if modulus == "instantaneous":
         return float(layer.material.G_instantaneous)
     raise ValueError(f'modulus is {modulus!r}; it must be "relaxed" or "instantaneous"')
-
-
-def _factor(H: Array) -> Array:
-    """L (n, rank) with H = L Lᵀ, rigid motions left out."""
-    scale = np.sqrt(np.diag(H))
-    scale[scale == 0.0] = 1.0
-    values, vectors = np.linalg.eigh(H / np.outer(scale, scale))
-    keep = values > RANK * values[-1]
-    return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
-
-
-def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
-    """Global index of every part's coordinates (-1: held by the ground), and how many there are."""
-    local = {name: np.full(element.n, -2, dtype=np.intp) for name, element in app.parts.items()}
-
-    def places(interface: str) -> tuple[str, NDArray[np.intp]]:
-        part, _, name = interface.partition(".")
-        return part, app.parts[part].interfaces[name]
-
-    partner = {c.a: c.b for c in app.connections} | {c.b: c.a for c in app.connections}
-    for support in app.supports.values():
-        if support.rigid:
-            for interface in (support.interface, partner.get(support.interface)):
-                if interface is not None:
-                    part, index = places(interface)
-                    local[part][index] = -1
-    count = 0
-    for part, element in app.parts.items():
-        for name, index in element.interfaces.items():
-            other = partner.get(f"{part}.{name}")
-            if local[part][index[0]] == -2 and other is not None:
-                other_part, other_index = places(other)
-                if local[other_part][other_index[0]] >= 0:
-                    local[part][index] = local[other_part][other_index]
-        for i in range(element.n):
-            if local[part][i] == -2:
-                local[part][i] = count
-                count += 1
-    return local, count
-
-
-def assemble(app: Application) -> System:
-    """An application as arrays.
-
-    Raises ValueError for an interface left loose, a body that nothing holds (named, with its direction), a
-    dead load on a layer without relaxed modulus.
-    """
-    app.check_joints()
-    index, n = _coordinates(app)
-    if n == 0:
-        raise ValueError("everything is grounded rigidly; nothing is left to move")
-
-    select = {}  # part coordinates = select @ system coordinates
-    for part, place in index.items():
-        select[part] = np.zeros((place.size, n))
-        moving = np.flatnonzero(place >= 0)
-        select[part][moving, place[moving]] = 1.0
-
-    M, C, K, G, N, firm = (np.zeros((n, n)) for _ in range(6))
-    layers: list[LayerTerm] = []
-    outputs: dict[str, Array] = {}
-    for part, element in app.parts.items():
-        own = (element.M, element.C, element.K, element.G, element.N)
-        for total, A in zip((M, C, K, G, N), own, strict=True):
-            total += select[part].T @ np.asarray(A) @ select[part]
-        for term in element.viscoelastic:
-            layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
-        relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
-        if all(relaxed):
-            deviatoric = (2.0 * G0 * t.H for G0, t in zip(relaxed, element.viscoelastic, strict=True))
-            firm += select[part].T @ sum(deviatoric, np.asarray(element.K)) @ select[part]
-        for name in (*element.interfaces, *element.outputs):
-            outputs[f"{part}.{name}"] = element.rows(name) @ select[part]
-
-    for support in app.supports.values():
-        rows = outputs[support.interface]
-        for total, values in ((K, support.stiffness), (firm, support.stiffness), (C, support.damping)):
-            if values is not None:
-                total += rows.T @ (values[:, None] * rows)
-
-    bearings = []
-    for hung in app.bearings.values():
-        relative = outputs[hung.inner] - (outputs[hung.outer] if hung.outer != GROUND else 0.0)
-        bearings.append(BearingTerm(hung.name, hung.bearing, hung.bearing.coefficients() @ relative))
-
-    system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs)
-    _check_held(system, firm)
-    return system
-
-
-def _loads(app: Application, outputs: Mapping[str, Array]) -> tuple[LoadTerm, ...]:
-    terms = []
-    nothing = np.zeros(0)
-    for load in app.loads:
-        rows = outputs[load.where]
-        force = load.vector[: rows.shape[0]] @ rows
-        zero = np.zeros_like(force)
-        c, s = math.cos(load.phase), math.sin(load.phase)
-        if load.kind == "harmonic":
-            terms.append(LoadTerm("harmonic", load.omega, c * force, -s * force, nothing, nothing))
-        elif load.kind == "rotating":
-            # u (cos(θ + φ), sin(θ + φ)) = cos θ · u (c, s) + sin θ · u (−s, c)
-            along, across = c * rows[0] + s * rows[1], -s * rows[0] + c * rows[1]
-            u = load.unbalance
-            terms.append(LoadTerm("rotating", 0.0, u * along, u * across, nothing, nothing))
-        elif load.kind == "sampled":
-            assert load.time is not None
-            assert load.value is not None
-            terms.append(LoadTerm("sampled", 0.0, force, zero, load.time, load.value))
-        else:
-            terms.append(LoadTerm("constant", 0.0, force, zero, nothing, nothing))
-    return tuple(terms)
-
-
-def _check_held(system: System, firm: Array) -> None:
-    """Nothing may be free to move but the spin of what the bearings carry.
-
-    firm: (n, n) stiffness without the parts that creep (G0 = 0); under a constant load it alone counts.
-    """
-    unsupported = np.flatnonzero(np.diag(system.M) <= 0.0)
-    if unsupported.size:
-        raise ValueError(
-            f"{unsupported.size} coordinates have no mass (first: {_describe(system, int(unsupported[0]))}); "
-            f"give every body a mass and moments of inertia"
-        )
-    load = system.static_load()
-    if not system.bearings and not load.any():
-        return  # a free body may be analysed as such: its rigid modes are its answer
-    free = system.free_motions("instantaneous")
-    if free.shape[1] == 0:
-        _check_creep(system, firm, free)
-        return
-    sites = [(name, rows) for name, rows in system.outputs.items() if rows.shape[0] == 6]
-    moving = np.vstack([rows[:5] @ free for _, rows in sites])
-    spin = np.vstack([rows[5] @ free for _, rows in sites])
-    strengths = np.linalg.svd(moving, compute_uv=False)
-    directions = np.linalg.svd(moving)[2]
-    if strengths[0] > 1e-6 * max(float(np.abs(spin).max()), strengths[0] * 1e-3):
-        motion = free @ directions[0]
-        name, component = max(
-            ((name, k) for name, rows in sites for k in range(5)),
-            key=lambda site: abs(float(dict(sites)[site[0]][site[1]] @ motion)),
-        )
-        raise ValueError(
-            f"{name.partition('.')[0]!r} is free to move in {COMPONENTS[component]} (seen at {name}); "
-            f"connect it, ground it or carry it by a bearing"
-        )
-    torque = free.T @ load
-    if np.abs(torque).max() > 1e-9 * max(1.0, float(np.abs(load).max())):
-        raise ValueError(
-            "a constant load turns a shaft about z, where its bearings do not hold it; "
-            "ground that rotation or leave the torque out"
-        )
-    _check_creep(system, firm, free)
-
-
-def _check_creep(system: System, firm: Array, free: Array) -> None:
-    """A constant load may not rest on a layer without relaxed modulus.
-
-    In such a layer the reduced shapes still resist a change of volume; the rubber itself would flow.
-    """
-    soft = [t.part for t in system.layers if _static_modulus(t, "relaxed") == 0.0]
-    load = system.static_load()
-    if not soft or not load.any():
-        return
-    squares, shapes = _natural(firm + TEST_SPRING * (system.B.T @ system.B), system.M)
-    creeping = shapes[:, squares <= 0.0]
-    creeping = creeping - free @ (free.T @ (system.M @ creeping))
-    if np.abs(creeping.T @ load).max(initial=0.0) > 1e-9 * float(np.abs(shapes.T @ load).max()):
-        raise ValueError(
-            f"layer {soft[0]!r} has G0 = 0: it creeps without end under a constant load and there is no "
-            f"equilibrium; fit the material with a relaxed modulus G0 > 0"
-        )
-
-
-def _describe(system: System, coordinate: int) -> str:
-    for name, rows in system.outputs.items():
-        for k, row in enumerate(rows):
-            if row[coordinate] != 0.0:
-                return f"{name}.{COMPONENTS[k]}"
-    return f"coordinate {coordinate}"

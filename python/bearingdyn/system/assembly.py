@@ -1,0 +1,134 @@
+"""An application's parts, joints, bearings and loads as one system."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bearingdyn.application import GROUND, Application
+from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
+from bearingdyn.system.held import check_held
+
+Array = NDArray[np.float64]
+
+# below this share of the largest (scaled) eigenvalue a deviatoric matrix has no strain: its rigid motions
+RANK = 1e-11
+
+
+def assemble(app: Application) -> System:
+    """An application as arrays.
+
+    Raises ValueError for an interface left loose, a body that nothing holds (named, with its direction), a
+    dead load on a layer without relaxed modulus.
+    """
+    app.check_joints()
+    index, n = _coordinates(app)
+    if n == 0:
+        raise ValueError("everything is grounded rigidly; nothing is left to move")
+
+    select = {}  # part coordinates = select @ system coordinates
+    for part, place in index.items():
+        select[part] = np.zeros((place.size, n))
+        moving = np.flatnonzero(place >= 0)
+        select[part][moving, place[moving]] = 1.0
+
+    M, C, K, G, N, firm = (np.zeros((n, n)) for _ in range(6))
+    layers: list[LayerTerm] = []
+    outputs: dict[str, Array] = {}
+    for part, element in app.parts.items():
+        own = (element.M, element.C, element.K, element.G, element.N)
+        for total, A in zip((M, C, K, G, N), own, strict=True):
+            total += select[part].T @ np.asarray(A) @ select[part]
+        for term in element.viscoelastic:
+            layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
+        relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
+        if all(relaxed):
+            deviatoric = (2.0 * G0 * t.H for G0, t in zip(relaxed, element.viscoelastic, strict=True))
+            firm += select[part].T @ sum(deviatoric, np.asarray(element.K)) @ select[part]
+        for name in (*element.interfaces, *element.outputs):
+            outputs[f"{part}.{name}"] = element.rows(name) @ select[part]
+
+    for support in app.supports.values():
+        rows = outputs[support.interface]
+        for total, values in ((K, support.stiffness), (firm, support.stiffness), (C, support.damping)):
+            if values is not None:
+                total += rows.T @ (values[:, None] * rows)
+
+    bearings = []
+    for hung in app.bearings.values():
+        relative = outputs[hung.inner] - (outputs[hung.outer] if hung.outer != GROUND else 0.0)
+        bearings.append(BearingTerm(hung.name, hung.bearing, hung.bearing.coefficients() @ relative))
+
+    turning = {name: app.parts[name] for name in app.parts if name in app.turning_parts()}
+    standstill = tuple(
+        name for name, e in turning.items() if e.viscoelastic or (np.any(e.C) and not np.any(e.N))
+    )
+    system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill)
+    check_held(system, firm)
+    return system
+
+
+def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
+    """Global index of every part's coordinates (-1: held by the ground), and how many there are."""
+    local = {name: np.full(element.n, -2, dtype=np.intp) for name, element in app.parts.items()}
+
+    def places(interface: str) -> tuple[str, NDArray[np.intp]]:
+        part, _, name = interface.partition(".")
+        return part, app.parts[part].interfaces[name]
+
+    partner = {c.a: c.b for c in app.connections} | {c.b: c.a for c in app.connections}
+    for support in app.supports.values():
+        if support.rigid:
+            for interface in (support.interface, partner.get(support.interface)):
+                if interface is not None:
+                    part, index = places(interface)
+                    local[part][index] = -1
+    count = 0
+    for part, element in app.parts.items():
+        for name, index in element.interfaces.items():
+            other = partner.get(f"{part}.{name}")
+            if local[part][index[0]] == -2 and other is not None:
+                other_part, other_index = places(other)
+                if local[other_part][other_index[0]] >= 0:
+                    local[part][index] = local[other_part][other_index]
+        for i in range(element.n):
+            if local[part][i] == -2:
+                local[part][i] = count
+                count += 1
+    return local, count
+
+
+def _factor(H: Array) -> Array:
+    """L (n, rank) with H = L Lᵀ, rigid motions left out."""
+    scale = np.sqrt(np.diag(H))
+    scale[scale == 0.0] = 1.0
+    values, vectors = np.linalg.eigh(H / np.outer(scale, scale))
+    keep = values > RANK * values[-1]
+    return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
+
+
+def _loads(app: Application, outputs: Mapping[str, Array]) -> tuple[LoadTerm, ...]:
+    terms = []
+    nothing = np.zeros(0)
+    for load in app.loads:
+        rows = outputs[load.where]
+        force = load.vector[: rows.shape[0]] @ rows
+        zero = np.zeros_like(force)
+        c, s = math.cos(load.phase), math.sin(load.phase)
+        if load.kind == "harmonic":
+            terms.append(LoadTerm("harmonic", load.omega, c * force, -s * force, nothing, nothing))
+        elif load.kind == "rotating":
+            # u (cos(θ + φ), sin(θ + φ)) = cos θ · u (c, s) + sin θ · u (−s, c)
+            along, across = c * rows[0] + s * rows[1], -s * rows[0] + c * rows[1]
+            u = load.unbalance
+            terms.append(LoadTerm("rotating", 0.0, u * along, u * across, nothing, nothing))
+        elif load.kind == "sampled":
+            assert load.time is not None
+            assert load.value is not None
+            terms.append(LoadTerm("sampled", 0.0, force, zero, load.time, load.value))
+        else:
+            terms.append(LoadTerm("constant", 0.0, force, zero, nothing, nothing))
+    return tuple(terms)
