@@ -5,9 +5,9 @@
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 #define NPY_NO_DEPRECATED_API NPY_2_0_API_VERSION
-#include <numpy/arrayobject.h>
 #include <limits.h>
 #include <math.h>
+#include <numpy/arrayobject.h>
 #include <stdint.h>
 #include <string.h>
 #include <time.h>
@@ -106,12 +106,14 @@ static PyObject *raise_status(bd_status status, const char *what)
 static PyArrayObject *private_copy(PyObject *keep, PyObject *object, int type, const char *name,
                                    int n_dims, npy_intp rows, npy_intp columns)
 {
-    PyObject *array = PyArray_FROMANY(object, type, n_dims, n_dims,
-                                      NPY_ARRAY_CARRAY | NPY_ARRAY_ENSURECOPY | NPY_ARRAY_NOTSWAPPED);
+    PyObject *array =
+        PyArray_FROMANY(object, type, n_dims, n_dims,
+                        NPY_ARRAY_CARRAY | NPY_ARRAY_ENSURECOPY | NPY_ARRAY_NOTSWAPPED);
     if (!array) {
         if (PyErr_ExceptionMatches(PyExc_ValueError) || PyErr_ExceptionMatches(PyExc_TypeError)) {
             PyErr_Clear();
-            PyErr_Format(PyExc_ValueError, "%s must be a %d-dimensional array of numbers", name, n_dims);
+            PyErr_Format(PyExc_ValueError, "%s must be a %d-dimensional array of numbers", name,
+                         n_dims);
         }
         return NULL;
     }
@@ -121,8 +123,9 @@ static PyArrayObject *private_copy(PyObject *keep, PyObject *object, int type, c
         return NULL;
     const npy_intp *shape = PyArray_DIMS((PyArrayObject *)array);
     if ((rows >= 0 && shape[0] != rows) || (n_dims > 1 && columns >= 0 && shape[1] != columns)) {
-        PyErr_Format(PyExc_ValueError, "%s has %zd rows and %zd columns; expected %zd and %zd (-1: any)",
-                     name, (Py_ssize_t)shape[0], (Py_ssize_t)(n_dims > 1 ? shape[1] : 1),
+        PyErr_Format(PyExc_ValueError,
+                     "%s has %zd rows and %zd columns; expected %zd and %zd (-1: any)", name,
+                     (Py_ssize_t)shape[0], (Py_ssize_t)(n_dims > 1 ? shape[1] : 1),
                      (Py_ssize_t)rows, (Py_ssize_t)(n_dims > 1 ? columns : 1));
         return NULL;
     }
@@ -140,8 +143,8 @@ static int require_finite(const double *values, npy_intp n, const char *name)
     return 0;
 }
 
-static double *doubles(PyObject *keep, PyObject *object, const char *name, int n_dims, npy_intp rows,
-                       npy_intp columns)
+static double *doubles(PyObject *keep, PyObject *object, const char *name, int n_dims,
+                       npy_intp rows, npy_intp columns)
 {
     PyArrayObject *array = private_copy(keep, object, NPY_DOUBLE, name, n_dims, rows, columns);
     if (!array || require_finite(PyArray_DATA(array), PyArray_SIZE(array), name))
@@ -195,10 +198,10 @@ static int parse_bearing(PyObject *keep, PyObject *tuple, bd_bearing_data *beari
     PyObject *order, *sine, *table;
     int law;
     if (!PyTuple_Check(tuple) ||
-        !PyArg_ParseTuple(tuple, "iOOiddddddidOdd:bearing", &bearing->n_balls, &order,
-                          &sine, &bearing->n_radial, &bearing->x0, &bearing->y0, &bearing->A,
-                          &bearing->e0, &bearing->contact.kappa, &bearing->contact.h0, &law,
-                          &bearing->contact.c, &table, &bearing->cage_ratio, &bearing->angle0)) {
+        !PyArg_ParseTuple(tuple, "iOOiddddddidOdd:bearing", &bearing->n_balls, &order, &sine,
+                          &bearing->n_radial, &bearing->x0, &bearing->y0, &bearing->A, &bearing->e0,
+                          &bearing->contact.kappa, &bearing->contact.h0, &law, &bearing->contact.c,
+                          &table, &bearing->cage_ratio, &bearing->angle0)) {
         if (!PyErr_Occurred())
             PyErr_SetString(PyExc_TypeError, "a bearing must be a tuple of 15 values");
         return -1;
@@ -221,8 +224,9 @@ static int parse_bearing(PyObject *keep, PyObject *tuple, bd_bearing_data *beari
     }
     if (law < 0 || law > BD_DAMPING_LOAD || bearing->n_balls < 1 || bearing->n_balls > 100000 ||
         n_coefs < 1 || n_coefs > 100000 || n_table > INT_MAX) {
-        PyErr_SetString(PyExc_ValueError, "bearing: number of balls, of coefficients or the damping law "
-                                          "is outside its range");
+        PyErr_SetString(PyExc_ValueError,
+                        "bearing: number of balls, of coefficients or the damping law "
+                        "is outside its range");
         return -1;
     }
     bearing->n_coefs = (int)n_coefs;
@@ -274,15 +278,16 @@ static PyObject *maxwell_stress(PyObject *module, PyObject *args)
         }
     for (npy_intp i = 0; i < branches; i++)
         if (!(tau[i] > 0.0) || !(modulus[i] >= 0.0)) {
-            PyErr_Format(PyExc_ValueError, "branch %zd needs tau > 0 and modulus >= 0", (Py_ssize_t)i);
+            PyErr_Format(PyExc_ValueError, "branch %zd needs tau > 0 and modulus >= 0",
+                         (Py_ssize_t)i);
             goto done;
         }
     double *work = scratch(keep, bd_maxwell_stress_work_size((int)m, (int)branches), sizeof *work);
     stress = work ? new_array(2, n, m) : NULL;
     if (stress) {
         double *out = data_of(stress);
-        Py_BEGIN_ALLOW_THREADS
-        bd_maxwell_stress((int)n, (int)m, rate, dt, G0, eta0, (int)branches, modulus, tau, out, work);
+        Py_BEGIN_ALLOW_THREADS bd_maxwell_stress((int)n, (int)m, rate, dt, G0, eta0, (int)branches,
+                                                 modulus, tau, out, work);
         Py_END_ALLOW_THREADS
     }
 done:
@@ -290,8 +295,9 @@ done:
     return stress;
 }
 
-PyDoc_STRVAR(bearing_force_doc, "bearing_force(bearing, z, z_rate, angle, cage_speed) -> g, K, C, loads\n\n"
-                                "Force and tangents of one bearing on its coefficients z (n,).");
+PyDoc_STRVAR(bearing_force_doc,
+             "bearing_force(bearing, z, z_rate, angle, cage_speed) -> g, K, C, loads\n\n"
+             "Force and tangents of one bearing on its coefficients z (n,).");
 
 static PyObject *bearing_force(PyObject *module, PyObject *args)
 {
@@ -299,7 +305,8 @@ static PyObject *bearing_force(PyObject *module, PyObject *args)
     double angle, cage_speed;
     bd_bearing_data bearing = {0};
     (void)module;
-    if (!PyArg_ParseTuple(args, "OOOdd:bearing_force", &tuple, &z_in, &rate_in, &angle, &cage_speed))
+    if (!PyArg_ParseTuple(args, "OOOdd:bearing_force", &tuple, &z_in, &rate_in, &angle,
+                          &cage_speed))
         return NULL;
     PyObject *keep = PyList_New(0);
     if (!keep)
@@ -322,8 +329,8 @@ static PyObject *bearing_force(PyObject *module, PyObject *args)
     loads = new_array(1, bearing.n_balls, 0);
     if (!g || !K || !C || !loads)
         goto done;
-    status = bd_bearing_single(&bearing, z, rate, angle, cage_speed, data_of(g), data_of(K), data_of(C),
-                               data_of(loads));
+    status = bd_bearing_single(&bearing, z, rate, angle, cage_speed, data_of(g), data_of(K),
+                               data_of(C), data_of(loads));
     if (status != BD_OK)
         raise_status(status, "bearing_force");
     else
@@ -351,8 +358,7 @@ static PyObject *status_text(PyObject *module, PyObject *args)
 /* ---------------------------------------------------------------- Model */
 
 typedef struct model_object {
-    PyObject_HEAD
-    bd_model *model;
+    PyObject_HEAD bd_model *model;
 } model_object;
 
 /* An array of `size`-byte records for the items of a tuple, or NULL with an exception. */
@@ -473,18 +479,20 @@ static int parse_channels(PyObject *keep, PyObject *items, npy_intp n, bd_channe
     return 0;
 }
 
-PyDoc_STRVAR(model_doc,
-             "Model(M, C, G, K, N, layers, bearings, loads, channels)\n\n"
-             "Immutable; arrays are copied. layers: (L, modulus, tau); bearings: (kernel tuple, B);\n"
-             "loads: (kind, omega, p_cos, p_sin, time, value); channels: (kind, row, bearing, index).\n"
-             "See bd_model_data in bearingdyn.h.");
+PyDoc_STRVAR(
+    model_doc,
+    "Model(M, C, G, K, N, layers, bearings, loads, channels)\n\n"
+    "Immutable; arrays are copied. layers: (L, modulus, tau); bearings: (kernel tuple, B);\n"
+    "loads: (kind, omega, p_cos, p_sin, time, value); channels: (kind, row, bearing, index).\n"
+    "See bd_model_data in bearingdyn.h.");
 
 static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
     PyObject *in[9], *items[4];
-    static char *names[] = {"M", "C", "G", "K", "N", "layers", "bearings", "loads", "channels", NULL};
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOOOOOOO:Model", names, &in[0], &in[1], &in[2],
-                                     &in[3], &in[4], &in[5], &in[6], &in[7], &in[8]))
+    static char *names[] = {"M",      "C",        "G",     "K",        "N",
+                            "layers", "bearings", "loads", "channels", NULL};
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOOOOOOO:Model", names, &in[0], &in[1],
+                                     &in[2], &in[3], &in[4], &in[5], &in[6], &in[7], &in[8]))
         return NULL;
     PyObject *keep = PyList_New(0);
     if (!keep)
@@ -497,12 +505,15 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
         goto done;
     npy_intp n = rows_of_last(keep);
     if (n != columns_of_last(keep) || n < 1 || n > 30000) {
-        PyErr_Format(PyExc_ValueError, "M must be square with 1 to 30000 rows, not %zd", (Py_ssize_t)n);
+        PyErr_Format(PyExc_ValueError, "M must be square with 1 to 30000 rows, not %zd",
+                     (Py_ssize_t)n);
         goto done;
     }
     data.n = (int)n;
-    if (!(data.C = doubles(keep, in[1], "C", 2, n, n)) || !(data.G = doubles(keep, in[2], "G", 2, n, n)) ||
-        !(data.K = doubles(keep, in[3], "K", 2, n, n)) || !(data.N = doubles(keep, in[4], "N", 2, n, n)))
+    if (!(data.C = doubles(keep, in[1], "C", 2, n, n)) ||
+        !(data.G = doubles(keep, in[2], "G", 2, n, n)) ||
+        !(data.K = doubles(keep, in[3], "K", 2, n, n)) ||
+        !(data.N = doubles(keep, in[4], "N", 2, n, n)))
         goto done;
     for (int i = 0; i < 4; i++)
         if (!(items[i] = sequence(keep, in[5 + i], names[5 + i])))
@@ -570,7 +581,8 @@ static PyObject *model_state(PyObject *object, PyObject *args)
         return NULL;
     const double *x = doubles(keep, x_in, "x", 1, bd_model_size(model), -1);
     const double *v = x ? doubles(keep, v_in, "v", 1, bd_model_size(model), -1) : NULL;
-    if (v && !require_finite(&t, 1, "t") && (state = new_array(1, (npy_intp)bd_state_size(model), 0)))
+    if (v && !require_finite(&t, 1, "t") &&
+        (state = new_array(1, (npy_intp)bd_state_size(model), 0)))
         bd_state_set(model, data_of(state), t, x, v);
     Py_DECREF(keep);
     return state;
@@ -580,16 +592,19 @@ static PyObject *model_state(PyObject *object, PyObject *args)
 static double *state_of(PyObject *keep, const bd_model *model, PyObject *object)
 {
     double *state = doubles(keep, object, "state", 1, (npy_intp)bd_state_size(model), -1);
-    if (state && !(state[1] >= 0.0 && state[1] < 9007199254740992.0 && state[2] >= 0.0)) { /* 2^53 */
-        PyErr_SetString(PyExc_ValueError, "state must come from this model: its count of steps is impossible");
+    if (state &&
+        !(state[1] >= 0.0 && state[1] < 9007199254740992.0 && state[2] >= 0.0)) { /* 2^53 */
+        PyErr_SetString(PyExc_ValueError,
+                        "state must come from this model: its count of steps is impossible");
         return NULL;
     }
     return state;
 }
 
-PyDoc_STRVAR(model_unpack_doc, "unpack(state) -> t, x, v, a, energy\n\n"
-                               "energy: kinetic, elastic, stored, indentation; work of load, turning,\n"
-                               "linear, branch, contact; throughput (J).");
+PyDoc_STRVAR(model_unpack_doc,
+             "unpack(state) -> t, x, v, a, energy\n\n"
+             "energy: kinetic, elastic, stored, indentation; work of load, turning,\n"
+             "linear, branch, contact; throughput (J).");
 
 static PyObject *model_unpack(PyObject *object, PyObject *args)
 {
@@ -650,13 +665,14 @@ static int between_chunks(PyObject *progress, long long done, long long total)
 /* How long a chunk may keep the interpreter waiting: Ctrl-C is honoured within twice this. */
 static const double chunk_seconds = 0.05;
 
-PyDoc_STRVAR(model_march_doc,
-             "march(state, steps, decimate, dt, beta, gamma, speed, tolerance, max_iterations, audit,\n"
-             "      isa, start, progress) -> record, state, report\n\n"
-             "The GIL is released. A new state is returned; the one given is not touched. progress(done,\n"
-             "total) is called every 0.05 s. report: status, steps, iterations, refreshes, t, residual,\n"
-             "bearing. An interrupt (Ctrl-C) ends the march with status 1 and what was recorded, be\n"
-             "it in the last of its steps.");
+PyDoc_STRVAR(
+    model_march_doc,
+    "march(state, steps, decimate, dt, beta, gamma, speed, tolerance, max_iterations, audit,\n"
+    "      isa, start, progress) -> record, state, report\n\n"
+    "The GIL is released. A new state is returned; the one given is not touched. progress(done,\n"
+    "total) is called every 0.05 s. report: status, steps, iterations, refreshes, t, residual,\n"
+    "bearing. An interrupt (Ctrl-C) ends the march with status 1 and what was recorded, be\n"
+    "it in the last of its steps.");
 
 static PyObject *model_march(PyObject *object, PyObject *args)
 {
@@ -699,13 +715,12 @@ static PyObject *model_march(PyObject *object, PyObject *args)
 
     double *flat = data_of(state), *rows = data_of(record);
     bd_status status = BD_OK;
-    Py_BEGIN_ALLOW_THREADS
-    if (start)
-        status = bd_start(model, &scheme, &module->lapack, work, flat);
+    Py_BEGIN_ALLOW_THREADS if (start) status =
+        bd_start(model, &scheme, &module->lapack, work, flat);
     if (status == BD_OK)
         status = bd_prepare(model, &scheme, &module->lapack, work);
-    Py_END_ALLOW_THREADS
-    if (status == BD_BAD_VALUE || status == BD_NO_MEMORY) {
+    Py_END_ALLOW_THREADS if (status == BD_BAD_VALUE || status == BD_NO_MEMORY)
+    {
         raise_status(status, "march: dt, beta, gamma, speed, tolerance or max_iterations");
         goto done;
     }
@@ -716,10 +731,9 @@ static PyObject *model_march(PyObject *object, PyObject *args)
     while (total.status == BD_OK && total.steps < steps) {
         const long long now = Py_MIN(chunk, steps - total.steps);
         const double began = seconds();
-        Py_BEGIN_ALLOW_THREADS
-        kept += bd_march(model, &scheme, work, flat, now, decimate, rows + kept * channels, &report);
-        Py_END_ALLOW_THREADS
-        const double took = seconds() - began;
+        Py_BEGIN_ALLOW_THREADS kept +=
+            bd_march(model, &scheme, work, flat, now, decimate, rows + kept * channels, &report);
+        Py_END_ALLOW_THREADS const double took = seconds() - began;
 
         total.status = report.status;
         total.steps += report.steps;
@@ -742,7 +756,8 @@ static PyObject *model_march(PyObject *object, PyObject *args)
     PyObject *used = PySequence_GetSlice(record, 0, (Py_ssize_t)kept);
     if (used)
         result = Py_BuildValue("NO(iLLLddi)", used, state, (int)total.status, total.steps,
-                               total.iterations, total.refreshes, total.t, total.residual, total.bearing);
+                               total.iterations, total.refreshes, total.t, total.residual,
+                               total.bearing);
 done:
     bd_work_free(work);
     Py_XDECREF(state);
@@ -751,18 +766,19 @@ done:
     return result;
 }
 
-PyDoc_STRVAR(model_harmonic_doc,
-             "harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress) -> response\n\n"
-             "omega (f,), modulus (f, layers) complex, bearing_K and bearing_C (coefs, coefs),\n"
-             "force (inputs, n), row (outputs, n); response (f, outputs, inputs) complex.");
+PyDoc_STRVAR(
+    model_harmonic_doc,
+    "harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress) -> response\n\n"
+    "omega (f,), modulus (f, layers) complex, bearing_K and bearing_C (coefs, coefs),\n"
+    "force (inputs, n), row (outputs, n); response (f, outputs, inputs) complex.");
 
 static PyObject *model_harmonic(PyObject *object, PyObject *args)
 {
     const bd_model *model = model_of(object);
     PyObject *omega_in, *modulus_in, *K_in, *C_in, *force_in, *row_in, *progress, *response = NULL;
     bd_harmonic_data data = {0};
-    if (!PyArg_ParseTuple(args, "OdOOOOOO:harmonic", &omega_in, &data.speed, &modulus_in, &K_in, &C_in,
-                          &force_in, &row_in, &progress))
+    if (!PyArg_ParseTuple(args, "OdOOOOOO:harmonic", &omega_in, &data.speed, &modulus_in, &K_in,
+                          &C_in, &force_in, &row_in, &progress))
         return NULL;
     module_state *module = PyType_GetModuleState(Py_TYPE(object));
     PyObject *keep = PyList_New(0);
@@ -811,10 +827,10 @@ static PyObject *model_harmonic(PyObject *object, PyObject *args)
         const int now = Py_MIN(chunk, data.n_omega - at);
         const double began = seconds();
         bd_status status;
-        Py_BEGIN_ALLOW_THREADS
-        status = bd_harmonic(model, &data, &module->lapack, work, at, now, out);
-        Py_END_ALLOW_THREADS
-        if (status != BD_OK) {
+        Py_BEGIN_ALLOW_THREADS status =
+            bd_harmonic(model, &data, &module->lapack, work, at, now, out);
+        Py_END_ALLOW_THREADS if (status != BD_OK)
+        {
             raise_status(status, "harmonic");
             goto failed;
         }

@@ -103,14 +103,14 @@ BD_INLINE void kind_masks(int n_radial, int first, lane_mask *radial)
 
 /* Indent, press, and sum over the balls. */
 void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work, const double *z,
-                      const double *z_rate, double cage_speed, double *restrict g)
+                                const double *z_rate, double cage_speed, double *restrict g)
 {
     const bd_bearing_data *data = &bearing->data;
     const int coefs = bearing->coefs;
 
     indent(bearing, work, z, z_rate, cage_speed);
     BD_NAMED(bd_ehl_contacts)(&data->contact, bearing->balls, work->delta, work->rate, work->force,
-                    work->stiffness, work->damping);
+                              work->stiffness, work->damping);
 
     for (int first = 0; first < coefs; first += BD_WIDTH) {
         const double *phi = work->phi_ball + first;
@@ -126,8 +126,9 @@ void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work
 }
 
 /* Tangents of that sum. */
-void BD_NAMED(bd_bearing_tangent)(const bd_bearing *bearing, const bd_bearing_work *work, double cage_speed,
-                        int stride, double *restrict K, double *restrict C)
+void BD_NAMED(bd_bearing_tangent)(const bd_bearing *bearing, const bd_bearing_work *work,
+                                  double cage_speed, int stride, double *restrict K,
+                                  double *restrict C)
 {
     const bd_bearing_data *data = &bearing->data;
     const int coefs = bearing->coefs, n_coefs = data->n_coefs, n_radial = data->n_radial;
@@ -164,4 +165,3 @@ void BD_NAMED(bd_bearing_tangent)(const bd_bearing *bearing, const bd_bearing_wo
         }
     }
 }
-

@@ -25,7 +25,8 @@ void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *
 {
     const double pi = 3.14159265358979323846;
     int balls = BD_PADDED(data->n_balls);
-    double *spacing_cos = constants, *spacing_sin = constants + balls, *absent = constants + 2 * balls;
+    double *spacing_cos = constants, *spacing_sin = constants + balls,
+           *absent = constants + 2 * balls;
 
     for (int j = 0; j < balls; j++) {
         double angle = 2.0 * pi * (double)j / (double)data->n_balls;
@@ -46,8 +47,9 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
 {
     size_t balls = (size_t)bearing->balls, coefs = (size_t)bearing->coefs;
     size_t by_ball = (size_t)bearing->data.n_coefs * balls;
-    double **parts[] = {&work->sine_a, &work->cosine_a, &work->delta,     &work->rate,    &work->turn,
-                        &work->tilt,   &work->turning,  &work->force, &work->stiffness, &work->damping};
+    double **parts[] = {&work->sine_a,    &work->cosine_a, &work->delta,   &work->rate,
+                        &work->turn,      &work->tilt,     &work->turning, &work->force,
+                        &work->stiffness, &work->damping};
 
     work->phi = memory;
     work->dphi = work->phi + by_ball;

@@ -5,21 +5,22 @@
 #include "bearingdyn.h"
 
 struct bd_bearing {
-    bd_bearing_data data; /* its pointers lie in the model's slab */
-    int balls, coefs;     /* padded to whole lanes */
+    bd_bearing_data data;                    /* its pointers lie in the model's slab */
+    int balls, coefs;                        /* padded to whole lanes */
     const double *spacing_cos, *spacing_sin; /* (balls) of 2 pi j/Z */
-    const double *absent;                    /* (balls) 0, or a gap no ball closes in padding lanes */
+    const double *absent; /* (balls) 0, or a gap no ball closes in padding lanes */
 };
 
 /* Scratch; all arrays are padded. `phi` is kept twice: a ball per lane to indent, a coefficient per lane
  * to sum. */
 struct bd_bearing_work {
-    double *phi, *dphi;              /* (n_coefs x balls) basis and its derivative in psi */
-    double *phi_ball, *dphi_ball;    /* (n_balls x coefs) the same, transposed */
-    double *sine_a, *cosine_a;       /* (balls) of the contact angle */
-    double *delta, *rate, *turn;     /* (balls) indentation, its rate, (cos a Xdot - sin a Ydot)/Lambda */
-    double *tilt;                    /* (balls) 1/Lambda */
-    double *turning;                 /* (balls) ddelta/dpsi times cage speed */
+    double *phi, *dphi;           /* (n_coefs x balls) basis and its derivative in psi */
+    double *phi_ball, *dphi_ball; /* (n_balls x coefs) the same, transposed */
+    double *sine_a, *cosine_a;    /* (balls) of the contact angle */
+    double *delta, *rate,
+        *turn;       /* (balls) indentation, its rate, (cos a Xdot - sin a Ydot)/Lambda */
+    double *tilt;    /* (balls) 1/Lambda */
+    double *turning; /* (balls) ddelta/dpsi times cage speed */
     double *force, *stiffness, *damping; /* (balls) */
 };
 

@@ -85,9 +85,9 @@ bd_branch_weights bd_maxwell_weights(double dt, double tau, double modulus);
  * Returned: stress (n_times x n_components)
  * Notes:    work is scratch of bd_maxwell_stress_work_size doubles */
 size_t bd_maxwell_stress_work_size(int n_components, int n_branches);
-void bd_maxwell_stress(int n_times, int n_components, const double *rate, const double *dt, double G0,
-                       double eta0, int n_branches, const double *modulus, const double *tau,
-                       double *stress, double *work);
+void bd_maxwell_stress(int n_times, int n_components, const double *rate, const double *dt,
+                       double G0, double eta0, int n_branches, const double *modulus,
+                       const double *tau, double *stress, double *work);
 
 /* ---------------------------------------------------------------- EHL contact (ehl.c) */
 
@@ -213,10 +213,10 @@ typedef struct bd_scheme {
  * damping with:
  *   load + turning - (linear + branch + contact) = change of (kinetic + elastic + stored + indentation) */
 typedef struct bd_energy {
-    double kinetic, elastic, stored, indentation; /* now, J */
+    double kinetic, elastic, stored, indentation;  /* now, J */
     double load, turning, linear, branch, contact; /* work since the start, J */
-    double throughput;                            /* integral of |power of loads and turning|, J */
-    double power[5];                              /* at the present time, in the order of the works, W */
+    double throughput;                             /* integral of |power of loads and turning|, J */
+    double power[5]; /* at the present time, in the order of the works, W */
 } bd_energy;
 
 typedef struct bd_report {
@@ -233,12 +233,13 @@ size_t bd_state_size(const bd_model *model);
 
 /* Views of a state's parts; vectors are padded and in the model's block order. */
 typedef struct bd_state {
-    double *clock;      /* (4) time origin, steps since, dt of those steps, 1 if Newton's inverse is set */
-    double *x, *v, *a;  /* (n_padded) */
-    double *y_rate;     /* (rank_padded) layer rates L^T v */
-    double *stress;     /* branch stresses, layer by layer, branch by branch */
-    double *g;          /* (coefs_padded) bearing forces of the last step: Newton starts from them */
-    double *inverse;    /* (coefs_padded^2) Newton's frozen inverse */
+    double
+        *clock; /* (4) time origin, steps since, dt of those steps, 1 if Newton's inverse is set */
+    double *x, *v, *a; /* (n_padded) */
+    double *y_rate;    /* (rank_padded) layer rates L^T v */
+    double *stress;    /* branch stresses, layer by layer, branch by branch */
+    double *g;         /* (coefs_padded) bearing forces of the last step: Newton starts from them */
+    double *inverse;   /* (coefs_padded^2) Newton's frozen inverse */
     bd_energy *energy;
 } bd_state;
 
@@ -249,7 +250,8 @@ bd_state bd_state_view(const bd_model *model, double *flat);
 void bd_state_set(const bd_model *model, double *flat, double t, const double *x, const double *v);
 
 /* Returned: x, v, a (n) in the caller's order; any may be NULL */
-void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v, double *a);
+void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,
+                  double *a);
 
 typedef struct bd_work bd_work;
 bd_work *bd_work_create(const bd_model *model); /* NULL: out of memory */
@@ -283,13 +285,13 @@ bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const 
 /* ---------------------------------------------------------------- harmonic response (harmonic.c) */
 
 typedef struct bd_harmonic_data {
-    double speed;           /* rad/s, for G and N */
+    double speed; /* rad/s, for G and N */
     int n_omega, n_in, n_out;
-    const double *omega;    /* (n_omega) rad/s */
-    const double *modulus;  /* (n_omega x n_layers) complex G*, re and im interleaved */
+    const double *omega;   /* (n_omega) rad/s */
+    const double *modulus; /* (n_omega x n_layers) complex G*, re and im interleaved */
     const double *bearing_K, *bearing_C; /* (coefs x coefs) row-major, linearised bearings */
-    const double *force;    /* (n_in x n) */
-    const double *row;      /* (n_out x n) */
+    const double *force;                 /* (n_in x n) */
+    const double *row;                   /* (n_out x n) */
 } bd_harmonic_data;
 
 typedef struct bd_harmonic_work bd_harmonic_work;

@@ -49,8 +49,8 @@ BD_INLINE void columns_add(int rows, int n_columns, const double *A, int stride,
 }
 
 /* The same for two vectors at once: y1 += A u1, y2 += A u2, each column read once. */
-BD_INLINE void columns_add_two(int rows, int n_columns, const double *A, int stride, const double *u1,
-                               const double *u2, double *y1, double *y2)
+BD_INLINE void columns_add_two(int rows, int n_columns, const double *A, int stride,
+                               const double *u1, const double *u2, double *y1, double *y2)
 {
     for (int r = 0; r < rows; r += BD_WIDTH) {
         lanes even1 = {0}, even2 = {0}, odd1 = {0}, odd2 = {0};

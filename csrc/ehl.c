@@ -25,8 +25,8 @@ static double table_damping(const bd_contact *contact, double delta, double *slo
  * Notes:    a film cannot pull, hence the clip
  * Reference: paper eq (1). */
 void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *restrict delta,
-                     const double *restrict rate, double *restrict force, double *restrict stiffness,
-                     double *restrict damping)
+                               const double *restrict rate, double *restrict force,
+                               double *restrict stiffness, double *restrict damping)
 {
     const double kappa = contact->kappa, h0 = contact->h0;
 

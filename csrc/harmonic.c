@@ -25,17 +25,18 @@ static inline complex_t complex_of(double re, double im)
 }
 
 struct bd_harmonic_work {
-    double *HL;              /* per layer its block's n x n matrix 2 L L^T */
-    size_t *HL_at;           /* (n_layers) */
-    double *force, *row;     /* (n_in x n), (n_out x n) in block order, without padding */
-    double *B;               /* (n x n_coefs) in block order */
-    double *Kb, *Cb;         /* (n_coefs x n_coefs) as given */
-    complex_t *D, *X;        /* one block's matrix; (n x (n_in + n_coefs)) solutions, column-major */
-    complex_t *BX;           /* (n_coefs x (n_in + n_coefs)) */
-    complex_t *Z, *A, *g;    /* (n_coefs^2), (n_coefs^2), (n_coefs x n_in) */
-    complex_t *RX;           /* (n_out x (n_in + n_coefs)) */
+    double *HL;           /* per layer its block's n x n matrix 2 L L^T */
+    size_t *HL_at;        /* (n_layers) */
+    double *force, *row;  /* (n_in x n), (n_out x n) in block order, without padding */
+    double *B;            /* (n x n_coefs) in block order */
+    double *Kb, *Cb;      /* (n_coefs x n_coefs) as given */
+    complex_t *D, *X;     /* one block's matrix; (n x (n_in + n_coefs)) solutions, column-major */
+    complex_t *BX;        /* (n_coefs x (n_in + n_coefs)) */
+    complex_t *Z, *A, *g; /* (n_coefs^2), (n_coefs^2), (n_coefs x n_in) */
+    complex_t *RX;        /* (n_out x (n_in + n_coefs)) */
     int *pivots;
-    int *touching, *n_touching; /* per block: which forces (0 ... n_in) and coefficients (n_in ...) act */
+    int *touching,
+        *n_touching; /* per block: which forces (0 ... n_in) and coefficients (n_in ...) act */
 };
 
 static void *zeroed(size_t count, size_t size)
@@ -72,9 +73,9 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
     work->pivots = zeroed(n + m, sizeof *work->pivots);
     work->touching = zeroed((size_t)model->n_blocks * columns, sizeof *work->touching);
     work->n_touching = zeroed((size_t)model->n_blocks, sizeof *work->n_touching);
-    if (!work->HL || !work->HL_at || !work->force || !work->row || !work->B || !work->Kb || !work->Cb ||
-        !work->D || !work->X || !work->BX || !work->Z || !work->A || !work->g || !work->RX ||
-        !work->pivots || !work->touching || !work->n_touching) {
+    if (!work->HL || !work->HL_at || !work->force || !work->row || !work->B || !work->Kb ||
+        !work->Cb || !work->D || !work->X || !work->BX || !work->Z || !work->A || !work->g ||
+        !work->RX || !work->pivots || !work->touching || !work->n_touching) {
         bd_harmonic_work_free(work);
         return NULL;
     }
@@ -99,7 +100,8 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
         for (size_t k = 0; k < n_out; k++)
             work->row[k * n + i] = data->row[k * n + from];
         for (size_t k = 0; k < m; k++)
-            work->B[i * m + k] = model->B[padded * (size_t)model->coefs + (size_t)model->coef_slot[k]];
+            work->B[i * m + k] =
+                model->B[padded * (size_t)model->coefs + (size_t)model->coef_slot[k]];
     }
     for (int b = 0; b < model->n_blocks; b++) {
         const size_t first = (size_t)model->blocks[b].first, rows = (size_t)model->blocks[b].n;
@@ -120,8 +122,9 @@ void bd_harmonic_work_free(bd_harmonic_work *work)
 {
     if (!work)
         return;
-    void *pieces[] = {work->HL, work->HL_at, work->force, work->row, work->B, work->Kb, work->Cb, work->D,
-                      work->X,  work->BX,    work->Z,     work->A,   work->g, work->RX, work->pivots,
+    void *pieces[] = {work->HL,       work->HL_at,     work->force, work->row, work->B,
+                      work->Kb,       work->Cb,        work->D,     work->X,   work->BX,
+                      work->Z,        work->A,         work->g,     work->RX,  work->pivots,
                       work->touching, work->n_touching};
     for (size_t i = 0; i < sizeof pieces / sizeof pieces[0]; i++)
         free(pieces[i]);
@@ -146,13 +149,14 @@ static void form(const bd_model *model, const bd_harmonic_data *data, const bd_h
             D[(place + j) * stride + place + i] = complex_of(re, im);
         }
     for (int l = block->layer; l < block->layer + block->n_layers; l++) {
-        const double *modulus =
-            data->modulus + 2 * ((size_t)index * (size_t)model->n_layers + (size_t)model->layers[l].source);
+        const double *modulus = data->modulus + 2 * ((size_t)index * (size_t)model->n_layers +
+                                                     (size_t)model->layers[l].source);
         const double re = modulus[0], im = modulus[1];
         const double *H = work->HL + work->HL_at[l];
         for (size_t j = 0; j < n; j++)
             for (size_t i = 0; i < n; i++)
-                D[(place + j) * stride + place + i] += complex_of(re * H[i * n + j], im * H[i * n + j]);
+                D[(place + j) * stride + place + i] +=
+                    complex_of(re * H[i * n + j], im * H[i * n + j]);
     }
 }
 
@@ -163,7 +167,8 @@ static int solve_whole(const bd_model *model, const bd_harmonic_data *data, cons
     const size_t n = (size_t)model->n, m = (size_t)model->n_coefs;
     memset(work->D, 0, n * n * sizeof *work->D);
     for (int b = 0; b < model->n_blocks; b++)
-        form(model, data, work, &model->blocks[b], index, n, (size_t)model->blocks[b].first, work->D);
+        form(model, data, work, &model->blocks[b], index, n, (size_t)model->blocks[b].first,
+             work->D);
     for (size_t k = 0; k < m; k++)
         for (size_t l = 0; l < m; l++) {
             const complex_t Z = work->Z[k * m + l];
@@ -186,7 +191,8 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
 {
     const bd_block *block = &model->blocks[b];
     const size_t n = (size_t)block->n, m = (size_t)model->n_coefs, whole = (size_t)model->n;
-    const size_t first = (size_t)block->first, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out;
+    const size_t first = (size_t)block->first, n_in = (size_t)data->n_in,
+                 n_out = (size_t)data->n_out;
     const int *touching = work->touching + (size_t)b * (n_in + m);
     const size_t columns = (size_t)work->n_touching[b];
 
@@ -228,8 +234,8 @@ static const double largest_joint = 1e6;
 
 /* Block by block, then joined through the bearings; the answer is left in RX's first n_in columns.
  * Returned: 0, or nonzero where that would be singular or lose too many digits. */
-static int solve_blocks(const bd_model *model, const bd_harmonic_data *data, const bd_lapack *lapack,
-                        bd_harmonic_work *work, int index)
+static int solve_blocks(const bd_model *model, const bd_harmonic_data *data,
+                        const bd_lapack *lapack, bd_harmonic_work *work, int index)
 {
     const size_t m = (size_t)model->n_coefs, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out;
 

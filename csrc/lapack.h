@@ -7,8 +7,8 @@
 
 typedef struct bd_lapack {
     void (*dgetrf)(int *m, int *n, double *a, int *lda, int *ipiv, int *info);
-    void (*dgetrs)(char *trans, int *n, int *nrhs, double *a, int *lda, int *ipiv, double *b, int *ldb,
-                   int *info);
+    void (*dgetrs)(char *trans, int *n, int *nrhs, double *a, int *lda, int *ipiv, double *b,
+                   int *ldb, int *info);
     void (*zgetrf)(int *m, int *n, void *a, int *lda, int *ipiv, int *info);
     void (*zgetrs)(char *trans, int *n, int *nrhs, void *a, int *lda, int *ipiv, void *b, int *ldb,
                    int *info);

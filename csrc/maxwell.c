@@ -43,9 +43,9 @@ size_t bd_maxwell_stress_work_size(int n_components, int n_branches)
     return (size_t)BD_PADDED(n_components) * (5 + (size_t)n_branches);
 }
 
-void bd_maxwell_stress(int n_times, int n_components, const double *rate, const double *dt, double G0,
-                       double eta0, int n_branches, const double *modulus, const double *tau,
-                       double *stress, double *work)
+void bd_maxwell_stress(int n_times, int n_components, const double *rate, const double *dt,
+                       double G0, double eta0, int n_branches, const double *modulus,
+                       const double *tau, double *stress, double *work)
 {
     const int padded = BD_PADDED(n_components);
     const size_t row = (size_t)n_components * sizeof *rate, room = (size_t)padded;

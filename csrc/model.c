@@ -59,8 +59,9 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
     for (int k = 0; k < bearing->n_coefs; k++)
         if (bearing->order[k] < 0 || bearing->order[k] > HIGHEST_ORDER)
             return BD_BAD_VALUE;
-    const double finite[] = {bearing->x0,     bearing->y0, bearing->e0, bearing->cage_ratio, bearing->angle0,
-                             contact->kappa, contact->h0, contact->c,  bearing->A};
+    const double finite[] = {bearing->x0,         bearing->y0,     bearing->e0,
+                             bearing->cage_ratio, bearing->angle0, contact->kappa,
+                             contact->h0,         contact->c,      bearing->A};
     if (!all_finite(finite, sizeof finite / sizeof finite[0]) || !(bearing->A > 0.0) ||
         !(contact->kappa > 0.0) || !(contact->h0 >= 0.0) || !(contact->c >= 0.0))
         return BD_BAD_VALUE;
@@ -167,8 +168,8 @@ static void find_blocks(const bd_model_data *data, int *parent)
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++) {
             size_t ij = i * n + j;
-            if (data->M[ij] != 0.0 || data->C[ij] != 0.0 || data->G[ij] != 0.0 || data->K[ij] != 0.0 ||
-                data->N[ij] != 0.0)
+            if (data->M[ij] != 0.0 || data->C[ij] != 0.0 || data->G[ij] != 0.0 ||
+                data->K[ij] != 0.0 || data->N[ij] != 0.0)
                 join(parent, (int)i, (int)j);
         }
     for (int l = 0; l < data->n_layers; l++) {

@@ -6,20 +6,20 @@
 
 /* Coordinates coupled with one another by the linear structure. */
 typedef struct bd_block {
-    int n, padded;      /* coordinates, and the same in whole lanes */
-    int first;          /* in block order without padding: bd_model.order[first ... first + n) */
-    int offset;         /* in padded vectors */
+    int n, padded;       /* coordinates, and the same in whole lanes */
+    int first;           /* in block order without padding: bd_model.order[first ... first + n) */
+    int offset;          /* in padded vectors */
     int layer, n_layers; /* its layers are layer ... layer + n_layers of bd_model.layers */
-    size_t matrix;      /* of its n x n row-major matrices in M, C, G, K, N */
+    size_t matrix;       /* of its n x n row-major matrices in M, C, G, K, N */
 } bd_block;
 
 typedef struct bd_layer {
-    int source;            /* index in the caller's list */
+    int source; /* index in the caller's list */
     int block, rank, padded;
-    int offset;            /* in padded vectors of layer rates */
+    int offset; /* in padded vectors of layer rates */
     int n_branches;
-    size_t stress;         /* of its first branch in a state's stress */
-    const double *L;       /* (block n x padded rank): row j holds coordinate j's part in each rate */
+    size_t stress;   /* of its first branch in a state's stress */
+    const double *L; /* (block n x padded rank): row j holds coordinate j's part in each rate */
     const double *modulus, *tau;
 } bd_layer;
 
@@ -39,12 +39,13 @@ typedef struct bd_channel {
 
 struct bd_model {
     int n, n_padded, n_blocks, n_layers, n_bearings, n_loads, n_channels;
-    int n_coefs, coefs; /* of all bearings: as counted by the caller, and padded bearing by bearing */
-    int ranks;          /* of all layers, padded layer by layer */
+    int n_coefs,
+        coefs; /* of all bearings: as counted by the caller, and padded bearing by bearing */
+    int ranks; /* of all layers, padded layer by layer */
     size_t n_stress;
-    const int *order;   /* (n) the caller's index of a coordinate in block order */
-    const int *slot;    /* (n) padded position of the caller's coordinate */
-    const int *coef_slot; /* (n_coefs) padded position of the caller's coefficient */
+    const int *order;        /* (n) the caller's index of a coordinate in block order */
+    const int *slot;         /* (n) padded position of the caller's coordinate */
+    const int *coef_slot;    /* (n_coefs) padded position of the caller's coefficient */
     const int *bearing_slot; /* (n_bearings) padded position of a bearing's first coefficient */
     const bd_block *blocks;
     const bd_layer *layers;
@@ -52,7 +53,7 @@ struct bd_model {
     const bd_load *loads;
     const bd_channel *channels;
     const double *M, *C, *G, *K, *N; /* blocks one after another */
-    const double *B;             /* (n_padded x coefs): row j holds coordinate j's part in each */
+    const double *B; /* (n_padded x coefs): row j holds coordinate j's part in each */
 };
 
 #endif

@@ -81,9 +81,9 @@ void bd_force_bearings(const bd_model *model, bd_work *work)
 {
     for (int b = 0; b < model->n_bearings; b++) {
         int at = model->bearing_slot[b];
-        work->kernels->force(&model->bearings[b], &work->bearings[b], work->z + at, work->z_rate + at,
-                             model->bearings[b].data.cage_ratio * work->scheme.speed,
-                             work->force + at);
+        work->kernels->force(
+            &model->bearings[b], &work->bearings[b], work->z + at, work->z_rate + at,
+            model->bearings[b].data.cage_ratio * work->scheme.speed, work->force + at);
     }
 }
 
@@ -102,8 +102,9 @@ static int refresh(const bd_model *model, bd_work *work)
         const bd_bearing *bearing = &model->bearings[b];
         const size_t at = (size_t)model->bearing_slot[b], n = (size_t)bearing->data.n_coefs;
         const size_t stride = (size_t)bearing->coefs;
-        work->kernels->tangent(bearing, &work->bearings[b], bearing->data.cage_ratio * scheme->speed,
-                               bearing->coefs, work->K, work->C);
+        work->kernels->tangent(bearing, &work->bearings[b],
+                               bearing->data.cage_ratio * scheme->speed, bearing->coefs, work->K,
+                               work->C);
         for (size_t k = 0; k < n; k++)
             for (size_t l = 0; l < n; l++) {
                 double tangent = in_x * work->K[k * stride + l] + in_v * work->C[k * stride + l];
@@ -214,7 +215,8 @@ static bd_status solve_bearings(const bd_model *model, bd_work *work, bd_state *
 
 /* ---------------------------------------------------------------- march */
 
-static void record_row(const bd_model *model, const bd_work *work, const bd_state *state, double *row)
+static void record_row(const bd_model *model, const bd_work *work, const bd_state *state,
+                       double *row)
 {
     for (int c = 0; c < model->n_channels; c++) {
         const bd_channel *channel = &model->channels[c];
@@ -266,8 +268,8 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
     state.clock[2] = scheme->dt;
     memset(work->z, 0, (size_t)model->coefs * sizeof *work->z);
     memset(work->z_rate, 0, (size_t)model->coefs * sizeof *work->z_rate);
-    columns_add_two(model->coefs, model->n_padded, model->B, model->coefs, state.x, state.v, work->z,
-                    work->z_rate);
+    columns_add_two(model->coefs, model->n_padded, model->B, model->coefs, state.x, state.v,
+                    work->z, work->z_rate);
     bd_turn_bearings(model, work, t);
     bd_force_bearings(model, work);
     memcpy(state.g, work->force, (size_t)model->coefs * sizeof *state.g);
@@ -288,7 +290,8 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
         const bd_block *block = &model->blocks[layer->block];
         double *rate = state.y_rate + layer->offset;
         memset(rate, 0, (size_t)layer->padded * sizeof *rate);
-        columns_add(layer->padded, block->n, layer->L, layer->padded, state.v + block->offset, rate);
+        columns_add(layer->padded, block->n, layer->L, layer->padded, state.v + block->offset,
+                    rate);
         for (int i = 0; i < layer->n_branches; i++) {
             const double *stress = state.stress + layer->stress + (size_t)i * (size_t)layer->padded;
             for (int j = 0; j < block->n; j++)
@@ -340,7 +343,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
     long long rows = 0;
 
     *report = (bd_report){.status = BD_OK, .bearing = -1};
-    if (state.clock[2] != dt) { /* a new step size starts a new count, and Newton's matrix with it */
+    if (state.clock[2] !=
+        dt) { /* a new step size starts a new count, and Newton's matrix with it */
         state.clock[0] += state.clock[1] * state.clock[2];
         state.clock[1] = 0.0;
         state.clock[2] = dt;

@@ -125,7 +125,8 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
         double *rate = state->y_rate + layer->offset;
         for (int r = 0; r < layer->padded; r += BD_WIDTH)
             LANES_AT(rate + r) = (lanes){0};
-        columns_add(layer->padded, block->n, layer->L, layer->padded, state->v + block->offset, rate);
+        columns_add(layer->padded, block->n, layer->L, layer->padded, state->v + block->offset,
+                    rate);
         for (int i = 0; i < layer->n_branches; i++) {
             size_t at = layer->stress + (size_t)i * (size_t)layer->padded;
             maxwell_commit(layer->padded, *weights++, work->trial + at, rate, state->stress + at);

@@ -110,9 +110,9 @@ void bd_work_free(bd_work *work)
 
 static bool valid(const bd_scheme *scheme)
 {
-    return scheme->dt > 0.0 && isfinite(scheme->dt) && scheme->beta >= 0.0 && scheme->gamma >= 0.0 &&
-           isfinite(scheme->beta) && isfinite(scheme->gamma) && isfinite(scheme->speed) &&
-           scheme->tolerance > 0.0 && scheme->max_iterations >= 1;
+    return scheme->dt > 0.0 && isfinite(scheme->dt) && scheme->beta >= 0.0 &&
+           scheme->gamma >= 0.0 && isfinite(scheme->beta) && isfinite(scheme->gamma) &&
+           isfinite(scheme->speed) && scheme->tolerance > 0.0 && scheme->max_iterations >= 1;
 }
 
 bool bd_work_choose(bd_work *work, const bd_scheme *scheme)
@@ -230,9 +230,11 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
     weight = 0;
     for (int b = 0; b < model->n_blocks && status == BD_OK; b++) {
         const bd_block *block = &model->blocks[b];
-        system.columns = step_columns(model, block) + 2 * (size_t)model->n_loads + (size_t)model->coefs;
+        system.columns =
+            step_columns(model, block) + 2 * (size_t)model->n_loads + (size_t)model->coefs;
         form_block(model, block, work, weight, &system);
-        if (bd_solve_real(lapack, block->n, system.S, system.pivots, (int)system.columns, system.rhs))
+        if (bd_solve_real(lapack, block->n, system.S, system.pivots, (int)system.columns,
+                          system.rhs))
             status = BD_SINGULAR;
         else
             place_block(model, b, work, &system);
@@ -291,7 +293,8 @@ void bd_state_set(const bd_model *model, double *flat, double t, const double *x
     }
 }
 
-void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v, double *a)
+void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,
+                  double *a)
 {
     const double *state_x = flat + BD_LANES, *state_v = state_x + model->n_padded;
     const double *state_a = state_v + model->n_padded;

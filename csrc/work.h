@@ -14,23 +14,24 @@ struct bd_work {
     double *memory; /* everything below lies in it */
 
     /* operators of the prepared step */
-    double *step;   /* per block, columns [-S^-1 (K + speed N) | -S^-1 (C + C_ve + speed G) | -S^-1 L] */
-    size_t *step_at; /* (n_blocks) where a block's columns start */
-    double *SB;     /* S^-1 B^T: a column per padded coefficient */
-    double *SP;     /* S^-1 p: two columns per load (cosine, sine) */
-    double *W;      /* B S^-1 B^T: a column per padded coefficient */
+    double
+        *step; /* per block, columns [-S^-1 (K + speed N) | -S^-1 (C + C_ve + speed G) | -S^-1 L] */
+    size_t *step_at;            /* (n_blocks) where a block's columns start */
+    double *SB;                 /* S^-1 B^T: a column per padded coefficient */
+    double *SP;                 /* S^-1 p: two columns per load (cosine, sine) */
+    double *W;                  /* B S^-1 B^T: a column per padded coefficient */
     bd_branch_weights *weights; /* layer by layer, branch by branch */
 
     /* vectors of a step, padded */
-    double *x, *v, *a;            /* predictor; a without the bearings, then with */
-    double *x_new, *v_new;        /* without the bearings */
-    double *history, *trial;      /* (ranks), (n_stress) */
-    double *y_rate;               /* (ranks) at the new time */
+    double *x, *v, *a;       /* predictor; a without the bearings, then with */
+    double *x_new, *v_new;   /* without the bearings */
+    double *history, *trial; /* (ranks), (n_stress) */
+    double *y_rate;          /* (ranks) at the new time */
     double *z_linear, *z_rate_linear, *z, *z_rate, *Wg; /* (coefs) */
-    double *force, *guess, *change; /* (coefs) */
-    double *K, *C, *J, *inverse;  /* (coefs x coefs) */
-    double *load_factor;          /* (2 n_loads) */
-    double *loss;                 /* (n_padded) scratch of the audit */
+    double *force, *guess, *change;                     /* (coefs) */
+    double *K, *C, *J, *inverse;                        /* (coefs x coefs) */
+    double *load_factor;                                /* (2 n_loads) */
+    double *loss;                                       /* (n_padded) scratch of the audit */
     bd_bearing_work *bearings;
 };
 
