@@ -192,18 +192,78 @@ static double *data_of(PyObject *array)
     return PyArray_DATA((PyArrayObject *)array);
 }
 
-/* (Z, order, sine, n_radial, x0, y0, A, e0, kappa, h0, law, c, table, cage_ratio, angle0) */
+/* Whether a number read as a double stands for an int of 0 ... limit. */
+static int whole(double value, double limit)
+{
+    return value >= 0.0 && value <= limit && value == floor(value);
+}
+
+/* (spin_ratio, ball_diameter, inner_radius, outer_radius, waves, pits, oversize): waves are rows of kind, order,
+ * ball, amplitude, phase; pits of kind, ball, angle, width, depth; oversize (Z,) or empty. */
+static int parse_imperfections(PyObject *keep, PyObject *tuple, bd_bearing_data *bearing)
+{
+    PyObject *waves_in, *pits_in, *oversize_in;
+    if (!PyTuple_Check(tuple) ||
+        !PyArg_ParseTuple(tuple, "ddddOOO:imperfections", &bearing->spin_ratio,
+                          &bearing->ball_diameter, &bearing->inner_radius, &bearing->outer_radius,
+                          &waves_in, &pits_in, &oversize_in)) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "imperfections must be a tuple of 7 values");
+        return -1;
+    }
+    const double *wave = doubles(keep, waves_in, "waves", 2, -1, 5);
+    const npy_intp n_waves = wave ? rows_of_last(keep) : 0;
+    const double *pit = wave ? doubles(keep, pits_in, "pits", 2, -1, 5) : NULL;
+    const npy_intp n_pits = pit ? rows_of_last(keep) : 0;
+    const double *oversize = pit ? doubles(keep, oversize_in, "oversize", 1, -1, -1) : NULL;
+    if (!oversize)
+        return -1;
+    const npy_intp n_sizes = rows_of_last(keep);
+    if (n_waves > 100000 || n_pits > 100000 || (n_sizes != 0 && n_sizes != bearing->n_balls)) {
+        PyErr_SetString(PyExc_ValueError,
+                        "waves, pits: too many; oversize: one value for each ball");
+        return -1;
+    }
+    bd_wave *waves = scratch(keep, (size_t)n_waves, sizeof *waves);
+    bd_pit *pits = waves ? scratch(keep, (size_t)n_pits, sizeof *pits) : NULL;
+    if (!pits)
+        return -1;
+    for (npy_intp w = 0; w < n_waves; w++, wave += 5) {
+        if (!whole(wave[0], BD_WAVE_BALL) || !whole(wave[1], 1e6) || !whole(wave[2], 1e6)) {
+            PyErr_SetString(PyExc_ValueError,
+                            "waves: kind, order and ball must be whole numbers in range");
+            return -1;
+        }
+        waves[w] = (bd_wave){(bd_wave_kind)wave[0], (int)wave[1], (int)wave[2], wave[3], wave[4]};
+    }
+    for (npy_intp p = 0; p < n_pits; p++, pit += 5) {
+        if (!whole(pit[0], BD_PIT_BALL) || !whole(pit[1], 1e6)) {
+            PyErr_SetString(PyExc_ValueError, "pits: kind and ball must be whole numbers in range");
+            return -1;
+        }
+        pits[p] = (bd_pit){(bd_pit_kind)pit[0], (int)pit[1], pit[2], pit[3], pit[4]};
+    }
+    bearing->n_waves = (int)n_waves;
+    bearing->n_pits = (int)n_pits;
+    bearing->waves = waves;
+    bearing->pits = pits;
+    bearing->oversize = n_sizes > 0 ? oversize : NULL;
+    return 0;
+}
+
+/* (Z, order, sine, n_radial, x0, y0, A, e0, kappa, h0, law, c, table, cage_ratio, angle0,
+ * imperfections) */
 static int parse_bearing(PyObject *keep, PyObject *tuple, bd_bearing_data *bearing)
 {
-    PyObject *order, *sine, *table;
+    PyObject *order, *sine, *table, *imperfections;
     int law;
     if (!PyTuple_Check(tuple) ||
-        !PyArg_ParseTuple(tuple, "iOOiddddddidOdd:bearing", &bearing->n_balls, &order, &sine,
+        !PyArg_ParseTuple(tuple, "iOOiddddddidOddO:bearing", &bearing->n_balls, &order, &sine,
                           &bearing->n_radial, &bearing->x0, &bearing->y0, &bearing->A, &bearing->e0,
                           &bearing->contact.kappa, &bearing->contact.h0, &law, &bearing->contact.c,
-                          &table, &bearing->cage_ratio, &bearing->angle0)) {
+                          &table, &bearing->cage_ratio, &bearing->angle0, &imperfections)) {
         if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_TypeError, "a bearing must be a tuple of 15 values");
+            PyErr_SetString(PyExc_TypeError, "a bearing must be a tuple of 16 values");
         return -1;
     }
     PyArrayObject *orders = private_copy(keep, order, NPY_INT, "bearing order", 1, -1, -1);
@@ -236,7 +296,7 @@ static int parse_bearing(PyObject *keep, PyObject *tuple, bd_bearing_data *beari
     bearing->contact.n_table = (int)n_table;
     bearing->contact.table_delta = columns;
     bearing->contact.table_c = columns + n_table;
-    return 0;
+    return parse_imperfections(keep, imperfections, bearing);
 }
 
 /* ---------------------------------------------------------------- functions without a model */
@@ -296,17 +356,19 @@ done:
 }
 
 PyDoc_STRVAR(bearing_force_doc,
-             "bearing_force(bearing, z, z_rate, angle, cage_speed) -> g, K, C, loads\n\n"
+             "bearing_force(bearing, z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)\n"
+             "-> g, K, C, loads\n\n"
              "Force and tangents of one bearing on its coefficients z (n,).");
 
 static PyObject *bearing_force(PyObject *module, PyObject *args)
 {
     PyObject *tuple, *z_in, *rate_in, *result = NULL;
     double angle, cage_speed;
+    bd_turn shaft = {0};
     bd_bearing_data bearing = {0};
     (void)module;
-    if (!PyArg_ParseTuple(args, "OOOdd:bearing_force", &tuple, &z_in, &rate_in, &angle,
-                          &cage_speed))
+    if (!PyArg_ParseTuple(args, "OOOdddd:bearing_force", &tuple, &z_in, &rate_in, &angle,
+                          &cage_speed, &shaft.angle, &shaft.speed))
         return NULL;
     PyObject *keep = PyList_New(0);
     if (!keep)
@@ -321,7 +383,10 @@ static PyObject *bearing_force(PyObject *module, PyObject *args)
     }
     const double *z = doubles(keep, z_in, "z", 1, bearing.n_coefs, -1);
     const double *rate = z ? doubles(keep, rate_in, "z_rate", 1, bearing.n_coefs, -1) : NULL;
-    if (!rate || require_finite(&angle, 1, "angle") || require_finite(&cage_speed, 1, "cage_speed"))
+    if (!rate || require_finite(&angle, 1, "angle") ||
+        require_finite(&cage_speed, 1, "cage_speed") ||
+        require_finite(&shaft.angle, 1, "shaft_angle") ||
+        require_finite(&shaft.speed, 1, "shaft_speed"))
         goto done;
     g = new_array(1, bearing.n_coefs, 0);
     K = new_array(2, bearing.n_coefs, bearing.n_coefs);
@@ -329,7 +394,7 @@ static PyObject *bearing_force(PyObject *module, PyObject *args)
     loads = new_array(1, bearing.n_balls, 0);
     if (!g || !K || !C || !loads)
         goto done;
-    status = bd_bearing_single(&bearing, z, rate, angle, cage_speed, data_of(g), data_of(K),
+    status = bd_bearing_single(&bearing, z, rate, angle, cage_speed, shaft, data_of(g), data_of(K),
                                data_of(C), data_of(loads));
     if (status != BD_OK)
         raise_status(status, "bearing_force");
@@ -667,22 +732,24 @@ static const double chunk_seconds = 0.05;
 
 PyDoc_STRVAR(
     model_march_doc,
-    "march(state, steps, decimate, dt, beta, gamma, speed, tolerance, max_iterations, audit,\n"
+    "march(state, steps, decimate, dt, beta, gamma, times, speeds, tolerance, max_iterations, "
+    "audit,\n"
     "      isa, start, progress) -> record, state, report\n\n"
     "The GIL is released. A new state is returned; the one given is not touched. progress(done,\n"
-    "total) is called every 0.05 s. report: status, steps, iterations, refreshes, t, residual,\n"
+    "total) is called every 0.05 s. report: status, steps, iterations, refreshes, refactors, t, "
+    "residual,\n"
     "bearing. An interrupt (Ctrl-C) ends the march with status 1 and what was recorded, be\n"
     "it in the last of its steps.");
 
 static PyObject *model_march(PyObject *object, PyObject *args)
 {
     const bd_model *model = model_of(object);
-    PyObject *state_in, *progress, *result = NULL;
+    PyObject *state_in, *time_in, *speed_in, *progress, *result = NULL;
     long long steps, decimate;
     int start, isa;
     bd_scheme scheme;
-    if (!PyArg_ParseTuple(args, "OLLdddddipipO:march", &state_in, &steps, &decimate, &scheme.dt,
-                          &scheme.beta, &scheme.gamma, &scheme.speed, &scheme.tolerance,
+    if (!PyArg_ParseTuple(args, "OLLdddOOdipipO:march", &state_in, &steps, &decimate, &scheme.dt,
+                          &scheme.beta, &scheme.gamma, &time_in, &speed_in, &scheme.tolerance,
                           &scheme.max_iterations, &scheme.audit, &isa, &start, &progress))
         return NULL;
     scheme.isa = (bd_isa)isa;
@@ -701,7 +768,10 @@ static PyObject *model_march(PyObject *object, PyObject *args)
     PyObject *state = NULL, *record = NULL;
     bd_work *work = NULL;
     const double *given = state_of(keep, model, state_in);
-    if (!given)
+    if (!given || !(scheme.speed.time = doubles(keep, time_in, "speed time", 1, -1, -1)))
+        goto done;
+    scheme.speed.n = (int)Py_MIN(rows_of_last(keep), INT_MAX);
+    if (!(scheme.speed.value = doubles(keep, speed_in, "speed value", 1, scheme.speed.n, -1)))
         goto done;
     state = new_array(1, (npy_intp)bd_state_size(model), 0);
     record = new_array(2, (npy_intp)(steps / decimate + 1), channels);
@@ -718,7 +788,8 @@ static PyObject *model_march(PyObject *object, PyObject *args)
     Py_BEGIN_ALLOW_THREADS if (start) status =
         bd_start(model, &scheme, &module->lapack, work, flat);
     if (status == BD_OK)
-        status = bd_prepare(model, &scheme, &module->lapack, work);
+        status = bd_prepare(model, &scheme, &module->lapack,
+                            bd_reference_speed(model, &scheme, flat, start != 0), work);
     Py_END_ALLOW_THREADS if (status == BD_BAD_VALUE || status == BD_NO_MEMORY)
     {
         raise_status(status, "march: dt, beta, gamma, speed, tolerance or max_iterations");
@@ -739,10 +810,17 @@ static PyObject *model_march(PyObject *object, PyObject *args)
         total.steps += report.steps;
         total.iterations += report.iterations;
         total.refreshes += report.refreshes;
+        total.grazing += report.grazing;
         total.t = report.t;
         total.residual = report.residual;
         total.bearing = report.bearing;
-        if (took < 0.5 * chunk_seconds)
+        if (report.status == BD_REFACTOR) { /* the speed has moved on: factor where it is now */
+            Py_BEGIN_ALLOW_THREADS total.status =
+                bd_prepare(model, &scheme, &module->lapack,
+                           bd_reference_speed(model, &scheme, flat, true), work);
+            Py_END_ALLOW_THREADS total.refactors++;
+        }
+        if (took < 0.5 * chunk_seconds && report.steps == now) /* not cut short by a refactoring */
             chunk *= 2;
         else if (took > chunk_seconds && chunk > 1)
             chunk /= 2;
@@ -755,9 +833,9 @@ static PyObject *model_march(PyObject *object, PyObject *args)
     }
     PyObject *used = PySequence_GetSlice(record, 0, (Py_ssize_t)kept);
     if (used)
-        result = Py_BuildValue("NO(iLLLddi)", used, state, (int)total.status, total.steps,
-                               total.iterations, total.refreshes, total.t, total.residual,
-                               total.bearing);
+        result = Py_BuildValue("NO(iLLLLLddi)", used, state, (int)total.status, total.steps,
+                               total.iterations, total.refreshes, total.refactors, total.grazing,
+                               total.t, total.residual, total.bearing);
 done:
     bd_work_free(work);
     Py_XDECREF(state);
@@ -869,7 +947,14 @@ static PyMethodDef model_methods[] = {
     {NULL, NULL, 0, NULL},
 };
 
+static PyObject *model_channels(PyObject *object, void *closure)
+{
+    (void)closure;
+    return PyLong_FromLong(bd_model_channels(model_of(object)));
+}
+
 static PyGetSetDef model_getset[] = {
+    {"channels", model_channels, NULL, "Number of recorded channels.", NULL},
     {"blocks", model_blocks, NULL, "Blocks of coordinates that the structure couples.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };

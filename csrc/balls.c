@@ -61,7 +61,8 @@ BD_INLINE void indent(const bd_bearing *bearing, bd_bearing_work *work, const do
     for (size_t first = 0; first < balls; first += BD_WIDTH) {
         /* relative motion of the groove centres: dX, dY, their slopes in psi, and their own rates */
         const double *phi = work->phi + first, *dphi = work->dphi + first;
-        lanes dX = {0}, dY = {0}, turn_X = {0}, turn_Y = {0}, X_rate = {0}, Y_rate = {0};
+        lanes dX = LANES(work->shift_X + first), dY = LANES(work->shift_Y + first);
+        lanes X_rate = {0}, Y_rate = {0}, turn_X = {0}, turn_Y = {0};
         size_t k = 0;
         for (; k < n_radial; k++, phi += balls, dphi += balls) {
             dY += LANES(phi) * z[k];
@@ -73,8 +74,8 @@ BD_INLINE void indent(const bd_bearing *bearing, bd_bearing_work *work, const do
             turn_X += LANES(dphi) * z[k];
             X_rate += LANES(phi) * z_rate[k];
         }
-        turn_X *= cage_speed;
-        turn_Y *= cage_speed;
+        turn_X = turn_X * cage_speed + LANES(work->shift_X_rate + first);
+        turn_Y = turn_Y * cage_speed + LANES(work->shift_Y_rate + first);
         X_rate += turn_X;
         Y_rate += turn_Y;
 
@@ -87,10 +88,13 @@ BD_INLINE void indent(const bd_bearing *bearing, bd_bearing_work *work, const do
         LANES_AT(work->sine_a + first) = sine_a;
         LANES_AT(work->cosine_a + first) = cosine_a;
         LANES_AT(work->tilt + first) = tilt;
-        LANES_AT(work->delta + first) = stretch / (length + A) + LANES(bearing->absent + first);
-        LANES_AT(work->rate + first) = sine_a * X_rate + cosine_a * Y_rate;
+        LANES_AT(work->delta + first) =
+            stretch / (length + A) + (LANES(work->shift + first) + LANES(bearing->absent + first));
+        LANES_AT(work->rate + first) =
+            sine_a * X_rate + cosine_a * Y_rate + LANES(work->shift_rate + first);
         LANES_AT(work->turn + first) = (cosine_a * X_rate - sine_a * Y_rate) * tilt;
-        LANES_AT(work->turning + first) = sine_a * turn_X + cosine_a * turn_Y;
+        LANES_AT(work->turning + first) =
+            sine_a * turn_X + cosine_a * turn_Y + LANES(work->shift_rate + first);
     }
 }
 

@@ -13,12 +13,12 @@ static const double no_ball = -1e6;
 size_t bd_bearing_work_size(const bd_bearing_data *data)
 {
     size_t balls = (size_t)BD_PADDED(data->n_balls), coefs = (size_t)BD_PADDED(data->n_coefs);
-    return 2 * (size_t)data->n_coefs * balls + 2 * balls * coefs + 10 * balls;
+    return 2 * (size_t)data->n_coefs * balls + 2 * balls * coefs + 16 * balls;
 }
 
 size_t bd_bearing_constants(const bd_bearing_data *data)
 {
-    return 3 * (size_t)BD_PADDED(data->n_balls);
+    return (3 + 2 * (size_t)data->n_waves) * (size_t)BD_PADDED(data->n_balls);
 }
 
 void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *constants)
@@ -35,21 +35,34 @@ void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *
         spacing_sin[j] = real ? sin(angle) : 0.0;
         absent[j] = real ? 0.0 : no_ball;
     }
+    double *wave_cos = absent + balls, *wave_sin = wave_cos + (size_t)data->n_waves * (size_t)balls;
+    for (int w = 0; w < data->n_waves; w++)
+        for (int j = 0; j < data->n_balls; j++) {
+            /* the remainder keeps high orders exact */
+            long long step = (long long)data->waves[w].order * j % data->n_balls;
+            double angle = 2.0 * pi * (double)step / (double)data->n_balls;
+            wave_cos[w * balls + j] = cos(angle);
+            wave_sin[w * balls + j] = sin(angle);
+        }
     bearing->data = *data;
     bearing->balls = balls;
     bearing->coefs = BD_PADDED(data->n_coefs);
     bearing->spacing_cos = spacing_cos;
     bearing->spacing_sin = spacing_sin;
     bearing->absent = absent;
+    bearing->wave_cos = wave_cos;
+    bearing->wave_sin = wave_sin;
 }
 
 void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, double *memory)
 {
     size_t balls = (size_t)bearing->balls, coefs = (size_t)bearing->coefs;
     size_t by_ball = (size_t)bearing->data.n_coefs * balls;
-    double **parts[] = {&work->sine_a,    &work->cosine_a, &work->delta,   &work->rate,
-                        &work->turn,      &work->tilt,     &work->turning, &work->force,
-                        &work->stiffness, &work->damping};
+    double **parts[] = {
+        &work->sine_a,    &work->cosine_a,     &work->delta,        &work->rate,
+        &work->turn,      &work->tilt,         &work->turning,      &work->force,
+        &work->stiffness, &work->damping,      &work->shift_X,      &work->shift_Y,
+        &work->shift,     &work->shift_X_rate, &work->shift_Y_rate, &work->shift_rate};
 
     work->phi = memory;
     work->dphi = work->phi + by_ball;
@@ -61,8 +74,8 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
 }
 
 bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const double *z_rate,
-                            double angle, double cage_speed, double *g, double *K, double *C,
-                            double *loads)
+                            double angle, double cage_speed, bd_turn shaft, double *g, double *K,
+                            double *C, double *loads)
 {
     size_t coefs = (size_t)BD_PADDED(data->n_coefs), n = (size_t)data->n_coefs;
     size_t constants = bd_bearing_constants(data), scratch = bd_bearing_work_size(data);
@@ -81,6 +94,8 @@ bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const 
     memcpy(padded_z, z, n * sizeof *z);
     memcpy(padded_rate, z_rate, n * sizeof *z_rate);
     kernels->turn(&bearing, &work, angle);
+    if (!bd_bearing_perfect(&bearing))
+        bd_bearing_imperfect(&bearing, &work, angle, cage_speed, shaft);
     kernels->force(&bearing, &work, padded_z, padded_rate, cage_speed, padded_g);
     kernels->tangent(&bearing, &work, cage_speed, (int)coefs, padded_K, padded_C);
 

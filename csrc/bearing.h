@@ -2,13 +2,16 @@
 #ifndef BD_BEARING_H
 #define BD_BEARING_H
 
+#include <stdbool.h>
+
 #include "bearingdyn.h"
 
 struct bd_bearing {
     bd_bearing_data data;                    /* its pointers lie in the model's slab */
     int balls, coefs;                        /* padded to whole lanes */
     const double *spacing_cos, *spacing_sin; /* (balls) of 2 pi j/Z */
-    const double *absent; /* (balls) 0, or a gap no ball closes in padding lanes */
+    const double *absent;              /* (balls) 0, or a gap no ball closes in padding lanes */
+    const double *wave_cos, *wave_sin; /* (n_waves x balls) of order * 2 pi j/Z */
 };
 
 /* Scratch; all arrays are padded. `phi` is kept twice: a ball per lane to indent, a coefficient per lane
@@ -20,7 +23,9 @@ struct bd_bearing_work {
     double *delta, *rate,
         *turn;       /* (balls) indentation, its rate, (cos a Xdot - sin a Ydot)/Lambda */
     double *tilt;    /* (balls) 1/Lambda */
-    double *turning; /* (balls) ddelta/dpsi times cage speed */
+    double *turning; /* (balls) rate of indentation at rest: the race runs past the ball */
+    double *shift_X, *shift_Y, *shift; /* (balls) of imperfections: groove centres, indentation */
+    double *shift_X_rate, *shift_Y_rate, *shift_rate;
     double *force, *stiffness, *damping; /* (balls) */
 };
 
@@ -30,5 +35,12 @@ void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *
 
 /* Carve a work out of bd_bearing_work_size doubles, zeroed. */
 void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, double *memory);
+
+/* Whether a bearing has no waves, pits or unequal balls; its shifts are then zero for ever. */
+bool bd_bearing_perfect(const bd_bearing *bearing);
+
+/* Shifts of all balls at the first ball's azimuth psi and the shaft's turn. */
+void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, double psi,
+                          double cage_speed, bd_turn turn);
 
 #endif

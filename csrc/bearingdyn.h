@@ -26,6 +26,7 @@
 #ifndef BEARINGDYN_H
 #define BEARINGDYN_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "lapack.h"
@@ -36,6 +37,7 @@
 #define BD_STATUS_LIST(X)                                                                          \
     X(BD_OK, 0, "success")                                                                         \
     X(BD_INTERRUPTED, 1, "interrupted by the user")                                                \
+    X(BD_REFACTOR, 2, "the speed has moved away from the one the step was factored at")            \
     X(BD_NO_MEMORY, -1, "out of memory")                                                           \
     X(BD_BAD_SHAPE, -2, "an array has the wrong shape")                                            \
     X(BD_BAD_VALUE, -3, "a value is outside its domain")                                           \
@@ -112,6 +114,37 @@ typedef struct bd_contact {
 /* Each race's groove-centre displacement is a Fourier series in the azimuth, radial and axial. The
  * kernel sees coefficients inner minus outer, all radial ones before all axial ones. A rigid ring has
  * radial cos 1, sin 1 and axial cos 0, cos 1, sin 1; a flexible ring just has more. */
+/* How the shaft turns at one time. */
+typedef struct bd_turn {
+    double speed, rate, angle; /* rad/s, rad/s^2, rad */
+} bd_turn;
+
+typedef enum bd_wave_kind {
+    BD_WAVE_INNER_RADIAL, /* of the inner race, which turns with the shaft */
+    BD_WAVE_INNER_AXIAL,
+    BD_WAVE_OUTER_RADIAL,
+    BD_WAVE_OUTER_AXIAL,
+    BD_WAVE_BALL /* of one ball's surface; met by both races, so odd orders cancel */
+} bd_wave_kind;
+
+/* amplitude cos(order angle + phase), the angle measured on the body that carries the wave. A race's wave is
+ * the displacement of its surface along +r or +z. */
+typedef struct bd_wave {
+    bd_wave_kind kind;
+    int order, ball; /* ball: which one carries it, 0 ... n_balls - 1 */
+    double amplitude, phase;
+} bd_wave;
+
+typedef enum bd_pit_kind { BD_PIT_INNER, BD_PIT_OUTER, BD_PIT_BALL } bd_pit_kind;
+
+/* A localised defect. A ball drops into it by min(depth, D/2 - sqrt(D^2/4 - (width/2 - |s|)^2)), s the arc
+ * from its centre: continuous, and a ball cannot reach the bottom of a narrow pit. */
+typedef struct bd_pit {
+    bd_pit_kind kind;
+    int ball;
+    double angle, width, depth; /* angle of its centre on the body that carries it */
+} bd_pit;
+
 typedef struct bd_bearing_data {
     int n_balls, n_coefs, n_radial;
     const int *order; /* (n_coefs) */
@@ -122,6 +155,12 @@ typedef struct bd_bearing_data {
     bd_contact contact;
     double cage_ratio; /* cage speed over shaft speed */
     double angle0;     /* azimuth of the first ball at zero shaft angle */
+    double spin_ratio; /* spin of a ball about its own axis over shaft speed */
+    double ball_diameter, inner_radius, outer_radius; /* of a ball; of the races where balls run */
+    int n_waves, n_pits;
+    const bd_wave *waves;
+    const bd_pit *pits;
+    const double *oversize; /* (n_balls) diameter of each ball beyond the nominal, or NULL */
 } bd_bearing_data;
 
 typedef struct bd_bearing bd_bearing;           /* as kept in a model */
@@ -144,7 +183,8 @@ typedef struct bd_layer_data {
 typedef enum bd_load_kind {
     BD_LOAD_CONSTANT, /* p_cos */
     BD_LOAD_HARMONIC, /* p_cos cos(omega t) + p_sin sin(omega t) */
-    BD_LOAD_ROTATING, /* speed^2 (p_cos cos(theta) + p_sin sin(theta)), theta the shaft angle */
+    BD_LOAD_ROTATING, /* unbalance: speed^2 (p_cos cos(theta) + p_sin sin(theta)) and, while the speed
+                       * changes, speed' (p_cos sin(theta) - p_sin cos(theta)) */
     BD_LOAD_SAMPLED   /* p_cos times a table, linear between samples, its ends held */
 } bd_load_kind;
 
@@ -200,9 +240,16 @@ int bd_model_size(const bd_model *model);
 
 /* ---------------------------------------------------------------- state and march (newmark.c) */
 
+/* Speed of the shaft, rad/s: linear between the given times, held outside. One time is a constant speed. The
+ * shaft angle is its exact integral, with angle speed[0] time[0] at time[0]. */
+typedef struct bd_speed {
+    int n;
+    const double *time, *value; /* (n) */
+} bd_speed;
+
 typedef struct bd_scheme {
     double dt, beta, gamma; /* Newmark; 1/4 and 1/2 conserve energy */
-    double speed;           /* rad/s of the shaft */
+    bd_speed speed;         /* its arrays are the caller's; bd_start and bd_prepare copy them */
     double tolerance;       /* of a bearing's force against the largest, per step */
     int max_iterations;
     int audit;  /* nonzero: energies and work are integrated */
@@ -224,6 +271,8 @@ typedef struct bd_report {
     long long steps;      /* done in this call */
     long long iterations; /* bearing evaluations in this call */
     long long refreshes;  /* of Newton's matrix in this call */
+    long long refactors;  /* of S, because the speed moved: counted by the caller */
+    long long grazing;    /* steps that ended on the position alone, where a film opens or closes */
     double t, residual;   /* at the end; relative residual of the last step */
     int bearing;          /* with the largest residual, -1 without */
 } bd_report;
@@ -233,8 +282,9 @@ size_t bd_state_size(const bd_model *model);
 
 /* Views of a state's parts; vectors are padded and in the model's block order. */
 typedef struct bd_state {
-    double
-        *clock; /* (4) time origin, steps since, dt of those steps, 1 if Newton's inverse is set */
+    double *
+        clock; /* (6) time origin, steps since, dt of those steps, 1 if Newton's inverse is set, speed
+                    * that S is factored at, 1 if that is set */
     double *x, *v, *a; /* (n_padded) */
     double *y_rate;    /* (rank_padded) layer rates L^T v */
     double *stress;    /* branch stresses, layer by layer, branch by branch */
@@ -257,10 +307,16 @@ typedef struct bd_work bd_work;
 bd_work *bd_work_create(const bd_model *model); /* NULL: out of memory */
 void bd_work_free(bd_work *work);               /* safe on NULL */
 
-/* Factors the effective mass S = M + gamma dt (C + C_ve + speed G) + beta dt^2 (K + speed N) block by block and
- * forms the operators of a step. LAPACK is used here and nowhere in the march. */
+/* Factors the effective mass S = M + gamma dt (C + C_ve + speed G) + beta dt^2 (K + speed N) at a reference
+ * speed, block by block, and forms the operators of a step. LAPACK is used here and nowhere in the march.
+ * Notes:    at a constant speed the reference must be that speed; else bd_reference_speed gives it. */
 bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
-                     bd_work *work);
+                     double reference_speed, bd_work *work);
+
+/* The speed a state's march is factored at: of the state if it has one, else that at the end of the
+ * next step; with `anew`, always the latter. It is kept in the state, so that a resumed march repeats
+ * every bit. */
+double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double *flat, bool anew);
 
 /* The acceleration that satisfies (1) at the state's own displacement, velocity and branch stress.
  * Notes:    before bd_prepare, whose operators it overwrites; without BD_OK the acceleration is void */
@@ -271,7 +327,8 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
  * Given:    decimate >= 1: a row of channels is kept each time the state's step count is a multiple;
  *           record has room for n_steps/decimate + 1 rows of n_channels
  * Returned: rows written; report
- * Notes:    allocates nothing, calls no LAPACK. On failure the state is that of the last good step. */
+ * Notes:    allocates nothing, calls no LAPACK. On failure the state is that of the last good step.
+ *           BD_REFACTOR asks for bd_prepare at bd_reference_speed(..., true); then the march goes on. */
 long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work, double *flat,
                    long long n_steps, long long decimate, double *record, bd_report *report);
 
@@ -279,8 +336,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
  * Returned: g (n_coefs), K and C (n_coefs x n_coefs row-major) = dg/dz, dg/dzdot, loads (n_balls);
  *           BD_NOT_FINITE where they overflow */
 bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const double *z_rate,
-                            double angle, double cage_speed, double *g, double *K, double *C,
-                            double *loads);
+                            double angle, double cage_speed, bd_turn shaft, double *g, double *K,
+                            double *C, double *loads);
 
 /* ---------------------------------------------------------------- harmonic response (harmonic.c) */
 

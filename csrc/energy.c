@@ -32,12 +32,18 @@ void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state
     energy->elastic = quadratic(model, model->K, state->x, work->loss);
     double linear = 2.0 * quadratic(model, model->C, state->v, work->loss);
 
-    /* the circulatory force -speed N x: the shaft turns damping material through its own deflection */
+    /* the circulatory force -speed N x: the shaft turns damping material through its own deflection; and
+     * the gyroscopic force rate G x of a changing speed */
     quadratic(model, model->N, state->x, work->loss);
     for (int i = 0; i < model->n_padded; i++)
-        turning -= work->scheme.speed * work->loss[i] * state->v[i];
+        turning -= work->turn.speed * work->loss[i] * state->v[i];
+    if (work->turn.rate != 0.0) {
+        quadratic(model, model->G, state->x, work->loss);
+        for (int i = 0; i < model->n_padded; i++)
+            turning -= work->turn.rate * work->loss[i] * state->v[i];
+    }
 
-    bd_load_factors(model, work->scheme.speed, t, work->load_factor);
+    bd_load_factors(model, work, t);
     for (int k = 0; k < model->n_loads; k++)
         for (int i = 0; i < model->n_padded; i++)
             load += (work->load_factor[2 * k] * model->loads[k].p_cos[i] +

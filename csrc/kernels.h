@@ -28,6 +28,9 @@ struct bd_kernels {
     void (*predict)(const bd_model *model, bd_work *work, const bd_state *state);
     /* step.c: bearing coefficients and rates that the structure would have without the bearings */
     void (*observe)(const bd_model *model, bd_work *work);
+    /* step.c: what the departure from the reference speed adds to the acceleration, given the bearing forces
+     * guessed; a = a_steady + a_drift afterwards. Returned: its largest change, and its size */
+    double (*drift)(const bd_model *model, bd_work *work, double *largest);
     /* step.c: z and z_rate that go with the bearing forces guessed */
     void (*displace)(const bd_model *model, bd_work *work);
     /* step.c: guess += share * inverse (force - guess) */

@@ -65,6 +65,27 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
     if (!all_finite(finite, sizeof finite / sizeof finite[0]) || !(bearing->A > 0.0) ||
         !(contact->kappa > 0.0) || !(contact->h0 >= 0.0) || !(contact->c >= 0.0))
         return BD_BAD_VALUE;
+    if (bearing->n_waves < 0 || bearing->n_pits < 0)
+        return BD_BAD_SHAPE;
+    const double sizes[] = {bearing->spin_ratio, bearing->ball_diameter, bearing->inner_radius,
+                            bearing->outer_radius};
+    if (!all_finite(sizes, sizeof sizes / sizeof sizes[0]) ||
+        (bearing->n_pits > 0 && !(bearing->ball_diameter > 0.0)) ||
+        (bearing->oversize && !all_finite(bearing->oversize, (size_t)bearing->n_balls)))
+        return BD_BAD_VALUE;
+    for (int w = 0; w < bearing->n_waves; w++) {
+        const bd_wave *wave = &bearing->waves[w];
+        if (wave->order < 0 || !isfinite(wave->amplitude) || !isfinite(wave->phase) ||
+            wave->ball < 0 || wave->ball >= bearing->n_balls)
+            return BD_BAD_VALUE;
+    }
+    for (int p = 0; p < bearing->n_pits; p++) {
+        const bd_pit *pit = &bearing->pits[p];
+        if (!(pit->width > 0.0) || !(pit->depth >= 0.0) || !isfinite(pit->angle) ||
+            !isfinite(pit->width) || !isfinite(pit->depth) || pit->ball < 0 ||
+            pit->ball >= bearing->n_balls)
+            return BD_BAD_VALUE;
+    }
     if (contact->law == BD_DAMPING_TABLE) {
         if (contact->n_table < 1)
             return BD_BAD_SHAPE;
@@ -368,10 +389,20 @@ static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data
         size_t n_table = own.contact.law == BD_DAMPING_TABLE ? (size_t)own.contact.n_table : 0;
         double *table_delta = copy_doubles(a, n_table, own.contact.table_delta);
         double *table_c = copy_doubles(a, n_table, own.contact.table_c);
+        bd_wave *waves = carve(a, (size_t)own.n_waves, sizeof *waves);
+        bd_pit *pits = carve(a, (size_t)own.n_pits, sizeof *pits);
+        double *oversize = copy_doubles(a, own.oversize ? (size_t)own.n_balls : 0, own.oversize);
         if (!bearings)
             continue;
         memcpy(order, own.order, n_coefs * sizeof *order);
         memcpy(sine, own.sine, n_coefs * sizeof *sine);
+        if (own.n_waves > 0)
+            memcpy(waves, own.waves, (size_t)own.n_waves * sizeof *waves);
+        if (own.n_pits > 0)
+            memcpy(pits, own.pits, (size_t)own.n_pits * sizeof *pits);
+        own.waves = waves;
+        own.pits = pits;
+        own.oversize = own.oversize ? oversize : NULL;
         own.order = order;
         own.sine = sine;
         own.contact.table_delta = table_delta;

@@ -19,6 +19,10 @@ enum { PATIENCE = 3 };
 /* From here on corrections are halved, and a step may end on position alone: a constant c makes the
  * force jump where a film opens, and inside that jump no force balances exactly. */
 enum { GRAZING = 10 };
+/* Turns between bearings and a varying speed, and the contraction that asks for new factors. Just factored, only
+ * W' G x is left, which may contract as slowly as it likes. */
+enum { SWEEPS = 60 };
+static const double slow = 0.1;
 /* Share of the largest bearing displacement to which the position must then be known. */
 static const double grazing_tolerance = 1e-7;
 
@@ -42,8 +46,11 @@ static double sampled(const bd_load *load, double t)
     return load->value[low] + share * (load->value[high] - load->value[low]);
 }
 
-void bd_load_factors(const bd_model *model, double speed, double t, double *factor)
+void bd_load_factors(const bd_model *model, bd_work *work, double t)
 {
+    const bd_turn turn = work->turn;
+    const double c = cos(turn.angle), s = sin(turn.angle), square = turn.speed * turn.speed;
+    double *factor = work->load_factor;
     for (int k = 0; k < model->n_loads; k++, factor += 2) {
         const bd_load *load = &model->loads[k];
         factor[1] = 0.0;
@@ -56,8 +63,8 @@ void bd_load_factors(const bd_model *model, double speed, double t, double *fact
             factor[1] = sin(load->omega * t);
             break;
         case BD_LOAD_ROTATING:
-            factor[0] = speed * speed * cos(speed * t);
-            factor[1] = speed * speed * sin(speed * t);
+            factor[0] = square * c + turn.rate * s;
+            factor[1] = square * s - turn.rate * c;
             break;
         case BD_LOAD_SAMPLED:
             factor[0] = sampled(load, t);
@@ -68,12 +75,15 @@ void bd_load_factors(const bd_model *model, double speed, double t, double *fact
 
 /* ---------------------------------------------------------------- bearings */
 
-void bd_turn_bearings(const bd_model *model, bd_work *work, double t)
+void bd_turn_bearings(const bd_model *model, bd_work *work)
 {
     for (int b = 0; b < model->n_bearings; b++) {
-        const bd_bearing_data *data = &model->bearings[b].data;
-        work->kernels->turn(&model->bearings[b], &work->bearings[b],
-                            data->angle0 + data->cage_ratio * work->scheme.speed * t);
+        const bd_bearing *bearing = &model->bearings[b];
+        const double psi = bearing->data.angle0 + bearing->data.cage_ratio * work->turn.angle;
+        work->kernels->turn(bearing, &work->bearings[b], psi);
+        if (!bd_bearing_perfect(bearing))
+            bd_bearing_imperfect(bearing, &work->bearings[b], psi,
+                                 bearing->data.cage_ratio * work->turn.speed, work->turn);
     }
 }
 
@@ -83,7 +93,7 @@ void bd_force_bearings(const bd_model *model, bd_work *work)
         int at = model->bearing_slot[b];
         work->kernels->force(
             &model->bearings[b], &work->bearings[b], work->z + at, work->z_rate + at,
-            model->bearings[b].data.cage_ratio * work->scheme.speed, work->force + at);
+            model->bearings[b].data.cage_ratio * work->turn.speed, work->force + at);
     }
 }
 
@@ -103,7 +113,7 @@ static int refresh(const bd_model *model, bd_work *work)
         const size_t at = (size_t)model->bearing_slot[b], n = (size_t)bearing->data.n_coefs;
         const size_t stride = (size_t)bearing->coefs;
         work->kernels->tangent(bearing, &work->bearings[b],
-                               bearing->data.cage_ratio * scheme->speed, bearing->coefs, work->K,
+                               bearing->data.cage_ratio * work->turn.speed, bearing->coefs, work->K,
                                work->C);
         for (size_t k = 0; k < n; k++)
             for (size_t l = 0; l < n; l++) {
@@ -167,7 +177,7 @@ static int worst_bearing(const bd_model *model, const bd_work *work)
     return worst;
 }
 
-/* Newton's iteration on the bearing forces; the frozen inverse lives in the state. */
+/* Newton's iteration on the bearing forces, from work->guess; the frozen inverse lives in the state. */
 static bd_status solve_bearings(const bd_model *model, bd_work *work, bd_state *state,
                                 bd_report *report)
 {
@@ -176,7 +186,6 @@ static bd_status solve_bearings(const bd_model *model, bd_work *work, bd_state *
     const double *inverse = state->inverse;
     bool fresh = state->clock[3] != 0.0;
 
-    memcpy(work->guess, state->g, m * sizeof *work->guess);
     for (int iteration = 0; iteration < scheme->max_iterations; iteration++) {
         double residual, scale;
         work->kernels->displace(model, work);
@@ -188,8 +197,10 @@ static bd_status solve_bearings(const bd_model *model, bd_work *work, bd_state *
             report->bearing = worst_bearing(model, work);
             return BD_NOT_FINITE;
         }
-        bool converged = residual <= scheme->tolerance * scale ||
-                         (iteration >= GRAZING && position_settled(model, work));
+        const bool balanced = residual <= scheme->tolerance * scale;
+        const bool grazes = !balanced && iteration >= GRAZING && position_settled(model, work);
+        const bool converged = balanced || grazes;
+        report->grazing += grazes;
         if (!converged && (!fresh || iteration >= PATIENCE)) {
             if (refresh(model, work)) {
                 report->bearing = worst_bearing(model, work);
@@ -211,6 +222,47 @@ static bd_status solve_bearings(const bd_model *model, bd_work *work, bd_state *
     }
     report->bearing = worst_bearing(model, work);
     return BD_NO_CONVERGENCE;
+}
+
+/* One step's bearing forces and, while the speed varies, its departure from the reference:
+ *     a = a_steady + a_drift - S^-1 B^T g,   a_drift = -S^-1 [(W - W_ref)(G v + N x) + W' G x]
+ * by turns, each contracting by about dt times the departure; when that is no longer quick, S is asked for anew.
+ */
+static bd_status solve_step(const bd_model *model, bd_work *work, bd_state *state,
+                            bd_report *report)
+{
+    const size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
+    const bool bearings = model->n_bearings > 0;
+    const bool factored_here = work->reference == work->turn.speed;
+    double before = INFINITY;
+
+    memcpy(work->guess, state->g, m * sizeof *work->guess);
+    if (!work->drift) {
+        if (!bearings)
+            return BD_OK;
+        work->kernels->observe(model, work);
+        return solve_bearings(model, work, state, report);
+    }
+
+    memcpy(work->a_steady, work->a, n * sizeof *work->a);
+    memset(work->a_drift, 0, n * sizeof *work->a_drift);
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        double largest, change = work->kernels->drift(model, work, &largest);
+        if (!isfinite(change))
+            return BD_NOT_FINITE;
+        if (bearings) {
+            work->kernels->observe(model, work);
+            bd_status status = solve_bearings(model, work, state, report);
+            if (status != BD_OK)
+                return status;
+        }
+        if (change <= 1e-3 * work->scheme.tolerance * largest)
+            return BD_OK;
+        if (sweep > 0 && change > (factored_here ? 1.0 : slow) * before)
+            break;
+        before = change;
+    }
+    return factored_here ? BD_NO_CONVERGENCE : BD_REFACTOR;
 }
 
 /* ---------------------------------------------------------------- march */
@@ -263,6 +315,7 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
 
     if (!bd_work_choose(work, scheme))
         return BD_BAD_VALUE;
+    work->turn = bd_turn_at(work, t);
     state.clock[0] = t;
     state.clock[1] = 0.0;
     state.clock[2] = scheme->dt;
@@ -270,10 +323,10 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
     memset(work->z_rate, 0, (size_t)model->coefs * sizeof *work->z_rate);
     columns_add_two(model->coefs, model->n_padded, model->B, model->coefs, state.x, state.v,
                     work->z, work->z_rate);
-    bd_turn_bearings(model, work, t);
+    bd_turn_bearings(model, work);
     bd_force_bearings(model, work);
     memcpy(state.g, work->force, (size_t)model->coefs * sizeof *state.g);
-    bd_load_factors(model, scheme->speed, t, work->load_factor);
+    bd_load_factors(model, work, t);
 
     /* residual force on every coordinate; work->loss is free here */
     double *force = work->loss;
@@ -318,8 +371,10 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
         double *x = state.x + block->offset, *v = state.v + block->offset;
         for (size_t i = 0; i < n; i++)
             for (size_t j = 0; j < n; j++)
-                right[i] -= (K[i * n + j] + scheme->speed * N[i * n + j]) * x[j] +
-                            (C[i * n + j] + scheme->speed * G[i * n + j]) * v[j];
+                right[i] -= (K[i * n + j] + work->turn.speed * N[i * n + j] +
+                             work->turn.rate * G[i * n + j]) *
+                                x[j] +
+                            (C[i * n + j] + work->turn.speed * G[i * n + j]) * v[j];
         double *factor = work->step + work->step_at[b];
         memcpy(factor, model->M + block->matrix, n * n * sizeof *factor);
         if (bd_solve_real(lapack, block->n, factor, pivots, 1, right))
@@ -354,17 +409,16 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         const double t = state.clock[0] + (state.clock[1] + 1.0) * dt;
 
         /* the structure without its bearings */
-        bd_load_factors(model, scheme->speed, t, work->load_factor);
+        work->turn = bd_turn_at(work, t);
+        bd_load_factors(model, work, t);
         work->kernels->predict(model, work, &state);
 
         /* the bearings, on their own few numbers */
-        if (model->n_bearings > 0) {
-            bd_turn_bearings(model, work, t);
-            work->kernels->observe(model, work);
-            report->status = solve_bearings(model, work, &state, report);
-            if (report->status != BD_OK)
-                break;
-        }
+        if (model->n_bearings > 0)
+            bd_turn_bearings(model, work);
+        report->status = solve_step(model, work, &state, report);
+        if (report->status != BD_OK)
+            break;
 
         /* both together; only now does the state change */
         if (work->kernels->commit(model, work, &state)) {

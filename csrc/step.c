@@ -63,6 +63,50 @@ static void observe(const bd_model *model, bd_work *work)
                     work->z_linear, work->z_rate_linear);
 }
 
+/* What a speed other than the reference adds. */
+static double drift(const bd_model *model, bd_work *work, double *largest)
+{
+    const bd_scheme *scheme = &work->scheme;
+    const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
+    const double departure = work->turn.speed - work->reference, rate = work->turn.rate;
+    const double *columns = work->drift;
+    double change = 0.0;
+    *largest = 0.0;
+
+    /* x and v that go with the present guess of everything */
+    for (int i = 0; i < model->n_padded; i += BD_WIDTH)
+        LANES_AT(work->a + i) = LANES(work->a_steady + i) + LANES(work->a_drift + i);
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+        LANES_AT(work->change + k) = -LANES(work->guess + k);
+    columns_add(model->n_padded, model->coefs, work->SB, model->n_padded, work->change, work->a);
+    for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
+        lanes a = LANES(work->a + i);
+        lanes x = LANES(work->x + i) + in_x * a, v = LANES(work->v + i) + in_v * a;
+        LANES_AT(work->x_new + i) = -departure * v - rate * x; /* what meets G */
+        LANES_AT(work->v_new + i) = -departure * x;            /* what meets N */
+        LANES_AT(work->a + i) = (lanes){0};
+    }
+    for (int b = 0; b < model->n_blocks; b++) {
+        const bd_block *block = &model->blocks[b];
+        const size_t square = (size_t)block->padded * (size_t)block->n;
+        columns_add(block->padded, block->n, columns, block->padded, work->x_new + block->offset,
+                    work->a + block->offset);
+        columns_add(block->padded, block->n, columns + square, block->padded,
+                    work->v_new + block->offset, work->a + block->offset);
+        columns += 2 * square;
+    }
+    for (int i = 0; i < model->n_padded; i++) {
+        double difference = __builtin_fabs(work->a[i] - work->a_drift[i]);
+        change = __builtin_fmax(change, difference); /* a NaN is seen when the step is committed */
+        *largest = __builtin_fmax(*largest, __builtin_fabs(work->a[i]));
+    }
+    for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
+        LANES_AT(work->a_drift + i) = LANES(work->a + i);
+        LANES_AT(work->a + i) = LANES(work->a_steady + i) + LANES(work->a_drift + i);
+    }
+    return change;
+}
+
 /* z and z_rate that go with the bearing forces guessed. */
 static void displace(const bd_model *model, bd_work *work)
 {
@@ -142,6 +186,7 @@ const bd_kernels BD_NAMED(bd_kernels) = {
     .tangent = BD_NAMED(bd_bearing_tangent),
     .predict = predict,
     .observe = observe,
+    .drift = drift,
     .displace = displace,
     .correct = correct,
     .commit = commit,

@@ -62,6 +62,8 @@ bd_work *bd_work_create(const bd_model *model)
         {&work->inverse, m * m},
         {&work->load_factor, 2 * (size_t)BD_PADDED(model->n_loads)},
         {&work->loss, n},
+        {&work->a_steady, n},
+        {&work->a_drift, n},
     };
     size_t n_pieces = sizeof pieces / sizeof pieces[0], total = bearing_scratch;
     for (size_t i = 0; i < n_pieces; i++)
@@ -103,6 +105,8 @@ void bd_work_free(bd_work *work)
     free(work->step_at);
     free(work->weights);
     free(work->bearings);
+    free(work->profile);
+    free(work->drift);
     free(work);
 }
 
@@ -112,14 +116,74 @@ static bool valid(const bd_scheme *scheme)
 {
     return scheme->dt > 0.0 && isfinite(scheme->dt) && scheme->beta >= 0.0 &&
            scheme->gamma >= 0.0 && isfinite(scheme->beta) && isfinite(scheme->gamma) &&
-           isfinite(scheme->speed) && scheme->tolerance > 0.0 && scheme->max_iterations >= 1;
+           scheme->speed.n >= 1 && scheme->tolerance > 0.0 && scheme->max_iterations >= 1;
+}
+
+/* Copies the knots of the speed and integrates them. Returned: whether they are usable. */
+static bool take_speed(bd_work *work, const bd_speed *speed)
+{
+    const size_t n = (size_t)speed->n;
+    double *profile = malloc(3 * n * sizeof *profile);
+    if (!profile)
+        return false;
+    double *time = profile, *value = profile + n, *angle = profile + 2 * n;
+    bool usable = true;
+    for (size_t k = 0; k < n; k++) {
+        time[k] = speed->time[k];
+        value[k] = speed->value[k];
+        angle[k] = k == 0
+                       ? value[0] * time[0]
+                       : angle[k - 1] + 0.5 * (value[k - 1] + value[k]) * (time[k] - time[k - 1]);
+        usable =
+            usable && isfinite(time[k]) && isfinite(value[k]) && (k == 0 || time[k] > time[k - 1]);
+    }
+    free(work->profile);
+    work->profile = profile;
+    work->scheme.speed.time = time;
+    work->scheme.speed.value = value;
+    return usable;
+}
+
+/* Speed and its rate at time t, and the knot at or before it (0 before the first). */
+static int interpolate(const bd_speed *speed, double t, double *value, double *rate)
+{
+    int low = 0, high = speed->n - 1;
+    *rate = 0.0;
+    if (t <= speed->time[0] || t >= speed->time[high]) {
+        low = t <= speed->time[0] ? 0 : high;
+        *value = speed->value[low];
+        return low;
+    }
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (speed->time[middle] <= t)
+            low = middle;
+        else
+            high = middle;
+    }
+    *rate = (speed->value[high] - speed->value[low]) / (speed->time[high] - speed->time[low]);
+    *value = speed->value[low] + *rate * (t - speed->time[low]);
+    return low;
+}
+
+bd_turn bd_turn_at(const bd_work *work, double t)
+{
+    const bd_speed *speed = &work->scheme.speed;
+    bd_turn turn;
+    const int low = interpolate(speed, t, &turn.speed, &turn.rate);
+    const double since = t - speed->time[low];
+    turn.angle =
+        work->profile[2 * speed->n + low] + (speed->value[low] + 0.5 * turn.rate * since) * since;
+    return turn;
 }
 
 bool bd_work_choose(bd_work *work, const bd_scheme *scheme)
 {
+    if (!valid(scheme))
+        return false;
     work->kernels = bd_kernels_for(scheme->isa);
     work->scheme = *scheme;
-    return valid(scheme) && work->kernels;
+    return work->kernels && take_speed(work, &scheme->speed);
 }
 
 /* Right-hand sides and matrix of one block, column-major and dense, in memory of its own. */
@@ -129,7 +193,8 @@ typedef struct block_system {
     size_t columns;
 } block_system;
 
-/* S and [-K' | -C' | -L | p | B^T], where K' = K + speed N and C' = C + C_ve + speed G. */
+/* S and [-K' | -C' | -L | p | B^T | G | N], where K' = K + speed N and C' = C + C_ve + speed G at the reference
+ * speed; G and N only while the speed varies. */
 static void form_block(const bd_model *model, const bd_block *block, const bd_work *work,
                        size_t first_weight, block_system *system)
 {
@@ -142,7 +207,7 @@ static void form_block(const bd_model *model, const bd_block *block, const bd_wo
     double *D = system->damping, *rhs = system->rhs;
 
     for (size_t ij = 0; ij < n * n; ij++)
-        D[ij] = C[ij] + scheme->speed * G[ij];
+        D[ij] = C[ij] + work->reference * G[ij];
     for (int l = block->layer; l < block->layer + block->n_layers; l++) {
         const bd_layer *layer = &model->layers[l];
         double now = 0.0;
@@ -162,7 +227,7 @@ static void form_block(const bd_model *model, const bd_block *block, const bd_wo
     for (size_t j = 0; j < n; j++)
         for (size_t i = 0; i < n; i++) {
             size_t ij = i * n + j;
-            const double stiffness = K[ij] + scheme->speed * N[ij];
+            const double stiffness = K[ij] + work->reference * N[ij];
             system->S[j * n + i] = M[ij] + in_v * D[ij] + in_a * stiffness;
             rhs[j * n + i] = -stiffness;
             rhs[(n + j) * n + i] = -D[ij];
@@ -179,6 +244,21 @@ static void form_block(const bd_model *model, const bd_block *block, const bd_wo
     for (int k = 0; k < model->coefs; k++, column += n)
         for (size_t i = 0; i < n; i++)
             column[i] = model->B[((size_t)block->offset + i) * (size_t)model->coefs + (size_t)k];
+    if (work->drift)
+        for (size_t j = 0; j < n; j++)
+            for (size_t i = 0; i < n; i++) {
+                column[j * n + i] = G[i * n + j];
+                column[(n + j) * n + i] = N[i * n + j];
+            }
+}
+
+/* Where a block's drift columns start. */
+static size_t drift_at(const bd_model *model, int b)
+{
+    size_t at = 0;
+    for (int i = 0; i < b; i++)
+        at += 2 * (size_t)model->blocks[i].n * (size_t)model->blocks[i].padded;
+    return at;
 }
 
 /* The solved columns into the padded operators of work. */
@@ -198,13 +278,31 @@ static void place_block(const bd_model *model, int b, bd_work *work, const block
         memcpy(work->SP + c * (size_t)model->n_padded + block->offset, column, n * sizeof *column);
     for (size_t c = 0; c < (size_t)model->coefs; c++, column += n)
         memcpy(work->SB + c * (size_t)model->n_padded + block->offset, column, n * sizeof *column);
+    if (work->drift)
+        for (size_t c = 0; c < 2 * n; c++, column += n)
+            memcpy(work->drift + drift_at(model, b) + c * padded, column, n * sizeof *column);
+}
+
+/* Columns of a block's right-hand side. */
+static size_t right_columns(const bd_model *model, const bd_work *work, const bd_block *block)
+{
+    return step_columns(model, block) + 2 * (size_t)model->n_loads + (size_t)model->coefs +
+           (work->drift ? 2 * (size_t)block->n : 0);
 }
 
 bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
-                     bd_work *work)
+                     double reference_speed, bd_work *work)
 {
-    if (!bd_work_choose(work, scheme))
+    if (!bd_work_choose(work, scheme) || !isfinite(reference_speed))
         return BD_BAD_VALUE;
+    work->reference = reference_speed;
+    free(work->drift);
+    work->drift = NULL;
+    if (scheme->speed.n > 1) {
+        work->drift = calloc(drift_at(model, model->n_blocks) + 1, sizeof *work->drift);
+        if (!work->drift)
+            return BD_NO_MEMORY;
+    }
 
     size_t weight = 0, largest = 0, widest = 0;
     for (int l = 0; l < model->n_layers; l++)
@@ -213,8 +311,7 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
                                                          model->layers[l].modulus[i]);
     for (int b = 0; b < model->n_blocks; b++) {
         size_t n = (size_t)model->blocks[b].n;
-        size_t columns = step_columns(model, &model->blocks[b]) + 2 * (size_t)model->n_loads +
-                         (size_t)model->coefs;
+        size_t columns = right_columns(model, work, &model->blocks[b]);
         largest = n > largest ? n : largest;
         widest = columns > widest ? columns : widest;
     }
@@ -230,8 +327,7 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
     weight = 0;
     for (int b = 0; b < model->n_blocks && status == BD_OK; b++) {
         const bd_block *block = &model->blocks[b];
-        system.columns =
-            step_columns(model, block) + 2 * (size_t)model->n_loads + (size_t)model->coefs;
+        system.columns = right_columns(model, work, block);
         form_block(model, block, work, weight, &system);
         if (bd_solve_real(lapack, block->n, system.S, system.pivots, (int)system.columns,
                           system.rhs))
@@ -256,6 +352,20 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
             work->W[c * m + k] = sum;
         }
     return status;
+}
+
+double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double *flat, bool anew)
+{
+    double *clock = bd_state_view(model, flat).clock, rate;
+    if (!valid(scheme))
+        return NAN;
+    /* the end of the next step, to the bit as bd_march will have it */
+    const double t = clock[2] == scheme->dt ? clock[0] + (clock[1] + 1.0) * scheme->dt
+                                            : clock[0] + clock[1] * clock[2] + scheme->dt;
+    if (anew || clock[5] == 0.0 || scheme->speed.n == 1)
+        interpolate(&scheme->speed, t, &clock[4], &rate);
+    clock[5] = 1.0;
+    return clock[4];
 }
 
 /* ---------------------------------------------------------------- state */

@@ -9,9 +9,13 @@
 typedef struct bd_kernels bd_kernels;
 
 struct bd_work {
-    bd_scheme scheme;
+    bd_scheme scheme; /* the arrays of its speed are copies in `profile` */
     const bd_kernels *kernels;
-    double *memory; /* everything below lies in it */
+    double *profile;  /* times, speeds and shaft angles of the speed's knots, one after another */
+    double *drift;    /* while the speed varies, per block, columns [S^-1 G | S^-1 N] */
+    bd_turn turn;     /* at the end of the step */
+    double reference; /* speed that S is factored at */
+    double *memory;   /* everything below lies in it */
 
     /* operators of the prepared step */
     double
@@ -31,18 +35,23 @@ struct bd_work {
     double *force, *guess, *change;                     /* (coefs) */
     double *K, *C, *J, *inverse;                        /* (coefs x coefs) */
     double *load_factor;                                /* (2 n_loads) */
-    double *loss;                                       /* (n_padded) scratch of the audit */
+    double *loss; /* (n_padded) scratch of the audit and of the start */
+    double *a_steady,
+        *a_drift; /* (n_padded) a at the reference speed; what the departure from it adds */
     bd_bearing_work *bearings;
 };
 
 /* Takes over a scheme and chooses its kernels. Returned: whether the scheme is valid on this machine. */
 bool bd_work_choose(bd_work *work, const bd_scheme *scheme);
 
-/* What the cosine and sine column of each load are multiplied with at time t. */
-void bd_load_factors(const bd_model *model, double speed, double t, double *factor);
+/* Speed, its rate and the shaft angle at time t. */
+bd_turn bd_turn_at(const bd_work *work, double t);
 
-/* Forces of all bearings at work's z, z_rate into work->force; basis functions at time t first. */
-void bd_turn_bearings(const bd_model *model, bd_work *work, double t);
+/* What the cosine and sine column of each load are multiplied with at time t, into work->load_factor. */
+void bd_load_factors(const bd_model *model, bd_work *work, double t);
+
+/* Forces of all bearings at work's z, z_rate into work->force; where the balls are, at work->turn, first. */
+void bd_turn_bearings(const bd_model *model, bd_work *work);
 void bd_force_bearings(const bd_model *model, bd_work *work);
 
 /* Stored energies and powers at the state, whose bearing quantities stand in work. */

@@ -121,7 +121,7 @@ def test_references_are_stable() -> None:
         m.unpack(state)
         core.march(m, state, SCHEME, 3, start=True, progress=lambda done, total: None)
         harmonic(m)
-        _core.bearing_force(KERNEL, np.zeros(5), np.zeros(5), 0.0, 0.0)
+        _core.bearing_force(KERNEL, np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0)
         _core.maxwell_stress(np.ones((3, 2)), np.ones(2), 1.0, 1.0, np.ones(1), np.ones(1))
         for call in (
             lambda: core.Model(**bad),
@@ -130,7 +130,7 @@ def test_references_are_stable() -> None:
             lambda: core.march(m, state, SCHEME, 3, progress=lambda done, total: 1 / 0),
             lambda: harmonic(m, row=np.zeros((1, N + 1))),
             lambda: harmonic(m, progress=lambda done, total: 1 / 0),
-            lambda: _core.bearing_force(KERNEL[:-1], np.zeros(5), np.zeros(5), 0.0, 0.0),
+            lambda: _core.bearing_force(KERNEL[:-1], np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0),
         ):
             with contextlib.suppress(ValueError, TypeError, ZeroDivisionError):
                 call()

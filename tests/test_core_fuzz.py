@@ -21,7 +21,9 @@ from core_models import CASTABLE, KERNEL, SCHEME, N, arguments, at_rest, harmoni
 )
 def test_a_bearing_answers_in_numbers(z: list[float], rate: list[float], angle: float) -> None:
     with contextlib.suppress(ArithmeticError):
-        for answer in _core.bearing_force(KERNEL, np.array(z), np.array(rate), angle, 100.0):
+        for answer in _core.bearing_force(
+            KERNEL, np.array(z), np.array(rate), angle, 100.0, 2.5 * angle, 250.0
+        ):
             assert np.isfinite(answer).all()
 
 

@@ -98,6 +98,7 @@ BAD_BEARINGS = [
     (13, np.nan),
     (14, np.inf),
     (14, "0"),
+    (15, None),
 ]
 
 
@@ -108,7 +109,7 @@ def test_a_bad_bearing_is_refused(field: int, value: Any) -> None:
     with pytest.raises((ValueError, TypeError, OverflowError)):
         model(bearings=[(bad, B)])
     with pytest.raises((ValueError, TypeError, OverflowError)):
-        _core.bearing_force(bad, np.zeros(5), np.zeros(5), 0.0, 0.0)
+        _core.bearing_force(bad, np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -218,6 +219,14 @@ def test_a_list_that_grows_while_it_is_read_does_no_harm() -> None:
         {"beta": np.nan},
         {"gamma": np.inf},
         {"speed": np.nan},
+        {"speed": "fast"},
+        {"speed": ([0.0, 1.0], [0.0])},
+        {"speed": ([0.0, 1.0], [0.0, np.inf])},
+        {"speed": ([0.0, np.nan], [0.0, 1.0])},
+        {"speed": ([1.0, 0.0], [0.0, 1.0])},
+        {"speed": ([1.0, 1.0], [0.0, 1.0])},
+        {"speed": ([], [])},
+        {"speed": ([[0.0]], [[1.0]])},
         {"tolerance": 0.0},
         {"tolerance": np.nan},
         {"max_iterations": 0},
@@ -259,7 +268,7 @@ def test_a_state_is_checked() -> None:
             m.state(t, np.zeros(N), np.zeros(N))
 
 
-@pytest.mark.parametrize("at", range(4))
+@pytest.mark.parametrize("at", range(6))
 @pytest.mark.parametrize("value", [1e300, -1e300, -1.0, 2.0**63])
 def test_a_state_with_an_absurd_clock_does_no_harm(at: int, value: float) -> None:
     m = model()
@@ -350,8 +359,8 @@ def test_bad_input_of_the_branch_stress_is_refused(bad: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_a_bearing_is_not_asked_about_no_number(value: float) -> None:
-    for at in range(4):
-        a: list[Any] = [np.zeros(5), np.zeros(5), 0.0, 0.0]
+    for at in range(6):
+        a: list[Any] = [np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0]
         a[at] = np.full(5, value) if at < 2 else value
         with pytest.raises(ValueError):
             _core.bearing_force(KERNEL, *a)

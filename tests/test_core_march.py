@@ -9,6 +9,7 @@ import pytest
 
 from bearingdyn import core
 from bearingdyn.bearing import BallBearing, BearingKernel, LoadDamping, TabulatedDamping
+from bearingdyn.bearing.excitation import Pit, Waviness
 from twins import march_twin as twin
 
 SIZE = dict(Z=7, Dw=11.5e-3, Dpw=43.5e-3, fi=0.52, fo=0.53)
@@ -44,6 +45,27 @@ def flexible() -> BearingKernel:
     return dataclasses.replace(load(), axial=axial, order=order, sine=sine)
 
 
+def flawed() -> BearingKernel:
+    """Waves of every kind, a pit on every body, a large ball."""
+    waves = [
+        Waviness("inner", 8, 0.4e-6, 0.3),
+        Waviness("inner", 7, 0.3e-6, 1.0, "axial"),
+        Waviness("outer", 6, 0.3e-6, 2.0),
+        Waviness("outer", 14, 0.2e-6, 0.0, "axial"),
+        Waviness("ball", 2, 0.3e-6, 0.5),
+        Waviness("ball", 4, 0.2e-6, 0.5, ball=3),
+    ]
+    pits = [
+        Pit("inner", 0.1, 1.5e-3, 2e-6),
+        Pit("outer", 0.5, 2e-3, 3e-6),
+        Pit("ball", 0.2, 1e-3, 2e-6, ball=2),
+    ]
+    sizes = (0.0, 1e-6, 0.0, -0.5e-6, 0.0, 0.0, 0.3e-6)
+    return BallBearing(
+        **SIZE, clearance=5e-6, damping=LoadDamping(1e-5), waviness=waves, defects=pits, oversize=sizes
+    ).kernel()
+
+
 # sizes of the blocks; layers (block, rank, branches); bearings (kernel, inner block, outer block, −1: ground)
 CASES = {
     "one block": ([5], [], []),
@@ -54,6 +76,7 @@ CASES = {
     "motor": ([7, 5, 6], [(1, 3, 5), (2, 12, 2)], [(load, 0, 1), (load, 0, 2)]),
     "motor, constant damping": ([4, 1, 3], [(2, 2, 1)], [(constant, 0, 1), (constant, 0, 2)]),
     "flexible rings": ([8, 9], [(1, 4, 3)], [(flexible, 0, 1)]),
+    "an imperfect bearing": ([6, 4], [(1, 2, 2)], [(flawed, 0, 1)]),
     "a layer without branches": ([3, 2], [(0, 1, 0), (1, 1, 2)], [(load, 0, 1)]),
 }
 
@@ -94,12 +117,20 @@ def assert_same(got: np.ndarray, expected: np.ndarray) -> None:
     assert worst < 1e-9
 
 
+# rad/s; a constant one, and one that rises and falls by some 1e7 rad/s², its knots between two steps
+SPEEDS = {
+    "constant": 800.0,
+    "varying": ([4.05e-5, 1.511e-4, 2.213e-4, 3.201e-4], [600.0, 1900.0, -300.0, 500.0]),
+}
+
+
+@pytest.mark.parametrize("speed", SPEEDS.values(), ids=SPEEDS.keys())
 @pytest.mark.parametrize(("beta", "gamma"), [(0.25, 0.5), (0.3, 0.6)])
 @pytest.mark.parametrize("name", CASES)
-def test_march_is_the_twins(name: str, beta: float, gamma: float) -> None:
+def test_march_is_the_twins(name: str, beta: float, gamma: float, speed: twin.Speed) -> None:
     system, model, rng = make(name, seed=len(name))
     n = len(system.M)
-    t, dt, speed = 3e-5, 4e-6, 800.0
+    t, dt = 3e-5, 4e-6
     x, v = 2e-6 * rng.standard_normal(n), 1e-2 * rng.standard_normal(n)
     scheme = core.Scheme(dt=dt, beta=beta, gamma=gamma, speed=speed, tolerance=1e-11)
     record, state, report = core.march(model, model.state(t, x, v), scheme, 80, 3, start=True)

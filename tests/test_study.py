@@ -36,7 +36,7 @@ def threads_and_environment(case):
 
 def fails_as_a_march_does(case):
     """A SolverError holds a report and cannot be rebuilt from its message alone."""
-    raise core.SolverError("diverged", core.Report(-1, 7, 40, 0, 1e-3, 0.5, 0))
+    raise core.SolverError("diverged", core.Report(-6, 7, 40, 0, 0, 0, 1e-3, 0.5, 0))
 
 
 def dies(case):

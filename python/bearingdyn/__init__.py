@@ -11,9 +11,10 @@ from bearingdyn.analysis import (
     orbit,
     spectrum,
     transient,
+    transients,
 )
 from bearingdyn.application import Application
-from bearingdyn.bearing import BallBearing, ConstantDamping, LoadDamping, TabulatedDamping
+from bearingdyn.bearing import BallBearing, ConstantDamping, LoadDamping, Pit, TabulatedDamping, Waviness
 from bearingdyn.cms import Superelement
 from bearingdyn.core import Interrupted, Scheme, SolverError
 from bearingdyn.material import (
@@ -62,6 +63,7 @@ __all__ = [
     "LoadDamping",
     "MasterCurve",
     "Maxwell",
+    "Pit",
     "Region",
     "Revolved",
     "RigidBody",
@@ -72,6 +74,7 @@ __all__ = [
     "SolverError",
     "Superelement",
     "TabulatedDamping",
+    "Waviness",
     "damping_sample",
     "equilibrium",
     "fit_maxwell",
@@ -85,4 +88,5 @@ __all__ = [
     "save",
     "spectrum",
     "transient",
+    "transients",
 ]

@@ -22,6 +22,8 @@ class Model:
     ) -> Model: ...
     @property
     def blocks(self) -> int: ...
+    @property
+    def channels(self) -> int: ...
     def state(self, t: float, x: _Array, v: _Array, /) -> _Array: ...
     def unpack(self, state: _Array, /) -> tuple[float, _Array, _Array, _Array, _Array]: ...
     def march(
@@ -32,7 +34,8 @@ class Model:
         dt: float,
         beta: float,
         gamma: float,
-        speed: float,
+        times: _Array,
+        speeds: _Array,
         tolerance: float,
         max_iterations: int,
         audit: bool,
@@ -40,7 +43,7 @@ class Model:
         start: bool,
         progress: Callable[[int, int], object] | None,
         /,
-    ) -> tuple[_Array, _Array, tuple[int, int, int, int, float, float, int]]: ...
+    ) -> tuple[_Array, _Array, tuple[int, int, int, int, int, int, float, float, int]]: ...
     def harmonic(
         self,
         omega: _Array,
@@ -58,6 +61,13 @@ def maxwell_stress(
     rate: _Array, dt: _Array, G0: float, eta0: float, modulus: _Array, tau: _Array, /
 ) -> _Array: ...
 def bearing_force(
-    bearing: tuple[object, ...], z: _Array, z_rate: _Array, angle: float, cage_speed: float, /
+    bearing: tuple[object, ...],
+    z: _Array,
+    z_rate: _Array,
+    angle: float,
+    cage_speed: float,
+    shaft_angle: float,
+    shaft_speed: float,
+    /,
 ) -> tuple[_Array, _Array, _Array, _Array]: ...
 def status_text(status: int, /) -> str: ...

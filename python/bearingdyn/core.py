@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import _core
 
@@ -65,16 +65,25 @@ class Interrupted(KeyboardInterrupt):
 
 @dataclass(frozen=True)
 class Scheme:
-    """Newmark's scheme and the tolerance of the bearing forces in it (bd_scheme)."""
+    """Newmark's scheme and the tolerance of the bearing forces in it (bd_scheme).
+
+    speed: rad/s of the shaft, one number or (times in s, speeds), linear between and held outside.
+    """
 
     dt: float
     beta: float = 0.25
     gamma: float = 0.5
-    speed: float = 0.0
+    speed: float | tuple[ArrayLike, ArrayLike] = 0.0
     tolerance: float = 1e-9
     max_iterations: int = 40
     audit: bool = False
     isa: str = "best"
+
+    @property
+    def profile(self) -> tuple[Array, Array]:
+        """Times in s and speeds in rad/s, (n,) each; one of each for a constant speed."""
+        times, speeds = self.speed if isinstance(self.speed, tuple) else ([0.0], [self.speed])
+        return np.asarray(times, dtype=np.float64), np.asarray(speeds, dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -85,6 +94,8 @@ class Report:
     steps: int
     iterations: int
     refreshes: int
+    refactors: int
+    grazing: int
     t: float
     residual: float
     bearing: int
@@ -97,7 +108,7 @@ class Report:
 
 def kernel_tuple(kernel: BearingKernel) -> tuple[object, ...]:
     """A bearing as the core parses it; radial coefficients must come before axial ones."""
-    axial = np.asarray(kernel.axial)
+    axial, flaws = np.asarray(kernel.axial), kernel.imperfections
     if np.any(np.diff(axial) < 0):
         raise ValueError("axial must list all radial coefficients (0) before the axial ones (1)")
     return (
@@ -116,6 +127,15 @@ def kernel_tuple(kernel: BearingKernel) -> tuple[object, ...]:
         np.asarray(kernel.damping_table, dtype=np.float64).reshape(-1, 2),
         float(kernel.cage_ratio),
         float(kernel.angle0),
+        (
+            float(flaws.spin_ratio),
+            float(flaws.ball_diameter),
+            float(flaws.inner_radius),
+            float(flaws.outer_radius),
+            flaws.waves,
+            flaws.pits,
+            flaws.oversize,
+        ),
     )
 
 
@@ -129,10 +149,16 @@ def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Ar
 
 
 def bearing_force(
-    kernel: BearingKernel, z: Array, z_rate: Array, angle: float, cage_speed: float
+    kernel: BearingKernel,
+    z: Array,
+    z_rate: Array,
+    angle: float,
+    cage_speed: float,
+    shaft_angle: float = 0.0,
+    shaft_speed: float = 0.0,
 ) -> tuple[Array, Array, Array, Array]:
     """Force g (n,) = +∇V on a bearing's coefficients, tangents dg/dz, dg/dż (n, n), ball loads (Z,) in N."""
-    return _core.bearing_force(kernel_tuple(kernel), z, z_rate, angle, cage_speed)
+    return _core.bearing_force(kernel_tuple(kernel), z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)
 
 
 def march(
@@ -149,6 +175,7 @@ def march(
 
     With `start`, the acceleration is first made to satisfy the equation of motion.
     """
+    times, speeds = scheme.profile
     record, new_state, report = model.march(
         state,
         steps,
@@ -156,7 +183,8 @@ def march(
         scheme.dt,
         scheme.beta,
         scheme.gamma,
-        scheme.speed,
+        times,
+        speeds,
         scheme.tolerance,
         scheme.max_iterations,
         scheme.audit,
@@ -185,6 +213,11 @@ def harmonic(
     stiffness is singular.
     """
     return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress)
+
+
+def time_of(model: Model, state: Array) -> float:
+    """Time of a state, s."""
+    return float(model.unpack(state)[0])
 
 
 def energies(model: Model, state: Array) -> dict[str, float]:

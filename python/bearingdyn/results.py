@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from bearingdyn import runfile
+from bearingdyn.core import Report
+
 if TYPE_CHECKING:
     import xarray
 
@@ -43,6 +46,70 @@ def dataset(
     return made
 
 
+def march_dataset(
+    facts: Mapping[str, Any],
+    rows: np.ndarray,
+    state: np.ndarray,
+    report: Report,
+    attrs: Mapping[str, Any] | None = None,
+) -> xarray.Dataset:
+    """Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
+
+    facts: channels, units, dt, speed (times and speeds), decimate, settle, steps, as in a run file's header.
+    """
+    origin, count = float(state[0]), int(state[1])
+    decimate = int(facts["decimate"])
+    times, speeds = (np.asarray(part, dtype=np.float64) for part in facts["speed"])
+    last = count - count % decimate
+    time = origin + (last - decimate * np.arange(len(rows))[::-1]) * facts["dt"]
+    constant = len(speeds) == 1
+    data = dataset(
+        {
+            "record": (("time", "channel"), rows, "", "recorded channels; their units are in `unit`"),
+            "state": ("word", state, "", "state of the march in the core's own order"),
+        },
+        {
+            "analysis": "transient",
+            "speed": float(speeds[0]) if constant else speeds,
+            **({} if constant else {"speed_time": times}),
+            "dt": facts["dt"],
+            "decimate": decimate,
+            "settle": facts["settle"],
+            "steps": max(report.steps - facts["settle"], 0),
+            "iterations": report.iterations,
+            "refreshes": report.refreshes,
+            "refactors": report.refactors,
+            "grazing": report.grazing,
+            "complete": int(report.status == 0 and report.steps == facts["settle"] + facts["steps"]),
+            "status": report.text,
+            **(attrs or {}),
+        },
+        {"time": (time, "s"), "channel": (facts["channels"], "")},
+    )
+    return data.assign_coords(unit=("channel", facts["units"]))
+
+
+def _run_dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
+    """What a run file holds so far."""
+    facts, chunks, _ = runfile.read(path)
+    if not chunks:
+        raise ValueError(f"{os.fspath(path)} holds no finished chunk yet")
+    state = chunks[-1].state
+    report = Report(
+        status=0,
+        steps=sum(c.steps for c in chunks),
+        iterations=sum(c.iterations for c in chunks),
+        refreshes=sum(c.refreshes for c in chunks),
+        refactors=sum(c.refactors for c in chunks),
+        grazing=sum(c.grazing for c in chunks),
+        t=float(state[0] + state[1] * state[2]),
+        residual=0.0,
+        bearing=-1,
+    )
+    rows = np.concatenate([c.rows for c in chunks])
+    return march_dataset(facts, rows, state, report)
+
+
 def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
     """Write one Dataset, or several by name (as groups), to one netCDF-4 file.
 
@@ -65,12 +132,14 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
 
 
 def load(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
-    """Read a Dataset written by `save`, wholly into memory.
+    """Read a Dataset written by `save`, or what a run file holds so far, wholly into memory.
 
     Raises ValueError if the file does not exist, is no netCDF-4 file, or lacks the group.
     """
     import xarray
 
+    if runfile.is_run(path):
+        return _run_dataset(path)
     try:
         with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
             return _complex(data.load())

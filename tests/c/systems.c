@@ -100,6 +100,30 @@ bd_bearing_data deep_groove(bd_damping_law law)
     };
 }
 
+void make_imperfect(bd_bearing_data *bearing)
+{
+    static const bd_wave waves[] = {
+        {BD_WAVE_INNER_RADIAL, 8, 0, 4e-7, 0.3}, {BD_WAVE_INNER_AXIAL, 9, 0, 3e-7, 1.0},
+        {BD_WAVE_OUTER_RADIAL, 7, 0, 3e-7, 2.0}, {BD_WAVE_OUTER_AXIAL, 16, 0, 2e-7, 0.0},
+        {BD_WAVE_BALL, 2, 3, 3e-7, 0.5},         {BD_WAVE_BALL, 3, 1, 3e-7, 0.5},
+    };
+    static const bd_pit pits[] = {
+        {BD_PIT_INNER, 0, 0.1, 1.5e-3, 2e-6},
+        {BD_PIT_OUTER, 0, 0.5, 2e-3, 3e-6},
+        {BD_PIT_BALL, 2, 0.2, 1e-3, 2e-6},
+    };
+    static const double oversize[] = {0.0, 1e-6, 0.0, -5e-7, 0.0, 0.0, 3e-7, 0.0};
+    bearing->spin_ratio = 1.8;
+    bearing->ball_diameter = 11.5e-3;
+    bearing->inner_radius = 16e-3;
+    bearing->outer_radius = 27.5e-3;
+    bearing->n_waves = sizeof waves / sizeof waves[0];
+    bearing->n_pits = sizeof pits / sizeof pits[0];
+    bearing->waves = waves;
+    bearing->pits = pits;
+    bearing->oversize = oversize;
+}
+
 /* Modes of one part: unit masses, 1 % damping, frequencies spread between two limits (Hz). */
 static void fill_part(const bd_model_data *system, int first, int n, double low, double high,
                       unsigned long long *seed)
@@ -165,6 +189,8 @@ bd_model_data motor(pool *p, bd_damping_law law)
                 rows[k * N + i] = -uniform(&seed);
         }
         bearings[b] = deep_groove(law);
+        if (b == 1)
+            make_imperfect(&bearings[b]);
         B[b] = rows;
     }
     system.n_bearings = 2;
@@ -212,12 +238,24 @@ bd_model_data motor(pool *p, bd_damping_law law)
     return system;
 }
 
+static const double zero = 0.0;
+const bd_speed no_turning = {.n = 1, .time = &zero, .value = &zero};
+
 bd_scheme motor_scheme(void)
 {
+    static const double time = 0.0, speed = 523.6;
     return (bd_scheme){.dt = 2.5e-6,
                        .beta = 0.25,
                        .gamma = 0.5,
-                       .speed = 523.6,
+                       .speed = {.n = 1, .time = &time, .value = &speed},
                        .tolerance = 1e-9,
                        .max_iterations = 40};
+}
+
+bd_scheme motor_run_up(void)
+{
+    static const double time[] = {1e-4, 5.01e-4, 1.002e-3}, speed[] = {0.0, 2000.0, -500.0};
+    bd_scheme scheme = motor_scheme();
+    scheme.speed = (bd_speed){.n = 3, .time = time, .value = speed};
+    return scheme;
 }

@@ -50,7 +50,7 @@ void __wrap_free(void *piece)
     __real_free(piece);
 }
 
-static void the_march_allocates_nothing(bd_damping_law law)
+static void the_march_allocates_nothing(bd_damping_law law, bd_scheme scheme)
 {
     enum { STEPS = 400 };
     pool p = {.n = 0};
@@ -59,7 +59,6 @@ static void the_march_allocates_nothing(bd_damping_law law)
     double record[(STEPS + 1) * MOTOR_CHANNELS];
     bd_status status;
     bd_report report;
-    bd_scheme scheme = motor_scheme();
     scheme.audit = 1;
 
     calls = 0;
@@ -69,7 +68,10 @@ static void the_march_allocates_nothing(bd_damping_law law)
     double *state = pool_take(&p, bd_state_size(model), sizeof *state);
     bd_state_set(model, state, 0.0, rest, rest);
     CHECK_EQUAL("start", bd_start(model, &scheme, &reference_lapack, work, state), BD_OK);
-    CHECK_EQUAL("prepare", bd_prepare(model, &scheme, &reference_lapack, work), BD_OK);
+    CHECK_EQUAL("prepare",
+                bd_prepare(model, &scheme, &reference_lapack,
+                           bd_reference_speed(model, &scheme, state, true), work),
+                BD_OK);
 
     calls = 0;
     bd_march(model, &scheme, work, state, STEPS, 1, record, &report);
@@ -84,8 +86,11 @@ static void the_march_allocates_nothing(bd_damping_law law)
 
 int main(void)
 {
-    the_march_allocates_nothing(BD_DAMPING_CONSTANT);
-    the_march_allocates_nothing(BD_DAMPING_TABLE);
-    the_march_allocates_nothing(BD_DAMPING_LOAD);
+    the_march_allocates_nothing(BD_DAMPING_CONSTANT, motor_scheme());
+    the_march_allocates_nothing(BD_DAMPING_CONSTANT, motor_run_up());
+    the_march_allocates_nothing(BD_DAMPING_TABLE, motor_scheme());
+    the_march_allocates_nothing(BD_DAMPING_TABLE, motor_run_up());
+    the_march_allocates_nothing(BD_DAMPING_LOAD, motor_scheme());
+    the_march_allocates_nothing(BD_DAMPING_LOAD, motor_run_up());
     return check_result();
 }

@@ -1,11 +1,15 @@
 /* One contact, and the balls of one bearing: forces against the formula, tangents against differences. */
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "bearingdyn.h"
 #include "check.h"
 #include "systems.h"
+
+/* Perfect bearings do not ask how the shaft turns. */
+static const bd_turn still = {0.0, 0.0, 0.0};
 
 /* A bearing of one ball and one axial coefficient, whose indentation is the coefficient itself. */
 static bd_bearing_data single_contact(bd_damping_law law)
@@ -27,7 +31,7 @@ static void press(const bd_bearing_data *contact, double delta, double rate, dou
                   double *C)
 {
     double load;
-    bd_bearing_single(contact, &delta, &rate, 0.0, 0.0, F, K, C, &load);
+    bd_bearing_single(contact, &delta, &rate, 0.0, 0.0, still, F, K, C, &load);
     /* the normal is (X, Y)/Lambda, one to round-off */
     CHECK_CLOSE("the ball carries the force", load, *F, 1e-15 * load);
 }
@@ -107,21 +111,24 @@ static double largest_of(const double *values, int n)
     return largest;
 }
 
-static void bearing_tangent_is_the_derivative_of_its_force(bd_damping_law law)
+static void bearing_tangent_is_the_derivative_of_its_force(bd_damping_law law, bool imperfect)
 {
     enum { M = 5 };
-    const bd_bearing_data bearing = deep_groove(law);
+    bd_bearing_data bearing = deep_groove(law);
+    if (imperfect)
+        make_imperfect(&bearing);
     unsigned long long seed = 17;
     double worst_K = 0.0, worst_C = 0.0;
     for (int i = 0; i < 300; i++) {
         const double angle = 3.0 * uniform(&seed), cage = 200.0 * uniform(&seed);
+        const bd_turn shaft = {500.0 * uniform(&seed), 0.0, 9.0 * uniform(&seed)};
         double z[M], z_rate[M], g[M], K[M * M], C[M * M], loads[8], moved[M];
         double up[M], down[M], ignored[M * M], ignored_too[M * M];
         for (int k = 0; k < M; k++) {
             z[k] = 1.5e-5 * uniform(&seed);
             z_rate[k] = 5e-3 * uniform(&seed);
         }
-        bd_bearing_single(&bearing, z, z_rate, angle, cage, g, K, C, loads);
+        bd_bearing_single(&bearing, z, z_rate, angle, cage, shaft, g, K, C, loads);
         /* each ball needs some load (or a clear gap), lest a difference straddle the edge of contact */
         int near_edge = 0;
         for (int j = 0; j < 8; j++)
@@ -132,19 +139,21 @@ static void bearing_tangent_is_the_derivative_of_its_force(bd_damping_law law)
             const double h = 1e-10, hr = 1e-5;
             memcpy(moved, z, sizeof moved);
             moved[l] = z[l] + h;
-            bd_bearing_single(&bearing, moved, z_rate, angle, cage, up, ignored, ignored_too,
+            bd_bearing_single(&bearing, moved, z_rate, angle, cage, shaft, up, ignored, ignored_too,
                               loads);
             moved[l] = z[l] - h;
-            bd_bearing_single(&bearing, moved, z_rate, angle, cage, down, ignored, ignored_too,
-                              loads);
+            bd_bearing_single(&bearing, moved, z_rate, angle, cage, shaft, down, ignored,
+                              ignored_too, loads);
             for (int k = 0; k < M; k++)
                 worst_K = fmax(worst_K, fabs((up[k] - down[k]) / (2.0 * h) - K[k * M + l]) /
                                             largest_of(K, M * M));
             memcpy(moved, z_rate, sizeof moved);
             moved[l] = z_rate[l] + hr;
-            bd_bearing_single(&bearing, z, moved, angle, cage, up, ignored, ignored_too, loads);
+            bd_bearing_single(&bearing, z, moved, angle, cage, shaft, up, ignored, ignored_too,
+                              loads);
             moved[l] = z_rate[l] - hr;
-            bd_bearing_single(&bearing, z, moved, angle, cage, down, ignored, ignored_too, loads);
+            bd_bearing_single(&bearing, z, moved, angle, cage, shaft, down, ignored, ignored_too,
+                              loads);
             for (int k = 0; k < M; k++)
                 worst_C = fmax(worst_C, fabs((up[k] - down[k]) / (2.0 * hr) - C[k * M + l]) /
                                             largest_of(C, M * M));
@@ -160,8 +169,8 @@ static void turned_by_one_pitch_a_bearing_is_itself(void)
     const double pitch = 2.0 * 3.14159265358979323846 / 8.0;
     const double z[] = {2e-5, -1e-5, 3e-6, 1e-6, -2e-6}, rest[5] = {0};
     double g[5], turned[5], K[25], C[25], loads[8];
-    bd_bearing_single(&bearing, z, rest, 0.3, 0.0, g, K, C, loads);
-    bd_bearing_single(&bearing, z, rest, 0.3 + pitch, 0.0, turned, K, C, loads);
+    bd_bearing_single(&bearing, z, rest, 0.3, 0.0, still, g, K, C, loads);
+    bd_bearing_single(&bearing, z, rest, 0.3 + pitch, 0.0, still, turned, K, C, loads);
     for (int k = 0; k < 5; k++)
         CHECK_CLOSE("force after one pitch", turned[k], g[k], 1e-11 * largest_of(g, 5));
 }
@@ -172,7 +181,8 @@ int main(void)
     for (int i = 0; i < 3; i++) {
         contact_pushes_and_never_pulls(laws[i]);
         contact_tangent_is_the_derivative_of_its_force(laws[i]);
-        bearing_tangent_is_the_derivative_of_its_force(laws[i]);
+        bearing_tangent_is_the_derivative_of_its_force(laws[i], false);
+        bearing_tangent_is_the_derivative_of_its_force(laws[i], true);
     }
     turned_by_one_pitch_a_bearing_is_itself();
     return check_result();

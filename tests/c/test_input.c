@@ -154,11 +154,12 @@ static void a_table_is_not_read_beyond_its_end(void)
     delta = pool_take(&p, 0, sizeof *delta); /* one double: the pool adds one to every count */
     c = pool_take(&p, 0, sizeof *c);
     *c = 30.0;
+    const bd_turn still = {0.0, 0.0, 0.0};
     bd_bearing_data bearing = deep_groove(BD_DAMPING_TABLE);
     bearing.contact.n_table = 1;
     bearing.contact.table_delta = delta;
     bearing.contact.table_c = c;
-    CHECK_EQUAL("status", bd_bearing_single(&bearing, z, rest, 0.0, 0.0, g, K, C, loads),
+    CHECK_EQUAL("status", bd_bearing_single(&bearing, z, rest, 0.0, 0.0, still, g, K, C, loads),
                 BD_NOT_FINITE);
     pool_empty(&p);
 }
@@ -218,6 +219,36 @@ static void a_channel_exists(void)
     pool_empty(&p);
 }
 
+static void a_speed_is_checked(void)
+{
+    static const double times[][2] = {{0.0, 0.0}, {1.0, 0.0}, {NAN, 1.0}, {0.0, INFINITY}};
+    static const double rising[] = {0.0, 1.0}, broken[] = {0.0, NAN}, rest[MOTOR_SIZE] = {0};
+    pool p = {.n = 0};
+    const bd_model_data data = motor(&p, BD_DAMPING_CONSTANT);
+    bd_status status;
+    bd_model *model = bd_model_create(&data, &status);
+    bd_work *work = bd_work_create(model);
+    double *state = pool_take(&p, bd_state_size(model), sizeof *state);
+    bd_state_set(model, state, 0.0, rest, rest);
+    for (int i = 0; i < 6; i++) {
+        bd_scheme scheme = motor_scheme();
+        scheme.speed = (bd_speed){.n = i == 5 ? 0 : 2,
+                                  .time = i < 4 ? times[i] : rising,
+                                  .value = i == 4 ? broken : rising};
+        CHECK_EQUAL("a speed that is no function of time",
+                    bd_prepare(model, &scheme, &reference_lapack, 1.0, work), BD_BAD_VALUE);
+        CHECK_EQUAL("nor to start with", bd_start(model, &scheme, &reference_lapack, work, state),
+                    BD_BAD_VALUE);
+    }
+    const bd_scheme good = motor_scheme();
+    CHECK_EQUAL("no reference speed", bd_prepare(model, &good, &reference_lapack, NAN, work),
+                BD_BAD_VALUE);
+    CHECK_EQUAL("a good one", bd_prepare(model, &good, &reference_lapack, 523.6, work), BD_OK);
+    bd_work_free(work);
+    bd_model_free(model);
+    pool_empty(&p);
+}
+
 static void a_scheme_is_checked(void)
 {
     static const double bad[] = {0.0, -1e-6, NAN, INFINITY};
@@ -236,7 +267,7 @@ static void a_scheme_is_checked(void)
             else if (i == 2 && k > 0)
                 scheme.gamma = bad[k];
             else if (i == 3 && k > 1)
-                scheme.speed = bad[k];
+                scheme.speed.value = &bad[k];
             else if (i == 4 && k < 3)
                 scheme.tolerance = bad[k];
             else if (i == 5 && k == 0)
@@ -246,7 +277,7 @@ static void a_scheme_is_checked(void)
             else
                 continue;
             CHECK_EQUAL("a scheme outside its domain",
-                        bd_prepare(model, &scheme, &reference_lapack, work), BD_BAD_VALUE);
+                        bd_prepare(model, &scheme, &reference_lapack, 523.6, work), BD_BAD_VALUE);
         }
     bd_work_free(work);
     bd_model_free(model);
@@ -269,8 +300,8 @@ static void a_coordinate_without_mass_is_singular(void)
                 BD_SINGULAR_MASS);
     bd_state_get(model, state, NULL, NULL, NULL, a);
     CHECK_EQUAL("the state stays finite", isfinite(a[0]) && isfinite(a[1]), 1);
-    CHECK_EQUAL("neither mass nor spring", bd_prepare(model, &scheme, &reference_lapack, work),
-                BD_SINGULAR);
+    CHECK_EQUAL("neither mass nor spring",
+                bd_prepare(model, &scheme, &reference_lapack, 523.6, work), BD_SINGULAR);
     bd_work_free(work);
     bd_model_free(model);
 
@@ -306,6 +337,7 @@ int main(void)
     a_table_is_not_read_beyond_its_end();
     a_load_table_is_sorted_and_finite();
     a_channel_exists();
+    a_speed_is_checked();
     a_scheme_is_checked();
     a_coordinate_without_mass_is_singular();
     nothing_is_freed_twice_or_missed();

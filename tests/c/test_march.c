@@ -33,10 +33,21 @@ static outcome march(pool *p, const bd_model *model, bd_scheme scheme, const dou
         out.report.status = bd_start(model, &scheme, &reference_lapack, work, out.state);
     }
     if (out.report.status == BD_OK)
-        out.report.status = bd_prepare(model, &scheme, &reference_lapack, work);
-    if (out.report.status == BD_OK)
-        out.rows =
-            bd_march(model, &scheme, work, out.state, steps, decimate, out.record, &out.report);
+        out.report.status = bd_prepare(model, &scheme, &reference_lapack,
+                                       bd_reference_speed(model, &scheme, out.state, false), work);
+    long long done = 0, refactors = 0;
+    while (out.report.status == BD_OK) {
+        out.rows += bd_march(model, &scheme, work, out.state, steps - done, decimate,
+                             out.record + (size_t)out.rows * channels, &out.report);
+        done += out.report.steps;
+        if (out.report.status != BD_REFACTOR)
+            break;
+        refactors++;
+        out.report.status = bd_prepare(model, &scheme, &reference_lapack,
+                                       bd_reference_speed(model, &scheme, out.state, true), work);
+    }
+    out.report.steps = done;
+    out.report.refactors = refactors;
     bd_work_free(work);
     return out;
 }
@@ -46,13 +57,12 @@ static int same(const double *a, const double *b, size_t n)
     return memcmp(a, b, n * sizeof *a) == 0;
 }
 
-static void a_march_resumes_bit_for_bit(bd_damping_law law)
+static void a_march_resumes_bit_for_bit(bd_damping_law law, bd_scheme scheme)
 {
     pool p = {.n = 0};
     const bd_model_data data = motor(&p, law);
     bd_status status;
     bd_model *model = bd_model_create(&data, &status);
-    bd_scheme scheme = motor_scheme();
     scheme.audit = 1;
     const size_t size = bd_state_size(model), channels = (size_t)bd_model_channels(model);
     const outcome whole = march(&p, model, scheme, NULL, 1000, 7);
@@ -80,13 +90,12 @@ static void a_march_resumes_bit_for_bit(bd_damping_law law)
     pool_empty(&p);
 }
 
-static void every_instruction_set_gives_the_same_bits(bd_damping_law law)
+static void every_instruction_set_gives_the_same_bits(bd_damping_law law, bd_scheme scheme)
 {
     pool p = {.n = 0};
     const bd_model_data data = motor(&p, law);
     bd_status status;
     bd_model *model = bd_model_create(&data, &status);
-    bd_scheme scheme = motor_scheme();
     scheme.audit = 1;
     scheme.isa = BD_ISA_BASE;
     const outcome base = march(&p, model, scheme, NULL, 600, 3);
@@ -283,13 +292,14 @@ static void overflow_is_noticed_without_bearings(void)
     const double x = 1.0, v = 0.0;
     bd_status status;
     bd_model *model = bd_model_create(&data, &status);
-    const bd_scheme scheme = {.dt = 1.0, .gamma = 0.5, .tolerance = 1e-9, .max_iterations = 9};
+    const bd_scheme scheme = {
+        .dt = 1.0, .gamma = 0.5, .speed = no_turning, .tolerance = 1e-9, .max_iterations = 9};
     double *state = pool_take(&p, bd_state_size(model), sizeof *state), record[1];
     bd_work *work = bd_work_create(model);
     bd_report report;
     bd_state_set(model, state, 0.0, &x, &v);
     CHECK_EQUAL("start", bd_start(model, &scheme, &reference_lapack, work, state), BD_OK);
-    CHECK_EQUAL("prepare", bd_prepare(model, &scheme, &reference_lapack, work), BD_OK);
+    CHECK_EQUAL("prepare", bd_prepare(model, &scheme, &reference_lapack, 0.0, work), BD_OK);
     bd_march(model, &scheme, work, state, 1000, 100000, record, &report);
     double end[3];
     bd_state_get(model, state, NULL, &end[0], &end[1], &end[2]);
@@ -298,6 +308,26 @@ static void overflow_is_noticed_without_bearings(void)
                 1);
     CHECK_EQUAL("steps are counted up to there", report.steps > 10 && report.steps < 1000, 1);
     bd_work_free(work);
+    bd_model_free(model);
+    pool_empty(&p);
+}
+
+/* A speed that leaps within one step: new factors, once, those of the step to come. */
+static void a_leap_of_the_speed_is_factored_once(void)
+{
+    static const double time[] = {0.0, 2.1e-5, 2.2e-5}, speed[] = {0.0, 0.0, 1e6};
+    pool p = {.n = 0};
+    bd_model_data data = motor(&p, BD_DAMPING_CONSTANT);
+    data.n_bearings = 0;
+    data.n_channels = 3; /* those of the structure */
+    bd_status status;
+    bd_model *model = bd_model_create(&data, &status);
+    bd_scheme scheme = motor_scheme();
+    scheme.speed = (bd_speed){.n = 3, .time = time, .value = speed};
+    const outcome out = march(&p, model, scheme, NULL, 40, 1);
+    CHECK_EQUAL("status", out.report.status, BD_OK);
+    CHECK_EQUAL("steps", out.report.steps, 40);
+    CHECK_EQUAL("factored anew", out.report.refactors, 1);
     bd_model_free(model);
     pool_empty(&p);
 }
@@ -318,7 +348,7 @@ static void the_failing_bearing_is_named(void)
         const bd_scheme scheme = motor_scheme();
         bd_report report;
         bd_state_set(model, state, 0.0, x, rest);
-        CHECK_EQUAL("prepare", bd_prepare(model, &scheme, &reference_lapack, work), BD_OK);
+        CHECK_EQUAL("prepare", bd_prepare(model, &scheme, &reference_lapack, 523.6, work), BD_OK);
         bd_march(model, &scheme, work, state, 1, 1, record, &report);
         CHECK_EQUAL("status", report.status, BD_NOT_FINITE);
         CHECK_EQUAL("bearing", report.bearing, b);
@@ -330,17 +360,24 @@ static void the_failing_bearing_is_named(void)
 
 int main(void)
 {
-    a_march_resumes_bit_for_bit(BD_DAMPING_CONSTANT);
-    a_march_resumes_bit_for_bit(BD_DAMPING_TABLE);
-    a_march_resumes_bit_for_bit(BD_DAMPING_LOAD);
-    every_instruction_set_gives_the_same_bits(BD_DAMPING_CONSTANT);
-    every_instruction_set_gives_the_same_bits(BD_DAMPING_TABLE);
-    every_instruction_set_gives_the_same_bits(BD_DAMPING_LOAD);
+    a_march_resumes_bit_for_bit(BD_DAMPING_CONSTANT, motor_scheme());
+    a_march_resumes_bit_for_bit(BD_DAMPING_CONSTANT, motor_run_up());
+    a_march_resumes_bit_for_bit(BD_DAMPING_TABLE, motor_scheme());
+    a_march_resumes_bit_for_bit(BD_DAMPING_TABLE, motor_run_up());
+    a_march_resumes_bit_for_bit(BD_DAMPING_LOAD, motor_scheme());
+    a_march_resumes_bit_for_bit(BD_DAMPING_LOAD, motor_run_up());
+    every_instruction_set_gives_the_same_bits(BD_DAMPING_CONSTANT, motor_scheme());
+    every_instruction_set_gives_the_same_bits(BD_DAMPING_CONSTANT, motor_run_up());
+    every_instruction_set_gives_the_same_bits(BD_DAMPING_TABLE, motor_scheme());
+    every_instruction_set_gives_the_same_bits(BD_DAMPING_TABLE, motor_run_up());
+    every_instruction_set_gives_the_same_bits(BD_DAMPING_LOAD, motor_scheme());
+    every_instruction_set_gives_the_same_bits(BD_DAMPING_LOAD, motor_run_up());
     blocks_are_found();
     the_order_of_coordinates_does_not_matter();
     a_new_step_size_starts_a_new_count();
     a_march_that_fails_leaves_the_last_good_step();
     overflow_is_noticed_without_bearings();
+    a_leap_of_the_speed_is_factored_once();
     the_failing_bearing_is_named();
     return check_result();
 }

@@ -20,7 +20,7 @@ static double *run(pool *p, const bd_model *model, const bd_scheme *scheme, cons
     bd_report report;
     bd_state_set(model, state, 0.0, x, v);
     CHECK_EQUAL("start", bd_start(model, scheme, &reference_lapack, work, state), BD_OK);
-    CHECK_EQUAL("prepare", bd_prepare(model, scheme, &reference_lapack, work), BD_OK);
+    CHECK_EQUAL("prepare", bd_prepare(model, scheme, &reference_lapack, 0.0, work), BD_OK);
     bd_march(model, scheme, work, state, n_steps, n_steps, record, &report);
     CHECK_EQUAL("march", report.status, BD_OK);
     CHECK_EQUAL("steps", report.steps, n_steps);
@@ -43,8 +43,12 @@ static double oscillate(double beta, double gamma, int n_steps)
     data.loads = &load;
     bd_status status;
     bd_model *model = bd_model_create(&data, &status);
-    bd_scheme scheme = {
-        .dt = 0.5 / n_steps, .beta = beta, .gamma = gamma, .tolerance = 1e-9, .max_iterations = 10};
+    bd_scheme scheme = {.speed = no_turning,
+                        .dt = 0.5 / n_steps,
+                        .beta = beta,
+                        .gamma = gamma,
+                        .tolerance = 1e-9,
+                        .max_iterations = 10};
     double result, t;
     bd_state_get(model, run(&p, model, &scheme, &x, &v, n_steps), &t, &result, NULL, NULL);
     CHECK_CLOSE("time at the end", t, 0.5, 1e-15);
@@ -122,8 +126,12 @@ static void average_acceleration_conserves_energy(int coupled)
     bd_status status;
     bd_model *model = bd_model_create(&data, &status);
     CHECK_EQUAL("blocks", bd_model_blocks(model), coupled ? 1 : N);
-    bd_scheme scheme = {
-        .dt = 2.5e-6, .beta = 0.25, .gamma = 0.5, .tolerance = 1e-9, .max_iterations = 10};
+    bd_scheme scheme = {.speed = no_turning,
+                        .dt = 2.5e-6,
+                        .beta = 0.25,
+                        .gamma = 0.5,
+                        .tolerance = 1e-9,
+                        .max_iterations = 10};
     double *state = run(&p, model, &scheme, x, v, STEPS), x_end[N], v_end[N];
     bd_state_get(model, state, NULL, x_end, v_end, NULL);
     if (coupled) {

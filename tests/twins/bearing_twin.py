@@ -1,4 +1,4 @@
-"""The contact kernels in plain NumPy: the specification of csrc/ehl.c and csrc/bearing.c.
+"""The contact kernels in plain NumPy: the specification of csrc/ehl.c, csrc/balls.c and csrc/imperfection.c.
 
 Slow and literal, and complex-safe: coefficients may be complex, so that a complex step differentiates the
 force. Every branch looks at real parts only.
@@ -41,8 +41,83 @@ def contact_force(spec: Any, delta: Any, rate: Any) -> tuple[Any, Any, Any]:
     return F, 1.5 * spec.kappa * np.sqrt(s) + slope * rate, c
 
 
+def drop(D: float, width: float, depth: float, s: Any) -> Any:
+    """How far a ball sinks at arc s from a pit's centre: min(h, D/2 − √(D²/4 − (w/2 − |s|)²))."""
+    reach = width / 2 - abs(s)
+    if reach <= 0:
+        return 0.0
+    if reach >= D / 2:
+        return min(depth, D / 2)
+    # the same as D/2 − √(D²/4 − reach²), which cancels
+    return min(depth, reach**2 / (D / 2 + np.sqrt(D**2 / 4 - reach**2)))
+
+
+def drop_slope(D: float, width: float, depth: float, s: Any) -> Any:
+    """∂(drop)/∂s; zero at the bottom and outside."""
+    reach = width / 2 - abs(s)
+    if not 0 < reach < D / 2 or drop(D, width, depth, s) == depth:
+        return 0.0
+    return -np.sign(s) * reach / np.sqrt(D**2 / 4 - reach**2)
+
+
+def wrapped(angle: Any) -> Any:
+    """The same angle within ±π."""
+    return angle - 2 * np.pi * np.round(angle / (2 * np.pi))
+
+
+def imperfections(
+    spec: Any, psi: Any, ball: int, cage_speed: float, shaft_angle: float, shaft_speed: float
+) -> tuple[Any, Any, Any, Any, Any, Any]:
+    """Shifts of groove centres X, Y and of the indentation of a ball at ψ, and the rates of the three.
+
+    theory.md §2, Waviness and Defect. A race's wave moves its surface along +r or +z, so the relative motion
+    inner minus outer takes the outer's with a minus; a ball's wave stands on both of its sides.
+    """
+    flaws = spec.imperfections
+    dX = dY = d = X_rate = Y_rate = rate = 0.0
+    spin, spin_speed = flaws.spin_ratio * shaft_angle, flaws.spin_ratio * shaft_speed
+    for kind, order, owner, amplitude, phase in flaws.waves:
+        if kind == 4:
+            if owner == ball:
+                for side in (0.0, np.pi):  # where the inner, and where the outer race touches
+                    d += amplitude * np.cos(order * (spin + side) + phase)
+                    rate -= amplitude * order * spin_speed * np.sin(order * (spin + side) + phase)
+            continue
+        inner = kind < 2
+        argument = order * (psi - shaft_angle if inner else psi) + phase
+        sign = 1.0 if inner else -1.0
+        value = sign * amplitude * np.cos(argument)
+        slope = -sign * amplitude * order * np.sin(argument)
+        speed = cage_speed - shaft_speed if inner else cage_speed
+        if kind % 2:
+            dX, X_rate = dX + value, X_rate + slope * speed
+        else:
+            dY, Y_rate = dY + value, Y_rate + slope * speed
+    for kind, owner, angle, width, depth in flaws.pits:
+        D = flaws.ball_diameter
+        if kind == 2:
+            meetings = [(D / 2, spin - angle + side, spin_speed) for side in (0.0, np.pi) if owner == ball]
+        elif kind == 0:
+            meetings = [(flaws.inner_radius, psi - shaft_angle - angle, cage_speed - shaft_speed)]
+        else:
+            meetings = [(flaws.outer_radius, psi - angle, cage_speed)]
+        for radius, at, speed in meetings:
+            s = radius * wrapped(at)
+            d -= drop(D, width, depth, s)
+            rate -= drop_slope(D, width, depth, s) * radius * speed
+    if len(flaws.oversize):
+        d += flaws.oversize[ball]
+    return dX, dY, d, X_rate, Y_rate, rate
+
+
 def bearing_force(
-    spec: Any, z: Any, zdot: Any, angle: float, cage_speed: float
+    spec: Any,
+    z: Any,
+    zdot: Any,
+    angle: float,
+    cage_speed: float,
+    shaft_angle: float = 0.0,
+    shaft_speed: float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """g (n,), K = ∂g/∂z (n, n), C = ∂g/∂ż (n, n) and ball loads (Z,); paper eqs. (1), (3)."""
     z, zdot = np.asarray(z), np.asarray(zdot)
@@ -57,16 +132,17 @@ def bearing_force(
         phi = np.where(spec.sine, np.sin(m * psi), np.cos(m * psi))
         dphi = np.where(spec.sine, m * np.cos(m * psi), -m * np.sin(m * psi))
         rate = phi * zdot + cage_speed * dphi * z
-        dX, dY = (phi * z)[axial].sum(), (phi * z)[~axial].sum()
-        Xdot, Ydot = rate[axial].sum(), rate[~axial].sum()
+        shift = imperfections(spec, psi, j, cage_speed, shaft_angle, shaft_speed)
+        dX, dY = (phi * z)[axial].sum() + shift[0], (phi * z)[~axial].sum() + shift[1]
+        Xdot, Ydot = rate[axial].sum() + shift[3], rate[~axial].sum() + shift[4]
         X, Y = spec.x0 + dX, spec.y0 + dY
         L = np.sqrt(X * X + Y * Y)
         # Λ − A without cancellation
-        delta = (dX * (2 * spec.x0 + dX) + dY * (2 * spec.y0 + dY) + spec.e0) / (L + spec.A)
+        delta = (dX * (2 * spec.x0 + dX) + dY * (2 * spec.y0 + dY) + spec.e0) / (L + spec.A) + shift[2]
         if not np.real(delta + spec.h0) > 0:
             continue
         sin, cos = X / L, Y / L
-        F, dF, c = contact_force(spec, delta, sin * Xdot + cos * Ydot)
+        F, dF, c = contact_force(spec, delta, sin * Xdot + cos * Ydot + shift[5])
         v, dv = np.where(axial, sin, cos) * phi, np.where(axial, sin, cos) * dphi
         w = np.where(axial, cos, -sin) * phi
         p = w * (cos * Xdot - sin * Ydot) / L + cage_speed * dv

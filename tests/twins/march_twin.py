@@ -2,7 +2,7 @@
 
 Dense, in the caller's order of coordinates, with a full Newton iteration on all accelerations in every step:
 
-    M a + (C + ΩG) v + (K + ΩN) x + Σ_l L_l Σ_i s_li + Σ_b B_bᵀ g_b(B_b x, B_b v, t) = f(t)
+    M a + (C + ΩG) v + (K + ΩN + Ω̇G) x + Σ_l L_l Σ_i s_li + Σ_b B_bᵀ g_b(B_b x, B_b v, t) = f(t)
     x = x̃ + βΔt² a,  v = ṽ + γΔt a,  s′ = E s + 2Gτ (old ẏ + new ẏ′),  y = Lᵀx.
 """
 
@@ -49,7 +49,37 @@ class State:
     """per layer (branches, rank)"""
 
 
-def force(system: System, speed: float, t: float) -> np.ndarray:
+@dataclass(frozen=True)
+class Turn:
+    """How the shaft turns at one time: Ω, Ω̇, angle."""
+
+    speed: float
+    rate: float
+    angle: float
+
+
+Speed = float | tuple[Any, Any]
+"""rad/s: constant, or (times, values), linear between and held outside"""
+
+
+def turn_at(speed: Speed, t: float) -> Turn:
+    """Ω, Ω̇ (that of the interval to the right of a knot) and ∫Ω dt, which is Ω(t₀) t₀ at the first knot."""
+    if not isinstance(speed, tuple):
+        return Turn(speed, 0.0, speed * t)
+    times, values = (np.asarray(s, float) for s in speed)
+    now = np.interp(t, times, values)
+    if not times[0] <= t < times[-1] or len(times) == 1:
+        rate = 0.0
+    else:
+        k = int(np.searchsorted(times, t, side="right")) - 1
+        rate = (values[k + 1] - values[k]) / (times[k + 1] - times[k])
+    # the trapezoidal rule is exact on the knots up to t; before the first knot the speed is held
+    knots = np.append(times[times < t], t) if t > times[0] else np.array([times[0], t])
+    angle = values[0] * times[0] + np.trapezoid(np.interp(knots, times, values), knots)
+    return Turn(now, rate, angle)
+
+
+def force(system: System, turn: Turn, t: float) -> np.ndarray:
     """f(t), (n,)."""
     total = np.zeros(len(system.M))
     for kind, omega, p_cos, p_sin, time, value in system.loads:
@@ -58,43 +88,57 @@ def force(system: System, speed: float, t: float) -> np.ndarray:
         elif kind == "harmonic":
             total += p_cos * np.cos(omega * t) + p_sin * np.sin(omega * t)
         elif kind == "rotating":
-            total += speed**2 * (p_cos * np.cos(speed * t) + p_sin * np.sin(speed * t))
+            # −d²/dt² of the whirling centre e^{iθ}: Ω² e^{iθ} − Ω̇ i e^{iθ}
+            c, s = np.cos(turn.angle), np.sin(turn.angle)
+            total += p_cos * (turn.speed**2 * c + turn.rate * s) + p_sin * (turn.speed**2 * s - turn.rate * c)
         else:
             total += p_cos * np.interp(t, time, value)
     return total
 
 
 def bearings(
-    system: System, speed: float, t: float, x: np.ndarray, v: np.ndarray
+    system: System, turn: Turn, x: np.ndarray, v: np.ndarray
 ) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """g, ∂g/∂z, ∂g/∂ż and ball loads of every bearing."""
     return [
-        bearing_force(s, B @ x, B @ v, s.angle0 + s.cage_ratio * speed * t, s.cage_ratio * speed)
+        bearing_force(
+            s,
+            B @ x,
+            B @ v,
+            s.angle0 + s.cage_ratio * turn.angle,
+            s.cage_ratio * turn.speed,
+            turn.angle,
+            turn.speed,
+        )
         for s, B in system.bearings
     ]
 
 
-def structure_force(system: System, speed: float, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(C + ΩG) v + (K + ΩN) x."""
-    return (system.C + speed * system.G) @ v + (system.K + speed * system.N) @ x
+def structure_matrices(system: System, turn: Turn) -> tuple[np.ndarray, np.ndarray]:
+    """C + ΩG and K + ΩN + Ω̇G."""
+    C = system.C + turn.speed * system.G
+    return C, system.K + turn.speed * system.N + turn.rate * system.G
 
 
-def start(system: System, speed: float, t: float, x: np.ndarray, v: np.ndarray) -> State:
+def start(system: System, speed: Speed, t: float, x: np.ndarray, v: np.ndarray) -> State:
     """Relaxed branches, and the acceleration that satisfies the equation of motion."""
-    rest = force(system, speed, t) - structure_force(system, speed, x, v)
-    for (_, B), (g, *_) in zip(system.bearings, bearings(system, speed, t, x, v), strict=True):
+    turn = turn_at(speed, t)
+    C, K = structure_matrices(system, turn)
+    rest = force(system, turn, t) - C @ v - K @ x
+    for (_, B), (g, *_) in zip(system.bearings, bearings(system, turn, x, v), strict=True):
         rest = rest - B.T @ g
     stress = [np.zeros((len(tau), L.shape[1])) for L, _, tau in system.layers]
     return State(t, x.copy(), v.copy(), np.linalg.solve(system.M, rest), stress)
 
 
-def step(system: System, s: State, dt: float, beta: float, gamma: float, speed: float) -> State:
+def step(system: System, s: State, dt: float, beta: float, gamma: float, speed: Speed) -> State:
     """One step of Newmark's scheme, by Newton's method on a."""
     t = s.t + dt
+    turn = turn_at(speed, t)
+    C_now, K_now = structure_matrices(system, turn)
     x_old = s.x + dt * s.v + (0.5 - beta) * dt**2 * s.a
     v_old = s.v + (1 - gamma) * dt * s.a
-    linear = system.M + gamma * dt * (system.C + speed * system.G)
-    linear = linear + beta * dt**2 * (system.K + speed * system.N)
+    linear = system.M + gamma * dt * C_now + beta * dt**2 * K_now
     history, now = [], []
     for (L, modulus, tau), stress in zip(system.layers, s.stress, strict=True):
         E, old, new = branch_weights(dt / tau)
@@ -102,16 +146,16 @@ def step(system: System, s: State, dt: float, beta: float, gamma: float, speed: 
         history.append(E[:, None] * stress + (scale * old)[:, None] * (s.v @ L))
         now.append(scale * new)
         linear = linear + gamma * dt * now[-1].sum() * L @ L.T
-    f = force(system, speed, t)
+    f = force(system, turn, t)
 
     a = s.a.copy()
     for _ in range(50):
         x, v = x_old + beta * dt**2 * a, v_old + gamma * dt * a
-        r = system.M @ a + structure_force(system, speed, x, v) - f
+        r = system.M @ a + C_now @ v + K_now @ x - f
         J = linear.copy()
         for (L, _, _), h, w in zip(system.layers, history, now, strict=True):
             r = r + L @ (h.sum(axis=0) + w.sum() * (v @ L))
-        for (_, B), (g, K, C, _) in zip(system.bearings, bearings(system, speed, t, x, v), strict=True):
+        for (_, B), (g, K, C, _) in zip(system.bearings, bearings(system, turn, x, v), strict=True):
             r = r + B.T @ g
             J = J + B.T @ (beta * dt**2 * K + gamma * dt * C) @ B
         change = np.linalg.solve(J, r)
@@ -125,9 +169,9 @@ def step(system: System, s: State, dt: float, beta: float, gamma: float, speed: 
     return State(t, x, v, a, stress)
 
 
-def observe(system: System, s: State, speed: float) -> np.ndarray:
+def observe(system: System, s: State, speed: Speed) -> np.ndarray:
     """One row of the record, (channels,)."""
-    found = bearings(system, speed, s.t, s.x, s.v)
+    found = bearings(system, turn_at(speed, s.t), s.x, s.v)
     row = []
     for kind, weights, bearing, index in system.channels:
         if kind in ("displacement", "velocity", "acceleration"):
@@ -150,7 +194,7 @@ def march(
     *,
     beta: float = 0.25,
     gamma: float = 0.5,
-    speed: float = 0.0,
+    speed: Speed = 0.0,
     done: int = 0,
 ) -> tuple[np.ndarray, State]:
     """Record (rows, channels) and the state after `steps`; `done` steps of the same dt came before."""

@@ -4,7 +4,7 @@ from bearingdyn.analysis.equilibrium import BearingState, Equilibrium, equilibri
 from bearingdyn.analysis.harmonic import frequency_response
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.spectra import orbit, spectrum
-from bearingdyn.analysis.transient import transient
+from bearingdyn.analysis.transient import transient, transients
 
 __all__ = [
     "BearingState",
@@ -15,4 +15,5 @@ __all__ = [
     "orbit",
     "spectrum",
     "transient",
+    "transients",
 ]

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.running import digest, run
+from bearingdyn.results import march_dataset
 from bearingdyn.system import QUANTITIES, System, is_rotation
 
 if TYPE_CHECKING:
@@ -26,7 +29,7 @@ UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}
 def transient(
     source: Equilibrium | System,
     *,
-    speed: float,
+    speed: float | tuple[ArrayLike, ArrayLike],
     dt: float,
     steps: int,
     record: Sequence[str],
@@ -34,18 +37,20 @@ def transient(
     settle: int = 0,
     initial: Mapping[str, ArrayLike] | None = None,
     resume: xarray.Dataset | None = None,
+    stream: str | os.PathLike[str] | None = None,
     audit: bool = False,
     scheme: core.Scheme | None = None,
     progress: core.Progress | None = None,
 ) -> xarray.Dataset:
-    """March an application at constant speed from its equilibrium.
+    """March an application from its equilibrium, at constant speed or through a run-up.
 
     Parameters
     ----------
     source
         Equilibrium: the march starts there, at rest, layers relaxed. A System starts from zero.
     speed
-        Speed of the shaft, rad/s.
+        Speed of the shaft, rad/s: one number, or (times in s, speeds), linear between and held outside. Cage,
+        unbalance and gyroscopic forces follow it; rotating loads also push along with its rate.
     dt, steps
         Step in s and number of steps recorded from.
     record
@@ -60,6 +65,10 @@ def transient(
         Displacement (6,) or (3,) of interfaces or points at the start, instead of the equilibrium's.
     resume
         Result of an earlier call on the same application: goes on where it ended, bit for bit.
+    stream
+        File on which channels and states are put while the march runs, every chunk checked and on the disk
+        before the next: killed at any moment, it holds every finished chunk (`bearingdyn.load` opens it),
+        and the same call goes on from there, bit for bit.
     audit
         Integrate energies and works; they come as attributes "energy_…", J.
     scheme
@@ -76,22 +85,27 @@ def transient(
         When Newton's iteration diverges; its `partial` is the Dataset up to there.
     Interrupted
         On Ctrl-C; its `partial` likewise.
+    OSError
+        Where `stream` cannot be written; what was on the disk stays.
     """
     if not (dt > 0 and math.isfinite(dt)):
         raise ValueError(f"dt is {dt}; the time step must be positive, in s")
     for name, value, least in (("steps", steps, 0), ("settle", settle, 0), ("decimate", decimate, 1)):
         if not value >= least or value % 1 != 0:
             raise ValueError(f"{name} is {value}; it must be a whole number of at least {least}")
+    if resume is not None and stream is not None:
+        raise ValueError("a stream goes on by itself; give resume or stream, not both")
     if resume is not None and initial:
         raise ValueError("resume goes on from its own state and initial sets another; give one of the two")
     system = source.system if isinstance(source, Equilibrium) else source
-    system.check_speed(speed)
+    fastest = _checked_speed(speed)
+    system.check_speed(fastest)
     modal, T = system.modal()
     channels, units = zip(*(_channel(modal, name) for name in record), strict=True) if record else ((), ())
     model = modal.model(list(channels))
     base = scheme or core.Scheme(dt)
     scheme = core.Scheme(
-        dt, base.beta, base.gamma, float(speed), base.tolerance, base.max_iterations, audit, base.isa
+        dt, base.beta, base.gamma, speed, base.tolerance, base.max_iterations, audit, base.isa
     )
 
     if resume is not None:
@@ -102,29 +116,30 @@ def transient(
             x = _moved(system, x, initial)
         state, start = model.state(0.0, T.T @ system.M @ x, np.zeros(system.n)), True
 
-    total = settle + steps
-    report = None
-    if settle:
-
-        def settling(done: int, _: int) -> object:
-            return progress(done, total) if progress else None
-
-        _, state, report = core.march(
-            model, state, scheme, settle, settle + 1, start=start, progress=settling if progress else None
-        )
-        start = False
-    if report is None or report.status == 0:
-
-        def marching(done: int, _: int) -> object:
-            return progress(settle + done, total) if progress else None
-
-        rows, state, report = core.march(
-            model, state, scheme, steps, decimate, start=start, progress=marching if progress else None
-        )
-    else:
-        rows = np.zeros((0, len(channels)))
-
-    result = _result(rows, state, report, model, scheme, record, units, decimate, settle)
+    facts = {
+        "channels": list(record),
+        "units": list(units),
+        "dt": dt,
+        "speed": [part.tolist() for part in scheme.profile],
+        "decimate": int(decimate),
+        "settle": int(settle),
+        "steps": int(steps),
+    }
+    header = facts if stream is None else {**facts, "digest": digest(modal, scheme, state)}
+    rows, state, report = run(
+        model,
+        state,
+        scheme,
+        int(settle),
+        int(steps),
+        int(decimate),
+        start=start,
+        progress=progress,
+        stream=stream,
+        header=header,
+    )
+    energies = core.energies(model, state) if audit else {}
+    result = march_dataset(facts, rows, state, report, {f"energy_{k}": v for k, v in energies.items()})
     if report.status == core.INTERRUPTED:
         raise core.Interrupted(
             f"interrupted at t = {report.t:.6g} s; what was marched is in `partial`", result
@@ -138,6 +153,39 @@ def transient(
             result,
         )
     return result
+
+
+def _checked_speed(speed: float | tuple[ArrayLike, ArrayLike]) -> float:
+    """The largest |speed|; ValueError where the profile is no profile."""
+    if not isinstance(speed, tuple):
+        return float(speed)
+    if len(speed) != 2:
+        raise ValueError(f"speed has {len(speed)} parts; give one number, or (times, speeds)")
+    times, speeds = (np.atleast_1d(np.asarray(part, dtype=np.float64)) for part in speed)
+    if times.shape != speeds.shape or times.ndim != 1 or times.size < 2:
+        raise ValueError(
+            f"speed has {times.size} times and {speeds.size} speeds; give two or more of each, or one number"
+        )
+    if not (np.isfinite(times).all() and np.isfinite(speeds).all() and (np.diff(times) > 0).all()):
+        raise ValueError("speed: times must increase and all numbers be finite, in s and rad/s")
+    return float(np.abs(speeds).max())
+
+
+def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -> list[xarray.Dataset]:
+    """Many marches at once over threads, each case the arguments of `transient` by name (`source` too).
+
+    The marches share nothing and hold no lock; results come in the order of the cases. threads: how many at a
+    time, by default as many as there are cores.
+
+    Raises what the first failing case, in their order, raised, after all have ended.
+    """
+    from concurrent.futures import ThreadPoolExecutor
+
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads is {threads}; at least one is needed")
+    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+        running = [pool.submit(transient, **case) for case in cases]
+    return [march.result() for march in running]
 
 
 def _moved(system: System, x: Array, initial: Mapping[str, ArrayLike]) -> Array:
@@ -180,43 +228,3 @@ def _channel(system: System, name: str) -> tuple[Channel, str]:
     if is_rotation(place):
         unit = unit.replace("m", "rad", 1)
     return (core.CHANNEL_KINDS[quantity], system.row(place), 0, 0), unit
-
-
-def _result(
-    rows: Array,
-    state: Array,
-    report: core.Report,
-    model: core.Model,
-    scheme: core.Scheme,
-    record: Sequence[str],
-    units: Sequence[str],
-    decimate: int,
-    settle: int,
-) -> xarray.Dataset:
-    from bearingdyn.results import dataset
-
-    origin, count = float(state[0]), int(state[1])
-    last = count - count % decimate
-    time = origin + (last - decimate * np.arange(len(rows))[::-1]) * scheme.dt
-    energies = core.energies(model, state) if scheme.audit else {}
-    data = dataset(
-        {
-            "record": (("time", "channel"), rows, "", "recorded channels; their units are in `unit`"),
-            "state": ("word", state, "", "state of the march in the core's own order"),
-        },
-        {
-            "analysis": "transient",
-            "speed": scheme.speed,
-            "dt": scheme.dt,
-            "decimate": decimate,
-            "settle": settle,
-            "steps": report.steps,
-            "iterations": report.iterations,
-            "refreshes": report.refreshes,
-            "complete": int(report.status == 0),
-            "status": report.text,
-            **{f"energy_{name}": value for name, value in energies.items()},
-        },
-        {"time": (time, "s"), "channel": (list(record), "")},
-    )
-    return data.assign_coords(unit=("channel", list(units)))

@@ -1,6 +1,7 @@
 """Ball bearings: internal geometry, Hertz contact, lubricant film, and the force law between the rings."""
 
 from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness
 from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import (
     PointContact,
@@ -19,11 +20,14 @@ __all__ = [
     "Film",
     "Frequencies",
     "Geometry",
+    "Imperfections",
     "LoadDamping",
     "Lubricant",
+    "Pit",
     "PointContact",
     "TabulatedDamping",
     "Walther",
+    "Waviness",
     "contact_modulus",
     "hamrock_dowson",
     "nijenbanning_venner_moes",

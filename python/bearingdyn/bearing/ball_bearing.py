@@ -9,6 +9,7 @@ which matters from milliradians on (1.7 % in a pure-moment case of 4 mrad).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, TypeAlias
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.bearing.checks import nonnegative, number, positive, require, vector
+from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
@@ -72,6 +74,10 @@ class BallBearing:
         Cage speed over inner-ring speed instead of ½(1 − γ).
     angle0
         Azimuth of the first ball at cage angle 0, rad, from x towards y.
+    waviness, defects
+        Waviness and Pit objects of bearingdyn.bearing.
+    oversize
+        (Z,) diameter of each ball beyond Dw, m; empty: all equal.
     arm
         Arm of tilts and moments instead of the radius R_i of the inner groove centres, m.
     overrides
@@ -96,6 +102,9 @@ class BallBearing:
     film: float
     damping: Damping
     angle0: float
+    waviness: tuple[Waviness, ...]
+    defects: tuple[Pit, ...]
+    oversize: tuple[float, ...]
     overrides: Overrides
 
     def __init__(
@@ -115,6 +124,9 @@ class BallBearing:
         kappa: float | None = None,
         cage_ratio: float | None = None,
         angle0: float = 0.0,
+        waviness: Sequence[Waviness] = (),
+        defects: Sequence[Pit] = (),
+        oversize: Sequence[float] = (),
         arm: float | None = None,
         overrides: Overrides = Overrides(),  # noqa: B008 (immutable)
     ) -> None:
@@ -133,6 +145,7 @@ class BallBearing:
             require(0 <= ratio <= 1, "cage_ratio", ratio, "must lie in 0..1 (½(1 − γ), near 0.4)")
         if given.arm is not None:
             positive("arm", given.arm, "the arm of the moments in metres must be positive and finite")
+        waves, pits, sizes = checked(int(Z), waviness, defects, oversize)
         values = {
             "Z": int(Z),
             "Dw": Dw,
@@ -146,6 +159,9 @@ class BallBearing:
             "film": nonnegative("film", film, "h_i + h_o in metres must be zero or positive"),
             "damping": as_damping(damping),
             "angle0": number("angle0", angle0, "the azimuth of the first ball in rad must be finite"),
+            "waviness": waves,
+            "defects": pits,
+            "oversize": sizes,
             "overrides": given,
         }
         for name, value in values.items():
@@ -223,6 +239,23 @@ class BallBearing:
             damping_table=table,
             cage_ratio=self.cage_ratio,
             angle0=self.angle0,
+            imperfections=self._imperfections(),
+        )
+
+    def _imperfections(self) -> Imperfections:
+        """Waves, pits and sizes, with the spin and the radii of the races where the balls run."""
+        geometry = self.geometry
+        reach = self.Dw * math.cos(self.contact_angle or 0.0)
+        waves = [row for wave in self.waviness for row in wave.rows(self.Z)]
+        pits = [pit.row(self.Z) for pit in self.defects]
+        return Imperfections(
+            spin_ratio=geometry.ball_spin(1.0),
+            ball_diameter=self.Dw,
+            inner_radius=(self.Dpw - reach) / 2,
+            outer_radius=(self.Dpw + reach) / 2,
+            waves=np.array(waves).reshape(-1, 5),
+            pits=np.array(pits).reshape(-1, 5),
+            oversize=np.array(self.oversize),
         )
 
     def coefficients(self) -> NDArray[np.float64]:
@@ -304,10 +337,11 @@ class BallBearing:
         R = self.arm
         target = np.array([f[0], f[1], f[2], -f[4] / R, f[3] / R])
         still = np.zeros(5)
+        shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
         from bearingdyn import core  # late: the compiled kernel is needed only here and in _evaluate
 
         def stored(z: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], NDArray[np.float64], float]:
-            g, K, _, loads = core.bearing_force(self._kernel, z, still, turn, 0.0)
+            g, K, _, loads = core.bearing_force(self._kernel, z, still, turn, 0.0, shaft)
             # ∫κ s^{3/2} ds = (2/5) F s with s = (F/κ)^{2/3}
             return float(0.4 * (loads * (loads / self.kappa) ** (2 / 3)).sum()), g, K, float(loads.sum())
 
@@ -322,5 +356,7 @@ class BallBearing:
         zdot = self.coefficients() @ vector("velocity", velocity, (6,), f"rate of {_MOTION}")
         turn = self.angle0 + number("angle", angle, "the cage angle in rad must be finite")
         cage = self.cage_ratio * number("speed", speed, "the inner-ring speed in rad/s must be finite")
-        response: _Response = core.bearing_force(self._kernel, z, zdot, turn, cage)
+        # the shaft has turned so far that the cage stands at `angle`
+        shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
+        response: _Response = core.bearing_force(self._kernel, z, zdot, turn, cage, shaft, speed)
         return response

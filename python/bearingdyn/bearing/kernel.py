@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.bearing.checks import nonnegative, number, require, vector
+from bearingdyn.bearing.excitation import Imperfections
 
 Law: TypeAlias = Literal["constant", "table", "load"]
 KernelFields: TypeAlias = tuple[Law, float, NDArray[np.float64]]
@@ -142,3 +143,5 @@ class BearingKernel:
     """Cage speed over inner-ring speed."""
     angle0: float = 0.0
     """Azimuth of the first ball at the start, rad."""
+    imperfections: Imperfections = field(default_factory=Imperfections)
+    """Waves, pits and unequal balls; none by default."""

@@ -1,0 +1,150 @@
+"""What a bearing's surfaces excite: waviness, localised defects, balls of unequal size.
+
+Waves and pits ride on the body that carries them: the inner race turns with the shaft, the outer race stands,
+a ball spins about its own axis. Each shifts the contact, and its rate enters the contact's damping.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bearingdyn.bearing.checks import number, positive, require
+
+Body = Literal["inner", "outer", "ball"]
+BODIES = ("inner", "outer", "ball")
+
+
+@dataclass(frozen=True)
+class Waviness:
+    """One wave, amplitude·cos(order·angle + phase), around a race or a ball.
+
+    Parameters
+    ----------
+    body
+        "inner" (turns with the shaft), "outer" (stands) or "ball".
+    order
+        Waves per turn, ≥ 0. Of a ball, odd orders keep its diameter and excite nothing.
+    amplitude
+        m, displacement of the surface: of a race along +r or +z, of a ball outwards.
+    phase
+        rad, at the angle 0 of the body.
+    direction
+        "radial" or "axial", of a race.
+    ball
+        Which ball carries it, from 1; None: every ball, in phase.
+
+    Raises ValueError naming the field, its value and what would be right.
+    """
+
+    body: Body
+    order: int
+    amplitude: float
+    phase: float = 0.0
+    direction: Literal["radial", "axial"] = "radial"
+    ball: int | None = None
+
+    def __post_init__(self) -> None:
+        require(self.body in BODIES, "waviness.body", self.body, f"must be one of {BODIES}")
+        whole = isinstance(self.order, int) and self.order >= 0
+        require(whole, "waviness.order", self.order, "must be a whole number of waves, zero or more")
+        number("waviness.amplitude", self.amplitude, "must be a finite length in m")
+        number("waviness.phase", self.phase, "must be a finite angle in rad")
+        known = self.direction in ("radial", "axial")
+        require(known, "waviness.direction", self.direction, 'must be "radial" or "axial"')
+        if self.ball is not None:
+            on_ball = self.body == "ball" and self.ball >= 1
+            require(on_ball, "waviness.ball", self.ball, 'names a ball from 1, with body "ball"')
+
+    def rows(self, Z: int) -> list[tuple[float, ...]]:
+        """(kind, order, ball, amplitude, phase) as the core takes them."""
+        if self.body == "ball":
+            if self.ball is not None:
+                require(self.ball <= Z, "waviness.ball", self.ball, f"the bearing has {Z} balls")
+            balls = range(Z) if self.ball is None else [self.ball - 1]
+            return [(4.0, float(self.order), float(j), self.amplitude, self.phase) for j in balls]
+        kind = 2.0 * (self.body == "outer") + (self.direction == "axial")
+        return [(kind, float(self.order), 0.0, self.amplitude, self.phase)]
+
+
+@dataclass(frozen=True)
+class Pit:
+    """A localised defect: a ball drops into it by min(depth, D/2 − √(D²/4 − (width/2 − |s|)²)).
+
+    s is the arc from its centre. The drop is continuous, and a ball cannot reach the bottom of a narrow pit.
+
+    Parameters
+    ----------
+    body
+        "inner", "outer" or "ball"; a pit on a ball meets each race once per spin.
+    angle
+        rad, of its centre on the body, from x towards y at time 0.
+    width, depth
+        m, along the rolling direction, and into the surface.
+    ball
+        Which ball carries it, from 1, with body "ball".
+
+    Raises ValueError naming the field, its value and what would be right.
+    """
+
+    body: Body
+    angle: float
+    width: float
+    depth: float
+    ball: int = 1
+
+    def __post_init__(self) -> None:
+        require(self.body in BODIES, "defects.body", self.body, f"must be one of {BODIES}")
+        number("defects.angle", self.angle, "must be a finite angle in rad")
+        positive("defects.width", self.width, "must be a positive length in m")
+        positive("defects.depth", self.depth, "must be a positive length in m")
+        require(self.ball >= 1, "defects.ball", self.ball, "balls are counted from 1")
+
+    def row(self, Z: int) -> tuple[float, ...]:
+        """(kind, ball, angle, width, depth) as the core takes it."""
+        require(self.ball <= Z, "defects.ball", self.ball, f"the bearing has {Z} balls")
+        return (float(BODIES.index(self.body)), self.ball - 1.0, self.angle, self.width, self.depth)
+
+
+@dataclass(frozen=True, eq=False)
+class Imperfections:
+    """All of a bearing's imperfections as the core takes them, with the kinematics they need.
+
+    spin_ratio: ball spin over shaft speed. ball_diameter, and inner_radius, outer_radius where the balls
+    run, m.
+    waves (n, 5), pits (n, 5), oversize (Z,) or empty, m.
+    """
+
+    spin_ratio: float = 0.0
+    ball_diameter: float = 0.0
+    inner_radius: float = 0.0
+    outer_radius: float = 0.0
+    waves: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 5)))
+    pits: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 5)))
+    oversize: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def none(self) -> bool:
+        """Whether the bearing is perfect."""
+        return not (len(self.waves) or len(self.pits) or len(self.oversize))
+
+
+def checked(
+    Z: int, waviness: Sequence[Waviness], defects: Sequence[Pit], oversize: Sequence[float]
+) -> tuple[tuple[Waviness, ...], tuple[Pit, ...], tuple[float, ...]]:
+    """The same as tuples; ValueError for something of the wrong kind or a ball that is not there."""
+    for wave in waviness:
+        require(isinstance(wave, Waviness), "waviness", wave, "give Waviness objects")
+        wave.rows(Z)
+    for pit in defects:
+        require(isinstance(pit, Pit), "defects", pit, "give Pit objects")
+        pit.row(Z)
+    sizes = tuple(float(d) for d in oversize)
+    fits = len(sizes) in (0, Z) and all(math.isfinite(d) for d in sizes)
+    require(fits, "oversize", oversize, f"give one finite diameter deviation in m for each of {Z} balls")
+    return tuple(waviness), tuple(defects), sizes
