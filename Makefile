@@ -60,6 +60,8 @@ asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 
 bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/transient.py --json
+	$(PY) benchmarks/bearing.py --json
+	$(PY) benchmarks/memory.py --json
 
 lint: $(VENV)/package $(VENV)/lint $(COMPILERS:%=$(BUILD)/%/build.ninja)
 	ruff check

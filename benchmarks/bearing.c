@@ -21,9 +21,11 @@ typedef enum kernel { TURN, FORCE, BOTH } kernel;
 
 /* Least time of one evaluation over many repeats; every evaluation has its own input, taken from the last output
  * so that none can start before the other has ended. */
-static double least(const bd_kernels *kernels, const bd_bearing *bearing, bd_bearing_work *work, kernel which)
+static double least(const bd_kernels *kernels, const bd_bearing *bearing, bd_bearing_work *work,
+                    kernel which)
 {
-    _Alignas(64) double z[BD_LANES] = {2e-6, -9e-6, 12e-6, 1e-6, -2e-6}, rate[BD_LANES] = {1e-3, -2e-3, 1e-3};
+    _Alignas(64) double z[BD_LANES] = {2e-6, -9e-6, 12e-6, 1e-6, -2e-6},
+                        rate[BD_LANES] = {1e-3, -2e-3, 1e-3};
     _Alignas(64) double g[BD_LANES], K[COEFS * BD_LANES], C[COEFS * BD_LANES];
     double best = INFINITY;
     kernels->turn(bearing, work, 0.3);

@@ -9,6 +9,9 @@
 #include "ehl.h"
 #include "lanes.h"
 
+/* Rows of a tangent worked on at once: as many as a rigid ring has. */
+enum { TANGENT_ROWS = 5 };
+
 /* Basis functions of every ball. */
 void BD_NAMED(bd_bearing_turn)(const bd_bearing *bearing, bd_bearing_work *work, double psi)
 {
@@ -129,43 +132,69 @@ void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work
     }
 }
 
+/* Rows k0 ... k0 + rows of both tangents, one register of columns wide; inlined with a constant count of rows,
+ * whose sums then stay in registers over all balls. */
+BD_INLINE void tangent_rows(const bd_bearing *bearing, const bd_bearing_work *work,
+                            double cage_speed, lane_mask is_radial, int first, int k0, int rows,
+                            int stride, double *restrict K, double *restrict C)
+{
+    const int coefs = bearing->coefs;
+    const double *normal = work->normal, *along = work->along, *slopes = work->dphi_ball;
+    lanes K_row[TANGENT_ROWS] = {{0}}, C_row[TANGENT_ROWS] = {{0}};
+
+    for (int j = 0; j < bearing->data.n_balls;
+         j++, normal += coefs, along += coefs, slopes += coefs) {
+        const double s = work->sine_a[j], c = work->cosine_a[j];
+        lanes dphi = cage_speed * LANES(slopes + first), v = LANES(normal + first),
+              w = LANES(along + first);
+
+        /* p: d(rate)/dz at fixed z_rate, because the normal turns and the race runs past the ball */
+        lanes p = LANES_WHERE(is_radial, c * dphi) + LANES_WHERE(~is_radial, s * dphi);
+        p += work->turn[j] * w;
+
+        lanes across = work->stiffness[j] * v + work->damping[j] * p;
+        lanes turned = (work->force[j] * work->tilt[j]) * w;
+        lanes viscous = work->damping[j] * v;
+        for (int i = 0; i < rows; i++) {
+            K_row[i] += normal[k0 + i] * across + along[k0 + i] * turned;
+            C_row[i] += normal[k0 + i] * viscous;
+        }
+    }
+    for (int i = 0; i < rows; i++) {
+        const size_t at = (size_t)(k0 + i) * (size_t)stride + (size_t)first;
+        LANES_AT(K + at) = K_row[i];
+        LANES_AT(C + at) = C_row[i];
+    }
+}
+
 /* Tangents of that sum. */
 void BD_NAMED(bd_bearing_tangent)(const bd_bearing *bearing, const bd_bearing_work *work,
                                   double cage_speed, int stride, double *restrict K,
                                   double *restrict C)
 {
-    const bd_bearing_data *data = &bearing->data;
-    const int coefs = bearing->coefs, n_coefs = data->n_coefs, n_radial = data->n_radial;
+    const int coefs = bearing->coefs, n_coefs = bearing->data.n_coefs;
 
     for (int first = 0; first < coefs; first += BD_WIDTH) {
         lane_mask is_radial;
-        kind_masks(n_radial, first, &is_radial);
-        for (int k = 0; k < n_coefs; k++) {
-            LANES_AT(K + (size_t)k * (size_t)stride + first) = (lanes){0};
-            LANES_AT(C + (size_t)k * (size_t)stride + first) = (lanes){0};
-        }
-        for (int j = 0; j < data->n_balls; j++) {
-            const double *all = work->phi_ball + (size_t)j * (size_t)coefs;
+        kind_masks(bearing->data.n_radial, first, &is_radial);
+        for (int j = 0; j < bearing->data.n_balls; j++) {
+            const size_t at = (size_t)j * (size_t)coefs + (size_t)first;
             const double s = work->sine_a[j], c = work->cosine_a[j];
-            lanes phi = LANES(all + first);
-            lanes dphi = cage_speed * LANES(work->dphi_ball + (size_t)j * (size_t)coefs + first);
-
-            /* v: gradient of the indentation; w: its partner along the race; p: d(rate)/dz at fixed
-             * z_rate, because the normal turns and the race runs past the ball */
-            lanes v = LANES_WHERE(is_radial, c * phi) + LANES_WHERE(~is_radial, s * phi);
-            lanes w = LANES_WHERE(is_radial, -s * phi) + LANES_WHERE(~is_radial, c * phi);
-            lanes p = LANES_WHERE(is_radial, c * dphi) + LANES_WHERE(~is_radial, s * dphi);
-            p += work->turn[j] * w;
-
-            lanes across = work->stiffness[j] * v + work->damping[j] * p;
-            lanes along = (work->force[j] * work->tilt[j]) * w;
-            lanes viscous = work->damping[j] * v;
-            for (int k = 0; k < n_coefs; k++) {
-                const double v_k = all[k] * (k < n_radial ? c : s);
-                const double w_k = all[k] * (k < n_radial ? -s : c);
-                LANES_AT(K + (size_t)k * (size_t)stride + first) += v_k * across + w_k * along;
-                LANES_AT(C + (size_t)k * (size_t)stride + first) += v_k * viscous;
-            }
+            lanes phi = LANES(work->phi_ball + at);
+            LANES_AT(work->normal + at) =
+                LANES_WHERE(is_radial, c * phi) + LANES_WHERE(~is_radial, s * phi);
+            LANES_AT(work->along + at) =
+                LANES_WHERE(is_radial, -s * phi) + LANES_WHERE(~is_radial, c * phi);
         }
+    }
+    for (int first = 0; first < coefs; first += BD_WIDTH) {
+        lane_mask is_radial;
+        int k = 0;
+        kind_masks(bearing->data.n_radial, first, &is_radial);
+        for (; k + TANGENT_ROWS <= n_coefs; k += TANGENT_ROWS)
+            tangent_rows(bearing, work, cage_speed, is_radial, first, k, TANGENT_ROWS, stride, K,
+                         C);
+        for (; k < n_coefs; k++)
+            tangent_rows(bearing, work, cage_speed, is_radial, first, k, 1, stride, K, C);
     }
 }

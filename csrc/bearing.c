@@ -13,7 +13,7 @@ static const double no_ball = -1e6;
 size_t bd_bearing_work_size(const bd_bearing_data *data)
 {
     size_t balls = (size_t)BD_PADDED(data->n_balls), coefs = (size_t)BD_PADDED(data->n_coefs);
-    return 2 * (size_t)data->n_coefs * balls + 2 * balls * coefs + 16 * balls;
+    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + 16 * balls;
 }
 
 size_t bd_bearing_constants(const bd_bearing_data *data)
@@ -68,7 +68,9 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
     work->dphi = work->phi + by_ball;
     work->phi_ball = work->dphi + by_ball;
     work->dphi_ball = work->phi_ball + balls * coefs;
-    memory = work->dphi_ball + balls * coefs;
+    work->normal = work->dphi_ball + balls * coefs;
+    work->along = work->normal + balls * coefs;
+    memory = work->along + balls * coefs;
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++, memory += balls)
         *parts[i] = memory;
 }

@@ -19,7 +19,9 @@ struct bd_bearing {
 struct bd_bearing_work {
     double *phi, *dphi;           /* (n_coefs x balls) basis and its derivative in psi */
     double *phi_ball, *dphi_ball; /* (n_balls x coefs) the same, transposed */
-    double *sine_a, *cosine_a;    /* (balls) of the contact angle */
+    /* (n_balls x coefs) for tangents: gradient of the indentation, and of the motion across it */
+    double *normal, *along;
+    double *sine_a, *cosine_a; /* (balls) of the contact angle */
     double *delta, *rate,
         *turn;       /* (balls) indentation, its rate, (cos a Xdot - sin a Ydot)/Lambda */
     double *tilt;    /* (balls) 1/Lambda */

@@ -288,7 +288,8 @@ typedef struct bd_state {
     double *x, *v, *a; /* (n_padded) */
     double *y_rate;    /* (rank_padded) layer rates L^T v */
     double *stress;    /* branch stresses, layer by layer, branch by branch */
-    double *g;         /* (coefs_padded) bearing forces of the last step: Newton starts from them */
+    double *g;         /* (coefs_padded) bearing forces of the last step */
+    double *g_before;  /* (2 coefs_padded) those of the two steps before it */
     double *inverse;   /* (coefs_padded^2) Newton's frozen inverse */
     bd_energy *energy;
 } bd_state;

@@ -380,6 +380,8 @@ static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data
     }
     int *coef_slot = carve(a, (size_t)model->n_coefs, sizeof *coef_slot);
     double *B = carve_doubles(a, (size_t)model->n_padded * (size_t)model->coefs);
+    /* blocks are as many as coordinates at most, which is all that is known while counting */
+    int *touched = carve(a, (size_t)data->n_bearings * (size_t)data->n, sizeof *touched);
 
     for (int b = 0; b < data->n_bearings; b++) {
         bd_bearing_data own = data->bearings[b];
@@ -415,6 +417,14 @@ static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data
                     data->B[b][(size_t)k * (size_t)data->n + (size_t)i];
         }
     }
+    for (int b = 0; bearings && b < data->n_bearings; b++)
+        for (int c = 0; c < model->n_blocks; c++)
+            for (int i = 0; i < model->blocks[c].n; i++)
+                for (int k = 0; k < bearings[b].data.n_coefs; k++)
+                    if (B[(size_t)(model->blocks[c].offset + i) * (size_t)model->coefs +
+                          (size_t)(bearing_slot[b] + k)] != 0.0)
+                        touched[b * model->n_blocks + c] = 1;
+    model->touched = touched;
     model->bearings = bearings;
     model->bearing_slot = bearing_slot;
     model->coef_slot = coef_slot;

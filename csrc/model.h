@@ -53,7 +53,8 @@ struct bd_model {
     const bd_load *loads;
     const bd_channel *channels;
     const double *M, *C, *G, *K, *N; /* blocks one after another */
-    const double *B; /* (n_padded x coefs): row j holds coordinate j's part in each */
+    const int *touched; /* (n_bearings x n_blocks) 1 where a bearing sees a block's motion */
+    const double *B;    /* (n_padded x coefs): row j holds coordinate j's part in each */
 };
 
 #endif

@@ -49,7 +49,6 @@ static double sampled(const bd_load *load, double t)
 void bd_load_factors(const bd_model *model, bd_work *work, double t)
 {
     const bd_turn turn = work->turn;
-    const double c = cos(turn.angle), s = sin(turn.angle), square = turn.speed * turn.speed;
     double *factor = work->load_factor;
     for (int k = 0; k < model->n_loads; k++, factor += 2) {
         const bd_load *load = &model->loads[k];
@@ -62,10 +61,12 @@ void bd_load_factors(const bd_model *model, bd_work *work, double t)
             factor[0] = cos(load->omega * t);
             factor[1] = sin(load->omega * t);
             break;
-        case BD_LOAD_ROTATING:
+        case BD_LOAD_ROTATING: {
+            const double c = cos(turn.angle), s = sin(turn.angle), square = turn.speed * turn.speed;
             factor[0] = square * c + turn.rate * s;
             factor[1] = square * s - turn.rate * c;
             break;
+        }
         case BD_LOAD_SAMPLED:
             factor[0] = sampled(load, t);
             break;
@@ -236,7 +237,9 @@ static bd_status solve_step(const bd_model *model, bd_work *work, bd_state *stat
     const bool factored_here = work->reference == work->turn.speed;
     double before = INFINITY;
 
-    memcpy(work->guess, state->g, m * sizeof *work->guess);
+    /* Newton starts from the parabola through the last three forces */
+    for (size_t k = 0; k < m; k++)
+        work->guess[k] = 3.0 * (state->g[k] - state->g_before[k]) + state->g_before[m + k];
     if (!work->drift) {
         if (!bearings)
             return BD_OK;
@@ -325,7 +328,8 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
                     work->z, work->z_rate);
     bd_turn_bearings(model, work);
     bd_force_bearings(model, work);
-    memcpy(state.g, work->force, (size_t)model->coefs * sizeof *state.g);
+    for (size_t k = 0, m = (size_t)model->coefs; k < m; k++)
+        state.g[k] = state.g_before[k] = state.g_before[m + k] = work->force[k];
     bd_load_factors(model, work, t);
 
     /* residual force on every coordinate; work->loss is free here */

@@ -8,7 +8,7 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
 {
     const bd_scheme *scheme = &work->scheme;
     const double dt = scheme->dt, in_x = (0.5 - scheme->beta) * dt * dt;
-    const double in_v = (1.0 - scheme->gamma) * dt;
+    const double in_v = (1.0 - scheme->gamma) * dt, in_v_new = scheme->gamma * dt;
 
     for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
         lanes a = LANES(state->a + i), v = LANES(state->v + i);
@@ -26,10 +26,24 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
         double *a = work->a + block->offset;
         const size_t square = (size_t)block->padded * (size_t)block->n;
 
-        columns_add(block->padded, block->n, columns, block->padded, work->x + block->offset, a);
-        columns += square;
-        columns_add(block->padded, block->n, columns, block->padded, work->v + block->offset, a);
-        columns += square;
+        if (work->diagonal[b]) {
+            /* a0 without damping, (M + beta dt^2 K') a0 = -K' x, then a = a0 - S^-1 C' (v + gamma dt a0):
+             * half the columns, and half the memory, of the two products */
+            const double *x = work->x + block->offset, *v = work->v + block->offset;
+            double *corrected = work->v_new + block->offset;
+            for (int i = 0; i < block->padded; i += BD_WIDTH) {
+                lanes undamped = LANES(columns + i) * LANES(x + i);
+                LANES_AT(a + i) = undamped;
+                LANES_AT(corrected + i) = LANES(v + i) + in_v_new * undamped;
+            }
+            columns_add(block->padded, block->n, columns + square, block->padded, corrected, a);
+        } else {
+            columns_add(block->padded, block->n, columns, block->padded, work->x + block->offset,
+                        a);
+            columns_add(block->padded, block->n, columns + square, block->padded,
+                        work->v + block->offset, a);
+        }
+        columns += 2 * square;
         for (int l = block->layer; l < block->layer + block->n_layers; l++) {
             const bd_layer *layer = &model->layers[l];
             double *history = work->history + layer->offset;
@@ -42,8 +56,12 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
             columns += (size_t)layer->rank * (size_t)block->padded;
         }
     }
-    columns_add(model->n_padded, 2 * model->n_loads, work->SP, model->n_padded, work->load_factor,
-                work->a);
+    for (int k = 0; k < model->n_loads; k++) {
+        const bd_load_kind kind = model->loads[k].kind;
+        columns_add(model->n_padded, kind == BD_LOAD_HARMONIC || kind == BD_LOAD_ROTATING ? 2 : 1,
+                    work->SP + 2 * (size_t)k * (size_t)model->n_padded, model->n_padded,
+                    work->load_factor + 2 * k, work->a);
+    }
 }
 
 /* Bearing coefficients and rates that the structure would have without the bearings. */
@@ -59,8 +77,33 @@ static void observe(const bd_model *model, bd_work *work)
     }
     for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->z_linear + k) = LANES_AT(work->z_rate_linear + k) = (lanes){0};
-    columns_add_two(model->coefs, model->n_padded, model->B, model->coefs, work->x_new, work->v_new,
-                    work->z_linear, work->z_rate_linear);
+    for (int b = 0; b < model->n_bearings; b++) {
+        const int at = model->bearing_slot[b], *touched = model->touched + b * model->n_blocks;
+        for (int c = 0; c < model->n_blocks; c++) {
+            const int from = model->blocks[c].offset;
+            if (touched[c])
+                columns_add_two(model->bearings[b].coefs, model->blocks[c].n,
+                                model->B + (size_t)from * (size_t)model->coefs + at, model->coefs,
+                                work->x_new + from, work->v_new + from, work->z_linear + at,
+                                work->z_rate_linear + at);
+        }
+    }
+}
+
+/* a -= S^-1 B^T guess */
+BD_INLINE void add_bearings(const bd_model *model, bd_work *work)
+{
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+        LANES_AT(work->change + k) = -LANES(work->guess + k);
+    for (int b = 0; b < model->n_bearings; b++) {
+        const int at = model->bearing_slot[b], *touched = model->touched + b * model->n_blocks;
+        const double *columns = work->SB + (size_t)at * (size_t)model->n_padded;
+        for (int c = 0; c < model->n_blocks; c++)
+            if (touched[c])
+                columns_add(model->blocks[c].padded, model->bearings[b].data.n_coefs,
+                            columns + model->blocks[c].offset, model->n_padded, work->change + at,
+                            work->a + model->blocks[c].offset);
+    }
 }
 
 /* What a speed other than the reference adds. */
@@ -76,9 +119,7 @@ static double drift(const bd_model *model, bd_work *work, double *largest)
     /* x and v that go with the present guess of everything */
     for (int i = 0; i < model->n_padded; i += BD_WIDTH)
         LANES_AT(work->a + i) = LANES(work->a_steady + i) + LANES(work->a_drift + i);
-    for (int k = 0; k < model->coefs; k += BD_WIDTH)
-        LANES_AT(work->change + k) = -LANES(work->guess + k);
-    columns_add(model->n_padded, model->coefs, work->SB, model->n_padded, work->change, work->a);
+    add_bearings(model, work);
     for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
         lanes a = LANES(work->a + i);
         lanes x = LANES(work->x + i) + in_x * a, v = LANES(work->v + i) + in_v * a;
@@ -115,7 +156,12 @@ static void displace(const bd_model *model, bd_work *work)
 
     for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->Wg + k) = (lanes){0};
-    columns_add(model->coefs, model->coefs, work->W, model->coefs, work->guess, work->Wg);
+    for (int b = 0; b < model->n_bearings; b++) {
+        const int at = model->bearing_slot[b];
+        columns_add(model->coefs, model->bearings[b].data.n_coefs,
+                    work->W + (size_t)at * (size_t)model->coefs, model->coefs, work->guess + at,
+                    work->Wg);
+    }
     for (int k = 0; k < model->coefs; k += BD_WIDTH) {
         lanes Wg = LANES(work->Wg + k);
         LANES_AT(work->z + k) = LANES(work->z_linear + k) - in_x * Wg;
@@ -128,7 +174,12 @@ static void correct(const bd_model *model, bd_work *work, double share, const do
 {
     for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->change + k) = share * (LANES(work->force + k) - LANES(work->guess + k));
-    columns_add(model->coefs, model->coefs, inverse, model->coefs, work->change, work->guess);
+    for (int b = 0; b < model->n_bearings; b++) {
+        const int at = model->bearing_slot[b];
+        columns_add(model->coefs, model->bearings[b].data.n_coefs,
+                    inverse + (size_t)at * (size_t)model->coefs, model->coefs, work->change + at,
+                    work->guess);
+    }
 }
 
 /* Completes the acceleration and makes the trial state the state, if that is finite. */
@@ -137,9 +188,7 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
     const bd_scheme *scheme = &work->scheme;
     const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
 
-    for (int k = 0; k < model->coefs; k += BD_WIDTH)
-        LANES_AT(work->change + k) = -LANES(work->guess + k);
-    columns_add(model->n_padded, model->coefs, work->SB, model->n_padded, work->change, work->a);
+    add_bearings(model, work);
 
     /* 0 times a number that is not finite is NaN, and so is every sum with it */
     lanes poison = {0};
@@ -154,8 +203,11 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
         if (!(poison[i] == 0.0))
             return 1;
 
-    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+    for (int k = 0; k < model->coefs; k += BD_WIDTH) {
+        LANES_AT(state->g_before + model->coefs + k) = LANES(state->g_before + k);
+        LANES_AT(state->g_before + k) = LANES(state->g + k);
         LANES_AT(state->g + k) = LANES(work->guess + k);
+    }
     for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
         LANES_AT(state->a + i) = LANES(work->a + i);
         LANES_AT(state->x + i) = LANES(work->x_new + i);

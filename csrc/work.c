@@ -71,10 +71,11 @@ bd_work *bd_work_create(const bd_model *model)
 
     size_t bytes = (total + BD_LANES) * sizeof(double);
     work->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    work->diagonal = calloc((size_t)model->n_blocks, sizeof *work->diagonal);
     work->step_at = calloc((size_t)model->n_blocks, sizeof *work->step_at);
     work->weights = calloc(branches + 1, sizeof *work->weights);
     work->bearings = calloc((size_t)model->n_bearings + 1, sizeof *work->bearings);
-    if (!work->memory || !work->step_at || !work->weights || !work->bearings) {
+    if (!work->memory || !work->diagonal || !work->step_at || !work->weights || !work->bearings) {
         bd_work_free(work);
         return NULL;
     }
@@ -103,6 +104,7 @@ void bd_work_free(bd_work *work)
         return;
     free(work->memory);
     free(work->step_at);
+    free(work->diagonal);
     free(work->weights);
     free(work->bearings);
     free(work->profile);
@@ -252,6 +254,20 @@ static void form_block(const bd_model *model, const bd_block *block, const bd_wo
             }
 }
 
+/* Whether a block's mass and its stiffness at the reference speed have nothing beside the diagonal, as in modes. */
+static bool is_diagonal(const bd_model *model, const bd_block *block, const bd_work *work)
+{
+    const size_t n = (size_t)block->n;
+    const double *M = model->M + block->matrix, *K = model->K + block->matrix;
+    const double *N = model->N + block->matrix;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            if (i != j &&
+                (M[i * n + j] != 0.0 || K[i * n + j] + work->reference * N[i * n + j] != 0.0))
+                return false;
+    return true;
+}
+
 /* Where a block's drift columns start. */
 static size_t drift_at(const bd_model *model, int b)
 {
@@ -273,6 +289,15 @@ static void place_block(const bd_model *model, int b, bd_work *work, const block
         double *to = work->step + work->step_at[b] + c * padded;
         memcpy(to, column, n * sizeof *column);
         memset(to + n, 0, (padded - n) * sizeof *to); /* bd_start may have written there */
+    }
+    if (work->diagonal[b]) { /* one column serves instead of the first n */
+        const double in_a = work->scheme.beta * work->scheme.dt * work->scheme.dt;
+        double *to = work->step + work->step_at[b];
+        for (size_t i = 0; i < n; i++) {
+            const size_t ii = block->matrix + i * n + i;
+            const double stiffness = model->K[ii] + work->reference * model->N[ii];
+            to[i] = -stiffness / (model->M[ii] + in_a * stiffness);
+        }
     }
     for (size_t c = 0; c < 2 * (size_t)model->n_loads; c++, column += n)
         memcpy(work->SP + c * (size_t)model->n_padded + block->offset, column, n * sizeof *column);
@@ -328,6 +353,7 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
     for (int b = 0; b < model->n_blocks && status == BD_OK; b++) {
         const bd_block *block = &model->blocks[b];
         system.columns = right_columns(model, work, block);
+        work->diagonal[b] = is_diagonal(model, block, work);
         form_block(model, block, work, weight, &system);
         if (bd_solve_real(lapack, block->n, system.S, system.pivots, (int)system.columns,
                           system.rhs))
@@ -373,7 +399,7 @@ double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double
 size_t bd_state_size(const bd_model *model)
 {
     size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
-    return BD_LANES + 3 * n + (size_t)model->ranks + model->n_stress + m + m * m +
+    return BD_LANES + 3 * n + (size_t)model->ranks + model->n_stress + 3 * m + m * m +
            (size_t)BD_PADDED(sizeof(bd_energy) / sizeof(double));
 }
 
@@ -387,7 +413,8 @@ bd_state bd_state_view(const bd_model *model, double *flat)
     state.y_rate = state.a + n;
     state.stress = state.y_rate + model->ranks;
     state.g = state.stress + model->n_stress;
-    state.inverse = state.g + m;
+    state.g_before = state.g + m;
+    state.inverse = state.g_before + 2 * m;
     state.energy = (bd_energy *)(void *)(state.inverse + m * m);
     return state;
 }

@@ -18,12 +18,14 @@ struct bd_work {
     double *memory;   /* everything below lies in it */
 
     /* operators of the prepared step */
-    double
-        *step; /* per block, columns [-S^-1 (K + speed N) | -S^-1 (C + C_ve + speed G) | -S^-1 L] */
-    size_t *step_at;            /* (n_blocks) where a block's columns start */
-    double *SB;                 /* S^-1 B^T: a column per padded coefficient */
-    double *SP;                 /* S^-1 p: two columns per load (cosine, sine) */
-    double *W;                  /* B S^-1 B^T: a column per padded coefficient */
+    double *step;    /* per block, columns [-S^-1 K' | -S^-1 C' | -S^-1 L] with K' = K + speed N and
+                       * C' = C + C_ve + speed G; where M and K' are diagonal, the first column is
+                       * -K'/(M + beta dt^2 K') and the rest of the first n go unused */
+    bool *diagonal;  /* (n_blocks) whether they are */
+    size_t *step_at; /* (n_blocks) where a block's columns start */
+    double *SB;      /* S^-1 B^T: a column per padded coefficient */
+    double *SP;      /* S^-1 p: two columns per load (cosine, sine) */
+    double *W;       /* B S^-1 B^T: a column per padded coefficient */
     bd_branch_weights *weights; /* layer by layer, branch by branch */
 
     /* vectors of a step, padded */
