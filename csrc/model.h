@@ -57,4 +57,7 @@ struct bd_model {
     const double *B;    /* (n_padded x coefs): row j holds coordinate j's part in each */
 };
 
+/* BD_OK, or what is wrong with a description; bd_model_create asks it first. */
+bd_status bd_model_check(const bd_model_data *data);
+
 #endif

@@ -114,78 +114,20 @@ void bd_work_free(bd_work *work)
 
 /* ---------------------------------------------------------------- prepare */
 
-static bool valid(const bd_scheme *scheme)
+bool bd_scheme_valid(const bd_scheme *scheme)
 {
     return scheme->dt > 0.0 && isfinite(scheme->dt) && scheme->beta >= 0.0 &&
            scheme->gamma >= 0.0 && isfinite(scheme->beta) && isfinite(scheme->gamma) &&
            scheme->speed.n >= 1 && scheme->tolerance > 0.0 && scheme->max_iterations >= 1;
 }
 
-/* Copies the knots of the speed and integrates them. Returned: whether they are usable. */
-static bool take_speed(bd_work *work, const bd_speed *speed)
-{
-    const size_t n = (size_t)speed->n;
-    double *profile = malloc(3 * n * sizeof *profile);
-    if (!profile)
-        return false;
-    double *time = profile, *value = profile + n, *angle = profile + 2 * n;
-    bool usable = true;
-    for (size_t k = 0; k < n; k++) {
-        time[k] = speed->time[k];
-        value[k] = speed->value[k];
-        angle[k] = k == 0
-                       ? value[0] * time[0]
-                       : angle[k - 1] + 0.5 * (value[k - 1] + value[k]) * (time[k] - time[k - 1]);
-        usable =
-            usable && isfinite(time[k]) && isfinite(value[k]) && (k == 0 || time[k] > time[k - 1]);
-    }
-    free(work->profile);
-    work->profile = profile;
-    work->scheme.speed.time = time;
-    work->scheme.speed.value = value;
-    return usable;
-}
-
-/* Speed and its rate at time t, and the knot at or before it (0 before the first). */
-static int interpolate(const bd_speed *speed, double t, double *value, double *rate)
-{
-    int low = 0, high = speed->n - 1;
-    *rate = 0.0;
-    if (t <= speed->time[0] || t >= speed->time[high]) {
-        low = t <= speed->time[0] ? 0 : high;
-        *value = speed->value[low];
-        return low;
-    }
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        if (speed->time[middle] <= t)
-            low = middle;
-        else
-            high = middle;
-    }
-    *rate = (speed->value[high] - speed->value[low]) / (speed->time[high] - speed->time[low]);
-    *value = speed->value[low] + *rate * (t - speed->time[low]);
-    return low;
-}
-
-bd_turn bd_turn_at(const bd_work *work, double t)
-{
-    const bd_speed *speed = &work->scheme.speed;
-    bd_turn turn;
-    const int low = interpolate(speed, t, &turn.speed, &turn.rate);
-    const double since = t - speed->time[low];
-    turn.angle =
-        work->profile[2 * speed->n + low] + (speed->value[low] + 0.5 * turn.rate * since) * since;
-    return turn;
-}
-
 bool bd_work_choose(bd_work *work, const bd_scheme *scheme)
 {
-    if (!valid(scheme))
+    if (!bd_scheme_valid(scheme))
         return false;
     work->kernels = bd_kernels_for(scheme->isa);
     work->scheme = *scheme;
-    return work->kernels && take_speed(work, &scheme->speed);
+    return work->kernels && bd_take_speed(work, &scheme->speed);
 }
 
 /* Right-hand sides and matrix of one block, column-major and dense, in memory of its own. */
@@ -378,71 +320,4 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
             work->W[c * m + k] = sum;
         }
     return status;
-}
-
-double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double *flat, bool anew)
-{
-    double *clock = bd_state_view(model, flat).clock, rate;
-    if (!valid(scheme))
-        return NAN;
-    /* the end of the next step, to the bit as bd_march will have it */
-    const double t = clock[2] == scheme->dt ? clock[0] + (clock[1] + 1.0) * scheme->dt
-                                            : clock[0] + clock[1] * clock[2] + scheme->dt;
-    if (anew || clock[5] == 0.0 || scheme->speed.n == 1)
-        interpolate(&scheme->speed, t, &clock[4], &rate);
-    clock[5] = 1.0;
-    return clock[4];
-}
-
-/* ---------------------------------------------------------------- state */
-
-size_t bd_state_size(const bd_model *model)
-{
-    size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
-    return BD_LANES + 3 * n + (size_t)model->ranks + model->n_stress + 3 * m + m * m +
-           (size_t)BD_PADDED(sizeof(bd_energy) / sizeof(double));
-}
-
-bd_state bd_state_view(const bd_model *model, double *flat)
-{
-    size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
-    bd_state state = {.clock = flat};
-    state.x = flat + BD_LANES;
-    state.v = state.x + n;
-    state.a = state.v + n;
-    state.y_rate = state.a + n;
-    state.stress = state.y_rate + model->ranks;
-    state.g = state.stress + model->n_stress;
-    state.g_before = state.g + m;
-    state.inverse = state.g_before + 2 * m;
-    state.energy = (bd_energy *)(void *)(state.inverse + m * m);
-    return state;
-}
-
-void bd_state_set(const bd_model *model, double *flat, double t, const double *x, const double *v)
-{
-    memset(flat, 0, bd_state_size(model) * sizeof *flat);
-    bd_state state = bd_state_view(model, flat);
-    state.clock[0] = t;
-    for (int i = 0; i < model->n; i++) {
-        state.x[model->slot[i]] = x[i];
-        state.v[model->slot[i]] = v[i];
-    }
-}
-
-void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,
-                  double *a)
-{
-    const double *state_x = flat + BD_LANES, *state_v = state_x + model->n_padded;
-    const double *state_a = state_v + model->n_padded;
-    if (t)
-        *t = flat[0] + flat[1] * flat[2];
-    for (int i = 0; i < model->n; i++) {
-        if (x)
-            x[i] = state_x[model->slot[i]];
-        if (v)
-            v[i] = state_v[model->slot[i]];
-        if (a)
-            a[i] = state_a[model->slot[i]];
-    }
 }

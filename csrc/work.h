@@ -43,8 +43,14 @@ struct bd_work {
     bd_bearing_work *bearings;
 };
 
+/* Whether the numbers of a scheme can be marched with. */
+bool bd_scheme_valid(const bd_scheme *scheme);
+
 /* Takes over a scheme and chooses its kernels. Returned: whether the scheme is valid on this machine. */
 bool bd_work_choose(bd_work *work, const bd_scheme *scheme);
+
+/* Copies the knots of a speed and integrates them. Returned: whether they are usable. */
+bool bd_take_speed(bd_work *work, const bd_speed *speed);
 
 /* Speed, its rate and the shaft angle at time t. */
 bd_turn bd_turn_at(const bd_work *work, double t);

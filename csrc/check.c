@@ -1,0 +1,145 @@
+/* Whether a description can be computed with: shapes first, then values. */
+#include <math.h>
+#include <stdbool.h>
+
+#include "model.h"
+
+/* Finite, all n of them; NULL counts as empty only for n = 0. */
+static bool all_finite(const double *values, size_t n)
+{
+    if (n > 0 && !values)
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(values[i]))
+            return false;
+    return true;
+}
+
+static bool increasing(const double *values, int n)
+{
+    for (int i = 1; i < n; i++)
+        if (!(values[i] > values[i - 1]))
+            return false;
+    return true;
+}
+
+/* Basis functions are built up from order to order; beyond this a call would not come to an end. */
+enum { HIGHEST_ORDER = 10000 };
+
+static bool nonnegative(const double *values, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!(values[i] >= 0.0))
+            return false;
+    return true;
+}
+
+bd_status bd_bearing_check(const bd_bearing_data *bearing)
+{
+    const bd_contact *contact = &bearing->contact;
+    if (bearing->n_balls < 1 || bearing->n_coefs < 1 || bearing->n_radial < 0 ||
+        bearing->n_radial > bearing->n_coefs)
+        return BD_BAD_SHAPE;
+    for (int k = 0; k < bearing->n_coefs; k++)
+        if (bearing->order[k] < 0 || bearing->order[k] > HIGHEST_ORDER)
+            return BD_BAD_VALUE;
+    const double finite[] = {bearing->x0,         bearing->y0,     bearing->e0,
+                             bearing->cage_ratio, bearing->angle0, contact->kappa,
+                             contact->h0,         contact->c,      bearing->A};
+    if (!all_finite(finite, sizeof finite / sizeof finite[0]) || !(bearing->A > 0.0) ||
+        !(contact->kappa > 0.0) || !(contact->h0 >= 0.0) || !(contact->c >= 0.0))
+        return BD_BAD_VALUE;
+    if (bearing->n_waves < 0 || bearing->n_pits < 0)
+        return BD_BAD_SHAPE;
+    const double sizes[] = {bearing->spin_ratio, bearing->ball_diameter, bearing->inner_radius,
+                            bearing->outer_radius};
+    if (!all_finite(sizes, sizeof sizes / sizeof sizes[0]) ||
+        (bearing->n_pits > 0 && !(bearing->ball_diameter > 0.0)) ||
+        (bearing->oversize && !all_finite(bearing->oversize, (size_t)bearing->n_balls)))
+        return BD_BAD_VALUE;
+    for (int w = 0; w < bearing->n_waves; w++) {
+        const bd_wave *wave = &bearing->waves[w];
+        if (wave->order < 0 || !isfinite(wave->amplitude) || !isfinite(wave->phase) ||
+            wave->ball < 0 || wave->ball >= bearing->n_balls)
+            return BD_BAD_VALUE;
+    }
+    for (int p = 0; p < bearing->n_pits; p++) {
+        const bd_pit *pit = &bearing->pits[p];
+        if (!(pit->width > 0.0) || !(pit->depth >= 0.0) || !isfinite(pit->angle) ||
+            !isfinite(pit->width) || !isfinite(pit->depth) || pit->ball < 0 ||
+            pit->ball >= bearing->n_balls)
+            return BD_BAD_VALUE;
+    }
+    if (contact->law == BD_DAMPING_TABLE) {
+        if (contact->n_table < 1)
+            return BD_BAD_SHAPE;
+        if (!all_finite(contact->table_c, (size_t)contact->n_table) ||
+            !nonnegative(contact->table_c, contact->n_table) ||
+            !all_finite(contact->table_delta, (size_t)contact->n_table) ||
+            !increasing(contact->table_delta, contact->n_table))
+            return BD_BAD_VALUE;
+    }
+    return BD_OK;
+}
+
+bd_status bd_model_check(const bd_model_data *data)
+{
+    size_t n = (size_t)data->n;
+    if (data->n < 1 || data->n_layers < 0 || data->n_bearings < 0 || data->n_loads < 0 ||
+        data->n_channels < 0)
+        return BD_BAD_SHAPE;
+    if (!all_finite(data->M, n * n) || !all_finite(data->C, n * n) || !all_finite(data->G, n * n) ||
+        !all_finite(data->K, n * n) || !all_finite(data->N, n * n))
+        return BD_BAD_VALUE;
+    for (int l = 0; l < data->n_layers; l++) {
+        const bd_layer_data *layer = &data->layers[l];
+        if (layer->rank < 1 || layer->n_branches < 0)
+            return BD_BAD_SHAPE;
+        if (!all_finite(layer->L, n * (size_t)layer->rank))
+            return BD_BAD_VALUE;
+        if (!all_finite(layer->tau, (size_t)layer->n_branches) ||
+            !all_finite(layer->modulus, (size_t)layer->n_branches) ||
+            !nonnegative(layer->modulus, layer->n_branches))
+            return BD_BAD_VALUE;
+        for (int i = 0; i < layer->n_branches; i++)
+            if (!(layer->tau[i] > 0.0))
+                return BD_BAD_VALUE;
+    }
+    for (int b = 0; b < data->n_bearings; b++) {
+        bd_status status = bd_bearing_check(&data->bearings[b]);
+        if (status != BD_OK)
+            return status;
+        if (!all_finite(data->B[b], n * (size_t)data->bearings[b].n_coefs))
+            return BD_BAD_VALUE;
+    }
+    for (int k = 0; k < data->n_loads; k++) {
+        const bd_load_data *load = &data->loads[k];
+        bool turning = load->kind == BD_LOAD_HARMONIC || load->kind == BD_LOAD_ROTATING;
+        if (!all_finite(load->p_cos, n) || (turning && !all_finite(load->p_sin, n)) ||
+            !isfinite(load->omega))
+            return BD_BAD_VALUE;
+        if (load->kind == BD_LOAD_SAMPLED) {
+            if (load->n_samples < 1)
+                return BD_BAD_SHAPE;
+            if (!all_finite(load->value, (size_t)load->n_samples) ||
+                !all_finite(load->time, (size_t)load->n_samples) ||
+                !increasing(load->time, load->n_samples))
+                return BD_BAD_VALUE;
+        }
+    }
+    for (int c = 0; c < data->n_channels; c++) {
+        const bd_channel_data *channel = &data->channels[c];
+        if (channel->kind <= BD_CHANNEL_ACCELERATION) {
+            if (!all_finite(channel->row, n))
+                return BD_BAD_VALUE;
+            continue;
+        }
+        if (channel->bearing < 0 || channel->bearing >= data->n_bearings || channel->index < 0)
+            return BD_BAD_VALUE;
+        const bd_bearing_data *bearing = &data->bearings[channel->bearing];
+        if ((channel->kind == BD_CHANNEL_FORCE && channel->index >= bearing->n_coefs) ||
+            (channel->kind == BD_CHANNEL_BALL && channel->index >= bearing->n_balls))
+            return BD_BAD_VALUE;
+    }
+    return BD_OK;
+}
