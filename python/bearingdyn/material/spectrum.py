@@ -60,7 +60,12 @@ def solve_strengths(A: Array, b: Array) -> Strengths:
     length = np.linalg.norm(A, axis=0)
     length[length == 0] = 1.0
     scaled = A / length
-    y, _ = nnls(scaled, b, maxiter=30 * A.shape[1])
+    n = A.shape[1]
+    if A.shape[0] > 2 * n:  # the triangular factor poses the same problem in fewer rows
+        R = np.linalg.qr(np.column_stack([scaled, b]), mode="r")
+        y, _ = nnls(R[:, :n], R[:, n], maxiter=30 * n)
+    else:
+        y, _ = nnls(scaled, b, maxiter=30 * n)
     active = y > 0
     basis = np.linalg.qr(scaled[:, active])[0]
     return Strengths(y / length, scaled @ y - b, basis)
