@@ -166,3 +166,22 @@ def factor(quantity: str, unit: str, column: Column, where: str) -> float:
             f"give units={{{quantity!r}: ...}}"
         )
     return known[key]
+
+
+def number_of(cell: str) -> float:
+    """Number in a cell, decimal comma or point; ValueError if there is none."""
+    text = cell.strip().strip('"')
+    if "," in text and "." not in text:
+        text = text.replace(",", ".")
+    if "_" in text:
+        raise ValueError(cell)
+    return float(text)
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell holds a number."""
+    try:
+        number_of(cell)
+    except ValueError:
+        return False
+    return True

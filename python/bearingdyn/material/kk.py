@@ -78,8 +78,8 @@ def suspects(dma: DMAData) -> tuple[NDArray[np.bool_], tuple[Suspect, ...]]:
     """Points that no passive material could give: mask (n,), and what is wrong with each.
 
     Negative (or zero) moduli always; and, with four isotherms or more, every point from the frequency on
-    from which the median ratio over the isotherms exceeds 1.5 up to the highest one, unless it does so at
-    all frequencies: then it is the material.
+    from which the median ratio over the isotherms exceeds 1.5 up to the highest one, two frequencies at
+    least, unless it does so at all frequencies: then it is the material.
     """
     ratio = kk_ratio(dma)
     negative = ~((dma.storage > 0) & (dma.loss > 0))
@@ -92,7 +92,8 @@ def suspects(dma: DMAData) -> tuple[NDArray[np.bool_], tuple[Suspect, ...]]:
         above = known & (median > LIMIT)
         if known.any() and (known & ~above).any():
             last_good = int(np.flatnonzero(known & ~above)[-1])
-            resonance = (cell > cells[last_good]) & ~negative
+            if cells.size - last_good > 2:  # a single frequency may be an effect of the edge
+                resonance = (cell > cells[last_good]) & ~negative
     flagged = negative | resonance
     found = tuple(
         Suspect(

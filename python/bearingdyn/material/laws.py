@@ -60,19 +60,23 @@ def _form(name: LawName, T: Array, T_ref: float) -> _Form:
 
         starts = tuple(np.array([np.log(C1), np.log(d)]) for d in (10.0, 50.0, 200.0) for C1 in (5.0, 20.0))
         lower, upper = np.array([np.log(1e-6), np.log(1e-3)]), np.array([_LOG_STEEPEST, np.log(1e5)])
-        return _Form(lower, upper, starts, wlf, lambda p: WLF(*map(float, wlf(p)), T_ref))
+        return _Form(lower, upper, starts, wlf, lambda p: WLF(float(wlf(p)[0]), float(wlf(p)[1]), T_ref))
 
     low, high = float(T[1]), float(T[-2])
 
     def joined(p: Array) -> Array:
         return np.array([np.exp(p[0]), np.exp(p[1]), p[2], np.exp(p[3])])
 
+    def law(p: Array) -> Joined:
+        C1, C2, Tg, Ea = (float(v) for v in joined(p))
+        return Joined(C1, C2, Tg, Ea, T_ref)
+
     starts = tuple(
         np.array([np.log(12.0), np.log(50.0), Tg, np.log(2e5)]) for Tg in np.linspace(low, high, 7)[1:-1]
     )
     lower = np.array([np.log(0.1), np.log(1.0), low, np.log(1e3)])
     upper = np.array([_LOG_STEEPEST, np.log(1e4), high, np.log(1e7)])
-    return _Form(lower, upper, starts, joined, lambda p: Joined(*map(float, joined(p)), T_ref))
+    return _Form(lower, upper, starts, joined, law)
 
 
 def _numbers(name: LawName) -> int:
@@ -195,4 +199,4 @@ def _parameters(law: Law, form: _Form) -> Array:
             p = [np.log(law.C1), np.log(law.C2), law.Tg, np.log(law.Ea)]
         case ShiftTable():
             raise ValueError("law = 'free' has no constants to fit to the data")
-    return np.clip(np.asarray(p), form.lower + 1e-2, form.upper - 1e-2)
+    return np.asarray(np.clip(np.asarray(p), form.lower + 1e-2, form.upper - 1e-2))

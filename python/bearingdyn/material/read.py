@@ -73,7 +73,8 @@ def read_dma(
         if mode is None and table.shear_named:
             mode = "shear"
             warnings.warn(
-                f"{header}: the header does not tell G from E: taken as shear, because the file speaks of shear "
+                f"{header}: the header does not tell G from E: taken as shear, because the file speaks "
+                "of shear "
                 "(torque, plates); mode='tension' says otherwise",
                 stacklevel=2,
             )
@@ -84,14 +85,16 @@ def read_dma(
             )
     elif table.mode is not None and table.mode != mode:
         raise ValueError(
-            f"{header}: the header says {table.mode}, mode = {mode!r}: give the right mode, or name the right "
+            f"{header}: the header says {table.mode}, mode = {mode!r}: give the right mode, or name the "
+            "right "
             "columns"
         )
     values = {name: table.values[name] for name in ("frequency", "temperature", "storage", "loss")}
     if not np.all(values["temperature"] > -273.15):
         i = int(np.argmin(values["temperature"]))
         raise ValueError(
-            f"{source.at(table.lines[i])}: temperature {values['temperature'][i]:g} °C: must lie above -273.15 °C"
+            f"{source.at(table.lines[i])}: temperature {values['temperature'][i]:g} °C: must lie above "
+            "-273.15 °C"
         )
     if "isotherm" in table.values:
         labels = np.unique(table.values["isotherm"], return_inverse=True)[1].reshape(-1).astype(np.int64)
@@ -105,13 +108,25 @@ def read_dma(
         i_back = first_unsorted(values["frequency"], labels)
         if i_back is not None:
             raise ValueError(
-                f"{source.at(table.lines[i_back])}: frequency {values['frequency'][i_back]:g} Hz runs back within "
-                f"the isotherm at {values['temperature'][i_back]:.4g} °C: must rise throughout, or fall throughout; "
-                "sort=True sorts the table; two sweeps at one temperature are told apart by a column 'isotherm'"
+                f"{source.at(table.lines[i_back])}: frequency {values['frequency'][i_back]:g} Hz runs "
+                "back within "
+                f"the isotherm at {values['temperature'][i_back]:.4g} °C: must rise throughout, or fall "
+                "throughout; "
+                "sort=True sorts the table; two sweeps at one temperature are told apart by a column "
+                "'isotherm'"
             )
     name = source.name if source.word == "row" else str(data)
     try:
-        dma = DMAData(**values, mode=mode, source=name, isotherm=labels, notes=table.notes)
+        dma = DMAData(
+            values["frequency"],
+            values["temperature"],
+            values["storage"],
+            values["loss"],
+            mode,
+            name,
+            labels,
+            table.notes,
+        )
     except ValueError as error:
         raise ValueError(f"{source.at(table.lines[0])} to {table.lines[-1]}: {error}") from error
     check_range(dma)

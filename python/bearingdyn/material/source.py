@@ -90,7 +90,8 @@ def _decode(path: Path, data: bytes) -> str:
         encodings = ["utf-16"]
     elif b"\0" in data:
         raise ValueError(
-            f"{path}, line {1 + data[: data.index(0)].count(10)}: a binary file (an instrument's own format), "
+            f"{path}, line {1 + data[: data.index(0)].count(10)}: a binary file (an instrument's own "
+            "format), "
             "not a text table: export it as CSV"
         )
     else:
@@ -188,7 +189,8 @@ def _array_columns(data: Sequence[Any]) -> dict[str, Any]:
         array = np.empty(0)
     if array.ndim != 2 or array.shape[1] != 4:
         raise ValueError(
-            f"data of type {type(data).__name__}: must be a path, a pandas frame, a mapping of columns, or an "
+            f"data of type {type(data).__name__}: must be a path, a pandas frame, a mapping of columns, "
+            "or an "
             "array of four columns: frequency Hz, temperature °C, storage and loss modulus Pa"
         )
     names = ("frequency_Hz", "temperature_C", "storage modulus_Pa", "loss modulus_Pa")

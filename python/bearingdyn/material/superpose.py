@@ -122,7 +122,10 @@ class Superposition:
     def _minimise(self, theta: Array, prior: float, tolerance: float) -> Array:
         """Free shifts from a start, under a curvature prior."""
         P, owner = _curvature(self.T), self._owner()
-        point = lambda x: self.point_shifts(self.shifts(x))  # noqa: E731
+
+        def point(x: Array) -> Array:
+            return self.point_shifts(self.shifts(x))
+
         for _ in range(3 if prior > 0 and P.size else 1):
             bend = P @ self.shifts(theta)
             rows = prior * (1 + (bend / _KINK) ** 2) ** -0.25

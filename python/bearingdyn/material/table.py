@@ -19,7 +19,9 @@ from bearingdyn.material.columns import (
     choose,
     columns_of,
     factor,
+    is_number,
     names_shear,
+    number_of,
     quantity_of,
     title_of,
 )
@@ -138,9 +140,10 @@ class _Tally:
             )
         if self.after:
             row = self.after[0]
-            numbers = sum(any(_is_number(c) for c in r.text.split()) for r in self.after)
+            numbers = sum(any(is_number(c) for c in r.text.split()) for r in self.after)
             warnings.warn(
-                f"{self.source.at(row.number)}: {len(self.after)} lines after the table left out, {numbers} of "
+                f"{self.source.at(row.number)}: {len(self.after)} lines after the table left out, "
+                f"{numbers} of "
                 f"them with numbers: first {row.text.strip()[:60]!r}",
                 stacklevel=4,
             )
@@ -162,7 +165,8 @@ def _blocks(source: Source, wanted: Mapping[str, str]) -> list[_Block]:
         for quantity, first, second in doubles:
             if quantity in (*chosen, "temperature"):
                 raise ValueError(
-                    f"{source.at(row.number)}: columns {first!r} and {second!r} both look like the {quantity}: "
+                    f"{source.at(row.number)}: columns {first!r} and {second!r} both look like the "
+                    f"{quantity}: "
                     f"choose by columns={{{quantity!r}: ...}}"
                 )
         label = bool(cells) and cells[0].strip().endswith(":") and quantity_of(title_of(cells[0])[0]) is None
@@ -198,7 +202,8 @@ def _read_block(
         wanted.append("temperature")
     elif temperature is None:
         raise ValueError(
-            f"{source.at(block.header.number)}: no column recognised as temperature: give temperature=..., °C, if "
+            f"{source.at(block.header.number)}: no column recognised as temperature: give "
+            "temperature=..., °C, if "
             "the sweep is one isotherm, or columns={'temperature': ...}"
         )
     if "isotherm" in block.columns:
@@ -210,15 +215,16 @@ def _read_block(
     for position, row in enumerate(rows):
         cells = _aligned(block, row)
         texts = {q: _cell(cells, block.columns[q].index) for q in wanted}
-        if not any(_is_number(texts[q]) for q in (*block.quantities,)):
+        if not any(is_number(texts[q]) for q in (*block.quantities,)):
             empty = all(not t for t in texts.values()) and not any(c.strip() for c in cells)
             if empty:
                 continue
             if any(t.lower() not in _MISSING for t in texts.values()) or len(cells) < 2:
                 if position == 0:
-                    q, text = next((q, t) for q, t in texts.items() if not _is_number(t))
+                    q, text = next((q, t) for q, t in texts.items() if not is_number(t))
                     raise ValueError(
-                        f"{source.at(row.number)}, column {block.columns[q].title!r}: {text!r} is not a number: "
+                        f"{source.at(row.number)}, column {block.columns[q].title!r}: {text!r} is not a "
+                        "number: "
                         "must be a decimal number such as 1.25e6"
                     )
                 if not _ends_section(row):
@@ -245,7 +251,7 @@ def _ends_section(row: Row) -> bool:
 def _units_row(block: _Block) -> tuple[tuple[Row, ...], list[str], int]:
     if block.rows:
         cells = _aligned(block, block.rows[0])
-        if not any(_is_number(cell) for cell in cells):
+        if not any(is_number(cell) for cell in cells):
             known = {u for table in UNITS.values() for u in table} - {""}
             here = [_cell(cells, c.index).strip("[]() ").lower() for c in block.columns.values()]
             if any(unit in known for unit in here):
@@ -256,7 +262,7 @@ def _units_row(block: _Block) -> tuple[tuple[Row, ...], list[str], int]:
 def _aligned(block: _Block, row: Row) -> list[str]:
     """Cells of a row; a label in front of the header has none in front of the numbers."""
     cells = block.splitter.cells(row)
-    if block.labelled and cells and _is_number(cells[0]):
+    if block.labelled and cells and is_number(cells[0]):
         return ["", *cells]
     return cells
 
@@ -292,10 +298,13 @@ def _unit(
             warnings.warn(text, stacklevel=6)
         elif quantity == "angular" and bare != "rad/s" and "ang" in column.title.lower():
             warnings.warn(
-                f"{where}, column {column.title!r}: an angular frequency in {unit}: taken as {unit}, not rad/s",
+                f"{where}, column {column.title!r}: an angular frequency in {unit}: taken as {unit}, not "
+                "rad/s",
                 stacklevel=6,
             )
-        notes.append(f"{where}: frequency read in {unit.strip('[] ')}")
+        note = f"frequency read in {unit.strip('[] ')}"
+        if not any(n.endswith(note) for n in notes):
+            notes.append(f"{where}: {note}")
     return factor(quantity, unit if given is None else given, column, where)
 
 
@@ -313,9 +322,9 @@ def _point(
     for quantity, text in texts.items():
         where = f"{source.at(row.number)}, column {block.columns[quantity].title!r}"
         missing = text.lower() in _MISSING
-        if not missing and not _is_number(text):
+        if not missing and not is_number(text):
             raise ValueError(f"{where}: {text!r} is not a number: must be a decimal number such as 1.25e6")
-        value = math.nan if missing else _number(text)
+        value = math.nan if missing else number_of(text)
         if not math.isfinite(value):
             tally.drop(f"{where}: {text or 'empty'} for the {quantity}: must be finite")
             return None
@@ -335,7 +344,8 @@ def _point(
     storage, loss = _modulus(first, second, raw[first], raw[second])
     if not (math.isfinite(storage) and math.isfinite(loss)):
         raise ValueError(
-            f"{source.at(row.number)}: {first} = {raw[first]:g} and {second} = {raw[second]:g}: make no finite modulus"
+            f"{source.at(row.number)}: {first} = {raw[first]:g} and {second} = {raw[second]:g}: make no "
+            "finite modulus"
         )
     point = {"frequency": raw[block.quantities[0]], "storage": storage, "loss": loss}
     return point | {q: raw[q] for q in ("temperature", "isotherm") if q in raw}
@@ -371,26 +381,10 @@ def _mode(source: Source, blocks: list[_Block]) -> Literal["shear", "tension"] |
             (x, y) for x, y in pairwise([u for u in used if u[1].letter]) if x[1].letter != y[1].letter
         )
         raise ValueError(
-            f"{source.at(number)}: storage is {a.title!r}, loss {b.title!r}: must be both in shear (G) or both "
+            f"{source.at(number)}: storage is {a.title!r}, loss {b.title!r}: must be both in shear (G) "
+            "or both "
             "in tension (E)"
         )
     if not letters:
         return None
     return "shear" if letters == {"G"} else "tension"
-
-
-def _number(cell: str) -> float:
-    text = cell.strip().strip('"')
-    if "," in text and "." not in text:
-        text = text.replace(",", ".")
-    if "_" in text:
-        raise ValueError(cell)
-    return float(text)
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        _number(cell)
-    except ValueError:
-        return False
-    return True

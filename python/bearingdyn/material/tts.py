@@ -251,7 +251,8 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
     twin = np.flatnonzero(~(np.diff(T) > 1e-3))
     if twin.size:
         raise ValueError(
-            f"{dma.source}: two isotherms at {T[twin[0]]:.4g} °C: a shift belongs to a temperature; leave one "
+            f"{dma.source}: two isotherms at {T[twin[0]]:.4g} °C: a shift belongs to a temperature; "
+            "leave one "
             "out, or give both the same isotherm number"
         )
     single = [k for k in range(T.size) if np.unique(dma.frequency[dma.labels == k]).size < 2]
@@ -262,7 +263,8 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
         )
     if single:
         warnings.warn(
-            f"{dma.source}: one frequency only at {', '.join(f'{T[k]:.4g}' for k in single)} °C: these shifts "
+            f"{dma.source}: one frequency only at {', '.join(f'{T[k]:.4g}' for k in single)} °C: these "
+            "shifts "
             "rest on a single point",
             stacklevel=3,
         )
