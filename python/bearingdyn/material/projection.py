@@ -60,7 +60,10 @@ class Points:
         storage, loss = branch_columns(self.omega, tau)
         one, none = np.ones((self.omega.size, 1)), np.zeros((self.omega.size, 1))
         A = self.stack(np.hstack([one, storage, none]), np.hstack([none, loss, self.omega[:, None]]))
-        return tau, solve_strengths(A, np.ones(A.shape[0])).x
+        relative, lossy = np.split(A, 2)
+        # to first order the deviations of ln G′ and ln tan δ, linear in the strengths
+        target = np.concatenate([np.ones(self.omega.size), np.zeros(self.omega.size)])
+        return tau, solve_strengths(np.vstack([relative, lossy - relative]), target).x
 
     def floor(self) -> tuple[float, float]:
         """rms deviation of ln G′ and ln tan δ of the best dense non-negative spectrum."""
@@ -254,6 +257,13 @@ def polish(points: Points, limits: Limits, tau: Array, strengths: Array) -> Poli
         ).x
     x = columns(theta)[0]
     tau = np.exp(full(theta)[:m])
+    share = x.copy()
+    share[-1] *= omega.max()
+    gone = present & (share <= 1e-9 * share.max()) & (lower[kept] == 0)
+    if gone.any():  # at its bound: without it
+        x[gone] = 0.0
+        left = Limits(lower[kept], upper[kept], log_lower, log_upper)
+        return polish(points, left, tau, x)
     order = np.argsort(tau, kind="stable")
     rank = np.argsort(order)
     names = [f"ln tau{rank[i] + 1}" for i in range(m)]

@@ -84,6 +84,8 @@ def _non_negative(A: Array, b: Array) -> Strengths:
     length[length == 0] = 1.0
     scaled = A / length
     n = A.shape[1]
+    if n == 0:  # everything is fixed
+        return Strengths(np.empty(0), -b, scaled)
     if A.shape[0] > 2 * n:  # the triangular factor poses the same problem in fewer rows
         R: Array = np.asarray(np.linalg.qr(np.column_stack([scaled, b]), mode="r"))
         y, _ = nnls(R[:, :n], R[:, n], maxiter=30 * n)

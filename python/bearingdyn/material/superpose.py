@@ -31,7 +31,7 @@ from bearingdyn.material.spectrum import (
 Array = NDArray[np.float64]
 
 _SEARCH, _FINE = 5, 12  # times per decade while the prior is chosen, and at the end
-_LOSS_WEIGHT = 0.35  # of a relative deviation of G″ against one of G′, where the prior is at work
+_LOSS_WEIGHT = 0.42  # of a relative deviation of G″ against one of G′, where the prior is at work
 _CURVATURE = 0.07  # decades per (5 K)²; what is usual, for the prior's first strength
 _KINK = 0.1  # decades per (5 K)², from which curvature is charged linearly
 _ALLOWED = 1.08  # misfit with the prior over that without
@@ -163,8 +163,11 @@ class Superposition:
             self._settle(theta)
         return theta
 
-    def run(self, smoothness: float | None) -> Superposed:
-        """The shifts; smoothness None chooses the strength of the prior, 0 does without."""
+    def run(self, smoothness: float | None, reference: int) -> Superposed:
+        """The shifts; smoothness None chooses the strength of the prior, 0 does without.
+
+        Standard errors are against the isotherm `reference`.
+        """
         theta = self.start[self.free]
         if theta.size and smoothness is None and self.T.size > 3:
             smoothness, theta = self._choose(theta)
@@ -194,7 +197,10 @@ class Superposition:
             residual = self.solve(point).residual
             freedom = max(1, residual.size - theta.size - self.solve(point).basis.shape[1])
             variance = self._correlation(residual) ** 2 * float(residual @ residual) / freedom
-            errors[self.free] = np.sqrt(variance * np.diag(np.linalg.pinv(J.T @ J)))
+            spread = np.zeros((self.T.size, self.T.size))
+            spread[np.ix_(self.free, self.free)] = variance * np.linalg.pinv(J.T @ J)
+            own = np.diag(spread)
+            errors = np.sqrt(np.maximum(own + own[reference] - 2 * spread[reference], 0.0))
         self.weight, self._last = self.even, None
         return Superposed(shifts, errors, point, self.misfit(point), smoothness)
 
