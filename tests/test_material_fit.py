@@ -1,10 +1,11 @@
-"""Maxwell fits with bounds, of any number of branches; other moduli and their approximations; creep; exports."""
+"""Maxwell fits with bounds, of any number of branches; other moduli; creep; exports."""
 
 from __future__ import annotations
 
 import math
 import re
 import warnings
+from itertools import pairwise
 from pathlib import Path
 from time import process_time
 
@@ -70,12 +71,12 @@ def test_auto_takes_the_fewest_branches_that_do(master):
     fewer = fit_maxwell(master, found.G.size - 1, **SOLID).fit
     assert fewer.storage_rms > limit[0] or fewer.tan_delta_rms > limit[1]
     many = fit_maxwell(master, 8, **SOLID).fit
-    # the floor is linear in the deviations: right to second order in 1 % noise; its times are a grid
+    # the floor is linear in the deviations, so right to second order; its times are a grid
     assert math.hypot(many.storage_rms, many.tan_delta_rms) > 0.97 * math.hypot(*many.floor)
 
 
 def test_fixed_values_and_bounds_hold(master):
-    """G0 = 0 is allowed; a fixed time stays to the bit but for its logarithm; strengths stay in their range."""
+    """G0 = 0 is allowed; a fixed time stays, to round-off; strengths keep their range."""
     fluid = fit_maxwell(master, 6, fixed={"G0": 0.0}, **SOLID)
     assert fluid.G0 == 0.0
     assert "ln G0" not in fluid.fit.names
@@ -122,7 +123,7 @@ def test_use_outside_the_band_warns_inside_and_at_rest_not(master):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         rubber.complex_modulus([0.0, 2 * np.pi, 2e3 * np.pi])
-    with pytest.warns(OutsideBand, match="1e.04 Hz lies outside the band .* 1 to 1000 Hz"):
+    with pytest.warns(OutsideBand, match=r"1e.04 Hz lies outside the band .* 1 to 1000 Hz"):
         rubber.complex_modulus(2e4 * np.pi)
     warm = rubber.at(40.0)
     aT = float(10 ** rubber.law.log_shift(40.0))
@@ -167,7 +168,7 @@ def test_creep_is_the_inverse_of_relaxation(change):
         edges = [0.0, 1e-6, 1e-4, 1e-2, 0.1, 1.0, 10.0, 60.0]
         J = sum(
             quad(lambda x, s=s: float(m.creep(x / s)) * math.exp(-x), a, b, epsrel=1e-10)[0]
-            for a, b in zip(edges[:-1], edges[1:], strict=True)
+            for a, b in pairwise(edges)
         )
         assert J * modulus == pytest.approx(1.0, rel=1e-8)  # the quadrature
 
@@ -241,7 +242,7 @@ def test_table_interpolates_and_refuses_what_it_does_not_hold(master):
         held.complex_modulus(2 * np.pi * middle), made.modulus(2 * np.pi * middle), rtol=2e-3
     )
     assert complex(held.complex_modulus(0.0)) == pytest.approx(G[0].real)
-    with pytest.raises(ValueError, match="the table reaches from 1 to 10000 Hz"):
+    with pytest.raises(ValueError, match=r"the table reaches from 1 to 10000 Hz"):
         held.complex_modulus(1.0)
     aT = float(10 ** law.log_shift(40.0))
     omega = 2 * np.pi * 100.0 / aT
@@ -265,7 +266,7 @@ def test_table_interpolates_and_refuses_what_it_does_not_hold(master):
         lambda: PowerLaw(1e6, 0.2, 1.0, 2e9, 1e3).at(30.0),
         lambda: PowerLaw(1e6, 0.2, 1.0, 2e9, 1e3).maxwell(3, band=(1.0, 0.5)),
     ):
-        with pytest.raises(ValueError, match="must|only by a shift law"):
+        with pytest.raises(ValueError, match=r"must|only by a shift law"):
             make()
 
 
@@ -360,5 +361,5 @@ def test_calculix_holds_one_frequency():
     modulus = complex(rubber.complex_modulus(200 * np.pi))
     assert E / (2 * (1 + nu)) == pytest.approx(modulus.real, rel=1e-9)
     assert float(text.strip().rpartition("=")[2]) == pytest.approx(modulus.imag / modulus.real, rel=1e-9)
-    with pytest.raises(ValueError, match="frequency = -1.0 Hz"):
+    with pytest.raises(ValueError, match=r"frequency = -1.0 Hz"):
         to_calculix(rubber, -1.0)

@@ -144,8 +144,9 @@ def test_pandas_frame():
 def test_moduli_by_magnitude_phase_and_loss_factor(tmp_path, pair, values):
     """Every pair a complex modulus can be told by."""
     rows = "".join(
-        f"{f!r},{t!r},{a!r},{b!r}\n" for f, t, a, b in zip(*map(np.ndarray.tolist, (F, T, *values)))
-    )  # noqa: B905
+        f"{f!r},{t!r},{a!r},{b!r}\n"
+        for f, t, a, b in zip(*map(np.ndarray.tolist, (F, T, *values)), strict=True)
+    )
     same_points(read_dma(written(tmp_path, f"f_Hz,T_C,{pair}\n{rows}"), "shear"))
 
 
@@ -191,12 +192,22 @@ def test_two_sweeps_at_one_temperature_are_named(tmp_path):
         read_dma(written(tmp_path, text))
 
 
+def says_where(path, **options):
+    """Read a file; if that ends in an error it is a ValueError with the file's name and a line."""
+    message = None
+    try:
+        read_dma(path, **options)
+    except ValueError as error:
+        message = str(error)
+    assert message is None or (str(path) in message and "line " in message), message
+
+
 def pieces():
     """Text that resembles a table: headers, units, numbers, and what does not belong."""
     cell = st.sampled_from(
-        ["f", "f_Hz", "freq", "ω", "T", "T_C", "Temp (K)", "G'", 'G"', "E_stor_MPa", "|G*|", "tan δ", "phase [°]",
-         "Hz", "rad/s", "°C", "MPa", "1", "20", "5e6", "-3", "0", "1,5", "nan", "inf", "1e400", "", "x", '"', "[",
-         "Step name", "[Step]", "Variables", "Interval data:", "#", "\u2028", "\x0b", "1_0"]
+        ["f", "f_Hz", "freq", "ω", "T", "T_C", "Temp (K)", "G'", 'G"', "E_stor_MPa", "|G*|", "tan δ",
+         "phase [°]", "Hz", "rad/s", "°C", "MPa", "1", "20", "5e6", "-3", "0", "1,5", "nan", "inf", "1e400", "", "x", '"',
+         "[", "Step name", "[Step]", "Variables", "Interval data:", "#", "\u2028", "\x0b", "1_0"]
     )  # fmt: skip
     line = st.tuples(st.lists(cell, max_size=6), st.sampled_from([",", ";", "\t", " "])).map(
         lambda p: p[1].join(p[0])
@@ -212,11 +223,7 @@ def test_broken_files_only_raise_value_errors_that_say_where(tmp_path, text, byt
     path.write_bytes(bytes_ if encoding == "raw" else text.encode(encoding, "surrogatepass"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        try:
-            read_dma(path, "shear", temperature=20.0)
-        except ValueError as error:
-            assert str(path) in str(error), error
-            assert "line " in str(error), error
+        says_where(path, mode="shear", temperature=20.0)
 
 
 @settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -234,8 +241,4 @@ def test_damaged_exports_only_raise_value_errors_that_say_where(tmp_path, data):
     path.write_text("\n".join(lines), encoding="utf-8")
     with warnings.catch_warnings(), contextlib.suppress(UnicodeEncodeError):
         warnings.simplefilter("ignore")
-        try:
-            read_dma(path)
-        except ValueError as error:
-            assert str(path) in str(error), error
-            assert "line " in str(error), error
+        says_where(path)

@@ -15,7 +15,7 @@ DATA = Path(__file__).parents[3] / "shared" / "data"
 
 
 def measured() -> list[Row]:
-    """The made material found again; misfits of the measured ones against their limits; shifts as published."""
+    """The made material found again; misfits of the measured ones; shifts as published."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of laws through a transition, and bands
         return _made() + (_rubber() + _polymers() if DATA.exists() else [])

@@ -121,11 +121,12 @@ def fit_dense(
     *,
     K: float,
     density: float,
-    per_decade: int = 6,
+    per_decade: int = 12,
 ) -> Maxwell:
     """Dense relaxation spectrum of a master curve: spring and branches at times equispaced in the logarithm.
 
-    Non-negative least squares of the deviations of G′ and tan δ, to first order; branches without strength are left
+    Non-negative least squares of the deviations of G′ and tan δ, to first order; branches without strength
+    are left
     out. No Maxwell model with non-negative strengths does much better; `fit` says how well, without
     covariance, since such strengths are not determined one by one.
 
