@@ -291,7 +291,7 @@ def solid():
 
 
 def test_abaqus_prony_gives_the_same_modulus_back(solid):
-    """Rebuilt from the text by the manual's formulas: G = G_inst (1 − Σg + Σ g iωτ/(1 + iωτ)), and the shift."""
+    """Rebuilt from the text by the manual's formulas: G_inst (1 − Σg + Σ g iωτ/(1 + iωτ)); the shift too."""
     text = to_abaqus_prony(solid)
     E, nu = numbers(after(text, "*ELASTIC"))
     total = E / (2 * (1 + nu))

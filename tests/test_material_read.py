@@ -206,7 +206,8 @@ def pieces():
     """Text that resembles a table: headers, units, numbers, and what does not belong."""
     cell = st.sampled_from(
         ["f", "f_Hz", "freq", "ω", "T", "T_C", "Temp (K)", "G'", 'G"', "E_stor_MPa", "|G*|", "tan δ",
-         "phase [°]", "Hz", "rad/s", "°C", "MPa", "1", "20", "5e6", "-3", "0", "1,5", "nan", "inf", "1e400", "", "x", '"',
+         "phase [°]", "Hz", "rad/s", "°C", "MPa", "1", "20", "5e6", "-3", "0", "1,5",
+         "nan", "inf", "1e400", "", "x", '"',
          "[", "Step name", "[Step]", "Variables", "Interval data:", "#", "\u2028", "\x0b", "1_0"]
     )  # fmt: skip
     line = st.tuples(st.lists(cell, max_size=6), st.sampled_from([",", ";", "\t", " "])).map(
