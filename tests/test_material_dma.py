@@ -158,7 +158,7 @@ HEAD = "frequency_Hz,temperature_C,G_storage_Pa,G_loss_Pa\n"
         ("# only a comment\n", "holds no table"),
         (HEAD, "line 1: the table is empty"),
         (HEAD + "1,20,5e6,1e6\n2,20,abc,1e6\n", r"line 3, column 'G_storage_Pa': 'abc' is not a number"),
-        (HEAD + "1,20,5e6,-1e6\n", r"line 2, column 'G_loss_Pa': -1e6 for the loss: must be positive"),
+        (HEAD + "1,20,5e6,-1e6\n", r"line 2, column 'G_loss_Pa': -1e\+06 for the loss: must be positive"),
         (HEAD + "1,20,nan,1e6\n", r"line 2, column 'G_storage_Pa': nan for the storage"),
         (HEAD + "1,20,5e6\n", r"line 2, column 'G_loss_Pa': empty for the loss"),
         (HEAD + "0,20,5e6,1e6\n", r"column 'frequency_Hz': 0 for the frequency: must be positive"),
@@ -169,8 +169,8 @@ HEAD = "frequency_Hz,temperature_C,G_storage_Pa,G_loss_Pa\n"
         ("frequency_Hz,G_storage_Pa,G_loss_Pa\n1,5e6,1e6\n", "line 1: no column recognised as temperature"),
         ("a,b\n1,2\n", "no column recognised as frequency, temperature, storage, loss"),
         (
-            "frequency,temperature_C,G_storage_Pa,G_loss_Pa\n1,20,5e6,1e6\n",
-            r"no unit for the frequency: known are hz",
+            "f_Hz,temperature,G_storage_Pa,G_loss_Pa\n1,20,5e6,1e6\n",
+            r"no unit for the temperature: known are c",
         ),
         (
             "frequency_Hz,temperature (F),G_storage_Pa,G_loss_Pa\n1,20,5e6,1e6\n",
@@ -190,11 +190,15 @@ def test_bad_table_is_refused_by_name(tmp_path, text, message):
 
 
 def test_binary_file_is_refused(tmp_path):
-    """A spreadsheet is not a text table."""
+    """An instrument's own format is not a text table; a broken spreadsheet says what to do."""
     path = tmp_path / "table.csv"
-    path.write_bytes(b"PK\x03\x04 and so on")
-    with pytest.raises(ValueError, match="a binary file"):
+    path.write_bytes(b"ab\ncd\0ef")
+    with pytest.raises(ValueError, match=r"table.csv, line 2: a binary file"):
         read_dma(path)
+    for head in (b"PK\x03\x04 and so on", b"\xd0\xcf\x11\xe0 and so on"):
+        path.write_bytes(head)
+        with pytest.raises(ValueError, match=r"table.csv, line 1: a spreadsheet.*CSV"):
+            read_dma(path)
 
 
 def test_remedies_work(tmp_path):
@@ -220,6 +224,7 @@ def test_remedies_work(tmp_path):
         ({"storage": np.ones((2, 2))}, "must be one-dimensional"),
         ({"mode": "bulk"}, "mode = 'bulk'"),
         ({"storage": [1e6, np.nan, 1.0, 1.0]}, r"storage\[1\] = nan Pa"),
+        ({"storage": [5e12] * 4}, "harder than diamond"),
         ({"temperature": [0.0, np.inf, 1.0, 1.0]}, "temperature: every value must be finite"),
         ({"frequency": [1.0, 3.0, 2.0, 4.0], "temperature": [20.0] * 4}, r"frequency\[2\] = 2 Hz runs back"),
         ({"temperature": [20.0, 30.0, 40.0, 50.0], "isotherm": [0, 0, 1, 1]}, "at most 6 K wide"),

@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import contacts, motion, structures
+from verified import contacts, materials, motion, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Maxwell model": motion.maxwell,
+    "Materials from measurements": materials.measured,
     "Lubricant": contacts.lubricant,
     "Hertz contact": contacts.hertz,
     "Bearings of ISO/TS 16281": contacts.iso,

@@ -1,10 +1,15 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
-from bearingdyn.material.dma import DMAData, group_isotherms, read_dma, sample_dma_path
+from bearingdyn.material.direct import FractionalZener, PowerLaw, TabulatedModulus
+from bearingdyn.material.dma import DMAData, group_isotherms
 from bearingdyn.material.elastic import STEEL, Elastic
-from bearingdyn.material.fit import fit_maxwell
-from bearingdyn.material.maxwell import FitReport, Maxwell
-from bearingdyn.material.shift import WLF, Arrhenius, ShiftTable
+from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
+from bearingdyn.material.fit import fit_dense, fit_maxwell
+from bearingdyn.material.kk import Suspect, kk_ratio, suspects
+from bearingdyn.material.maxwell import Maxwell
+from bearingdyn.material.read import read_dma, sample_dma_path
+from bearingdyn.material.report import FitReport, OutsideBand
+from bearingdyn.material.shift import WLF, Arrhenius, Joined, RhoT, ShiftTable
 from bearingdyn.material.tts import MasterCurve, master_curve
 
 __all__ = [
@@ -14,12 +19,26 @@ __all__ = [
     "DMAData",
     "Elastic",
     "FitReport",
+    "FractionalZener",
+    "Joined",
     "MasterCurve",
     "Maxwell",
+    "OutsideBand",
+    "PowerLaw",
+    "RhoT",
     "ShiftTable",
+    "Suspect",
+    "TabulatedModulus",
+    "fit_dense",
     "fit_maxwell",
     "group_isotherms",
+    "kk_ratio",
     "master_curve",
     "read_dma",
     "sample_dma_path",
+    "suspects",
+    "to_abaqus_frequency",
+    "to_abaqus_prony",
+    "to_ansys",
+    "to_calculix",
 ]

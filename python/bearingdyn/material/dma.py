@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import importlib.resources
-from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
+import warnings
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.material.table import read_table
-
 Mode = Literal["shear", "tension"]
 
 _SPREAD = 6.0  # K; widest temperature range called one isotherm
+_SOFT, _HARD, _HARDEST = 10.0, 5e10, 1.2e12  # Pa; a soft gel, more than any polymer, diamond
+_UNIT = "is the unit right (Pa, kPa, MPa, GPa)? Give units={'storage': ..., 'loss': ...}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +27,7 @@ class DMAData:
     temperature
         °C, (n,).
     storage, loss
-        Storage and loss modulus, Pa, (n,), positive.
+        Storage and loss modulus, Pa, (n,), finite. Negative ones are kept, and left out of master curves.
     mode
         "shear" if the moduli are G′ and G″, "tension" if E′ and E″.
     source
@@ -37,6 +35,10 @@ class DMAData:
     isotherm
         Number of the isotherm each point belongs to, (n,), rising with temperature; found by
         :func:`group_isotherms` when not given.
+    notes
+        What was assumed in reading, and what was converted.
+    K
+        Bulk modulus, Pa, by which :meth:`to_shear` turned tension into shear.
 
     Raises
     ------
@@ -52,6 +54,8 @@ class DMAData:
     mode: Mode
     source: str = "arrays"
     isotherm: NDArray[np.int64] | None = None
+    notes: tuple[str, ...] = ()
+    K: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("frequency", "temperature", "storage", "loss"):
@@ -76,12 +80,17 @@ class DMAData:
             raise ValueError(f"{self.source}: temperature: every value must be finite and above -273.15 °C")
         for name, unit in (("frequency", "Hz"), ("storage", "Pa"), ("loss", "Pa")):
             values = getattr(self, name)
-            bad = ~(np.isfinite(values) & (values > 0))
-            if bad.any():
-                i = int(np.argmax(bad))
-                raise ValueError(
-                    f"{self.source}: {name}[{i}] = {values[i]:g} {unit}: must be positive and finite"
-                )
+            good = np.isfinite(values) & ((values > 0) if name == "frequency" else True)
+            if not good.all():
+                i = int(np.argmin(good))
+                need = "positive and finite" if name == "frequency" else "finite"
+                raise ValueError(f"{self.source}: {name}[{i}] = {values[i]:g} {unit}: must be {need}")
+        middle = float(np.median(np.abs(self.storage)))
+        if middle > _HARDEST:
+            raise ValueError(
+                f"{self.source}: median storage modulus {middle:.3g} Pa: no solid is harder than diamond, "
+                f"{_HARDEST:g} Pa: {_UNIT}"
+            )
         if self.isotherm is None:
             labels = group_isotherms(self.temperature)
         else:
@@ -116,8 +125,9 @@ class DMAData:
 
     @property
     def tan_delta(self) -> NDArray[np.float64]:
-        """Loss factor tan δ = loss/storage of each point, (n,)."""
-        return np.asarray(self.loss / self.storage)
+        """Loss factor tan δ = loss/storage of each point, (n,); not finite where storage is zero."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(self.loss / self.storage)
 
     @property
     def labels(self) -> NDArray[np.int64]:
@@ -133,9 +143,10 @@ class DMAData:
     @property
     def isotherms(self) -> tuple[DMAData, ...]:
         """The isotherms, coldest first, each in order of frequency."""
-        return tuple(self._take(np.flatnonzero(self.labels == k)) for k in range(int(self.labels.max()) + 1))
+        return tuple(self.take(np.flatnonzero(self.labels == k)) for k in range(int(self.labels.max()) + 1))
 
-    def _take(self, index: NDArray[np.int64]) -> DMAData:
+    def take(self, index: NDArray[np.int64]) -> DMAData:
+        """The points of these indices, in order of isotherm and frequency."""
         index = index[np.lexsort((self.frequency[index], self.labels[index]))]
         return DMAData(
             self.frequency[index],
@@ -145,6 +156,38 @@ class DMAData:
             self.mode,
             self.source,
             self.labels[index],
+            self.notes,
+            self.K,
+        )
+
+    def to_shear(self, *, K: float | None = None, nu: float | None = None) -> DMAData:
+        """The same measurement in shear, by a bulk modulus or by a Poisson's ratio.
+
+        Parameters
+        ----------
+        K
+            Constant bulk modulus, Pa, as the Maxwell model has it: G* = 3KE*/(9K − E*), complex.
+        nu
+            Constant real Poisson's ratio, 0 ≤ nu ≤ 0.5: G* = E*/2(1 + nu). Only with nu = 0.5, or moduli far
+            below K, does it agree with a constant K.
+
+        Raises
+        ------
+        ValueError
+            Unless exactly one of K and nu is given, in its range, and the measurement is in tension.
+        """
+        if self.mode != "tension":
+            raise ValueError(
+                f"{self.source}: mode = {self.mode!r}: only a measurement in tension is converted"
+            )
+        modulus, note = shear_modulus(self.storage + 1j * self.loss, K, nu)
+        return replace(
+            self,
+            storage=modulus.real,
+            loss=modulus.imag,
+            mode="shear",
+            notes=(*self.notes, note),
+            K=None if K is None else float(K),
         )
 
     def select(
@@ -164,7 +207,41 @@ class DMAData:
                 f"{self.frequency.max():.4g} Hz, {self.temperature.min():.4g} to "
                 f"{self.temperature.max():.4g} °C"
             )
-        return self._take(np.flatnonzero(keep))
+        return self.take(np.flatnonzero(keep))
+
+
+def check_range(dma: DMAData) -> None:
+    """Warn of moduli that gels, elastomers and polymers do not have: the unit is likely wrong."""
+    middle = float(np.median(np.abs(dma.storage)))
+    if middle > _HARD or 0 < middle < _SOFT:
+        warnings.warn(
+            f"{dma.source}: median storage modulus {middle:.3g} Pa in {dma.mode} lies outside {_SOFT:g} to "
+            f"{_HARD:g} Pa, the range of gels, elastomers and polymers: {_UNIT}",
+            stacklevel=3,
+        )
+
+
+def shear_modulus(
+    modulus: NDArray[np.complex128], K: float | None, nu: float | None
+) -> tuple[NDArray[np.complex128], str]:
+    """Complex shear modulus of a complex modulus in tension, Pa, by K or by nu, and a note that says how.
+
+    Raises ValueError unless exactly one is given and in its range.
+    """
+    if (K is None) == (nu is None):
+        raise ValueError("to_shear: give either the bulk modulus, K=2e9, or Poisson's ratio, nu=0.5")
+    if nu is not None:
+        if not 0 <= nu <= 0.5:
+            raise ValueError(f"nu = {nu!r}: Poisson's ratio must lie between 0 and 0.5")
+        return modulus / (2 * (1 + nu)), f"tension turned into shear by E*/2(1 + nu), nu = {nu:g}"
+    assert K is not None  # one of the two is given
+    if not (K > 0 and np.isfinite(K)):
+        raise ValueError(f"K = {K!r} Pa: must be positive and finite")
+    if not np.all(modulus.real < 9 * K):
+        raise ValueError(
+            f"K = {K:g} Pa: must exceed a ninth of the tensile modulus, here {modulus.real.max():.4g} Pa"
+        )
+    return 3 * K * modulus / (9 * K - modulus), f"tension turned into shear by 3KE*/(9K - E*), K = {K:g} Pa"
 
 
 def first_unsorted(frequency: NDArray[np.float64], labels: NDArray[np.int64]) -> int | None:
@@ -197,84 +274,3 @@ def group_isotherms(temperature: ArrayLike) -> NDArray[np.int64]:
         threshold = sizes[1 + int(np.argmax(jump))]
         labels[order[1:]] = np.cumsum(np.minimum(gap, 3.0) >= threshold)
     return labels
-
-
-def read_dma(
-    path: str | Path,
-    mode: Mode | None = None,
-    *,
-    columns: Mapping[str, str] | None = None,
-    units: Mapping[str, str] | None = None,
-    sort: bool = False,
-    drop_invalid: bool = False,
-) -> DMAData:
-    """Read isothermal frequency sweeps from a text table with a header.
-
-    Columns are known by their names (frequency or angular frequency, temperature, storage and loss modulus or
-    tan δ, and, if there is one, the nominal temperature or number of the isotherm), units by the name's
-    ending, a bracket or a row of units. Separators may be comma, semicolon, tab or blanks; lines beginning
-    with # are comments.
-
-    Parameters
-    ----------
-    path
-        File to read.
-    mode
-        "shear" or "tension"; deduced from the letters G or E in the header when not given.
-    columns
-        Column names by quantity ("frequency", "temperature", "storage", "loss", "tan_delta", "isotherm"),
-        where the header is not understood.
-    units
-        Units by quantity, where the file names none, e.g. {"storage": "MPa"}.
-    sort
-        Sort the points by isotherm and frequency instead of refusing an unsorted table.
-    drop_invalid
-        Leave out points with an empty, non-finite or non-positive value, with a warning that counts them,
-        instead of refusing the table.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    ValueError
-        If the file is not such a table; the message names file, line, column, value and remedy.
-    """
-    table = read_table(Path(path), columns or {}, units or {}, drop_invalid)
-    if mode is None:
-        mode = table.mode
-        if mode is None:
-            raise ValueError(
-                f"{path}, line {table.header_line}: the header does not tell G (shear) from E (tension): "
-                "give mode='shear' or mode='tension'"
-            )
-    elif table.mode is not None and table.mode != mode:
-        raise ValueError(
-            f"{path}, line {table.header_line}: the header says {table.mode}, mode = {mode!r}: give the "
-            "right mode, "
-            "or name the right columns"
-        )
-    values = {name: table.values[name] for name in ("frequency", "temperature", "storage", "loss")}
-    if "isotherm" in table.values:
-        labels = np.unique(table.values["isotherm"], return_inverse=True)[1].reshape(-1).astype(np.int64)
-    else:
-        labels = group_isotherms(values["temperature"])
-    if sort:
-        order = np.lexsort((values["frequency"], labels))
-        values = {name: column[order] for name, column in values.items()}
-        labels = labels[order]
-    else:
-        i = first_unsorted(values["frequency"], labels)
-        if i is not None:
-            raise ValueError(
-                f"{path}, line {table.lines[i]}: frequency {values['frequency'][i]:g} Hz runs back within "
-                "the "
-                f"isotherm at {values['temperature'][i]:.4g} °C: must rise throughout, or fall throughout; "
-                "sort=True sorts the table"
-            )
-    return DMAData(**values, mode=mode, source=str(path), isotherm=labels)
-
-
-def sample_dma_path() -> Path:
-    """Path of the sample table shipped with the package: made from a model its header states, not
-    measured."""
-    return Path(str(importlib.resources.files("bearingdyn.material") / "sample_dma.csv"))

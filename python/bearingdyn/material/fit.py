@@ -9,38 +9,48 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
-from bearingdyn.material.maxwell import FitReport, Maxwell
-from bearingdyn.material.spectrum import Strengths, branch_columns, branch_slopes, solve_strengths
+from bearingdyn.material.dma import shear_modulus
+from bearingdyn.material.maxwell import Maxwell
+from bearingdyn.material.projection import Limits, Points, Polished, Projection, polish
+from bearingdyn.material.report import FitReport
 from bearingdyn.material.tts import MasterCurve
 
 Array = NDArray[np.float64]
 
-_MARGIN = math.log(10.0)  # a relaxation time may lie a decade outside the band
+_MOST = 20  # branches tried by n = "auto"
+_SPREADS = (0.0, 0.4, -0.3)  # decades by which the starts are wider than the band
 
 
 def fit_maxwell(
     master: MasterCurve,
-    n: int = 5,
+    n: int | Literal["auto"] = 5,
     band: tuple[float, float] | None = None,
     *,
     K: float,
     density: float,
     dashpot: bool = True,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    tolerance: float = 0.02,
+    bootstrap: int = 0,
 ) -> Maxwell:
     """Fit spring, n branches and dashpot to the points of a master curve inside a band.
 
     Parameters
     ----------
     master
-        Master curve; one measured in tension is turned into shear by G* = 3KE*/(9K − E*).
+        Master curve. One measured in tension is turned into shear by G* = 3KE*/(9K − E*) with the K below,
+        and a warning says so; :meth:`MasterCurve.to_shear` beforehand is silent.
     n
-        Number of branches; those the data give no strength are left out of the result.
+        Number of branches; those the data give no strength are left out of the result. "auto": the smallest
+        number whose rms deviations of G′ and of tan δ are within `tolerance`, or within 1.2 times what the
+        best dense spectrum leaves.
     band
         Lowest and highest frequency at T_ref, Hz; all points when not given.
     K
@@ -49,6 +59,14 @@ def fit_maxwell(
         Mass density, kg/m³.
     dashpot
         Whether η0 is fitted too; else it is zero.
+    bounds, fixed
+        Ranges and values of parameters by name: G0, G1 …, tau1 …, eta0, in SI units. Branches are numbered
+        by rising time at the start; the result is sorted. fixed={"G0": 0.0} is a fluid.
+    tolerance
+        Relative, for n="auto".
+    bootstrap
+        Number of refits to isotherms drawn with replacement, for standard errors that know of the
+        correlation within isotherms; shifts are kept, and so is the sequence of draws.
 
     Returns
     -------
@@ -63,211 +81,224 @@ def fit_maxwell(
 
     Reference: paper §3.2, eqs 18 and 19.
     """
-    if not (isinstance(n, int) and n >= 1):
-        raise ValueError(f"n = {n!r}: the number of branches must be a positive integer")
+    if n != "auto" and not (isinstance(n, int) and n >= 1):
+        raise ValueError(f"n = {n!r}: the number of branches must be a positive integer, or 'auto'")
     for name, value in (("K", K), ("density", density)):
         if not (value > 0 and math.isfinite(value)):
             raise ValueError(f"{name} = {value!r}: must be positive and finite")
-    data = _Data.inside(master, band, K, n)
-    guesses = [_Projection(data, n, dashpot).run(spread) for spread in (0.0, 0.4, -0.3)]
-    polished = [_polish(data, tau, strengths) for tau, strengths in guesses]
-    best = min(polished, key=lambda p: p.cost)
-    order = np.argsort(best.tau)
-    report = _report(data, best)
+    if not (tolerance > 0 and math.isfinite(tolerance)):
+        raise ValueError(f"tolerance = {tolerance!r}: must be positive and finite")
+    if not (isinstance(bootstrap, int) and bootstrap >= 0):
+        raise ValueError(
+            f"bootstrap = {bootstrap!r}: the number of refits must be zero or a positive integer"
+        )
+    points = _inside(master, band, K, 1 if n == "auto" else n)
+    held = dict(fixed or {}) | ({} if dashpot else {"eta0": 0.0})
+    limits = {k: v for k, v in (bounds or {}).items() if dashpot or k != "eta0"}
+    floor = points.floor()
+    if n == "auto":
+        best, bound = _smallest(points, limits, held, tolerance, floor)
+    else:
+        bound = Limits.of(n, points.limits, limits, held)
+        best = _best(points, bound)
     return Maxwell(
-        best.G0,
-        best.G[order],
-        best.tau[order],
-        best.eta0,
+        float(best.strengths[0]),
+        best.strengths[1:-1],
+        best.tau,
+        float(best.strengths[-1]),
         K=K,
         density=density,
         law=master.law,
         temperature=master.T_ref,
+        vertical=master.vertical,
+        fit=_report(points, best, floor, _refits(points, best, bound, bootstrap)),
+    )
+
+
+def fit_dense(
+    master: MasterCurve,
+    band: tuple[float, float] | None = None,
+    *,
+    K: float,
+    density: float,
+    per_decade: int = 12,
+) -> Maxwell:
+    """Dense relaxation spectrum of a master curve: spring and branches at times equispaced in the logarithm.
+
+    Non-negative least squares of the deviations of G′ and tan δ, to first order; branches without strength
+    are left
+    out. No Maxwell model with non-negative strengths does much better; `fit` says how well, without
+    covariance, since such strengths are not determined one by one.
+
+    Parameters
+    ----------
+    master, band, K, density
+        As for :func:`fit_maxwell`.
+    per_decade
+        Relaxation times per decade.
+
+    Raises
+    ------
+    ValueError
+        As :func:`fit_maxwell`.
+    """
+    for name, value in (("K", K), ("density", density), ("per_decade", per_decade)):
+        if not (value > 0 and math.isfinite(value)):
+            raise ValueError(f"{name} = {value!r}: must be positive and finite")
+    points = _inside(master, band, K, "dense")
+    times, x = points.dense(per_decade)
+    model = Maxwell(float(x[0]), x[1:-1], times, float(x[-1]), K=K, density=density)
+    storage, tan = points.deviations(model.complex_modulus(points.omega))
+    rms = [float(np.sqrt(np.mean(r**2))) for r in (storage, tan)]
+    report = FitReport(
+        points.band,
+        points.omega.size,
+        rms[0],
+        float(np.abs(storage).max()),
+        rms[1],
+        float(np.abs(tan).max()),
+        (),
+        np.empty((0, 0)),
+        (rms[0], rms[1]),
+    )
+    used = x[1:-1] > 0
+    return Maxwell(
+        float(x[0]),
+        x[1:-1][used],
+        times[used],
+        float(x[-1]),
+        K=K,
+        density=density,
+        law=master.law,
+        temperature=master.T_ref,
+        vertical=master.vertical,
         fit=report,
     )
 
 
-@dataclass(frozen=True)
-class _Data:
-    """Points inside the band: ω rad/s, shear moduli Pa."""
-
-    omega: Array
-    storage: Array
-    loss: Array
-    band: tuple[float, float]
-
-    @classmethod
-    def inside(cls, master: MasterCurve, band: tuple[float, float] | None, K: float, n: int) -> _Data:
-        low, high = float(master.frequency[0]), float(master.frequency[-1])
-        if band is None:
-            band = (low, high)
-        f_lo, f_hi = float(band[0]), float(band[1])
-        if not 0 < f_lo < f_hi < math.inf:
-            raise ValueError(f"band = {band!r} Hz: must be a lower and a higher frequency, both positive")
-        keep = (master.frequency >= f_lo) & (master.frequency <= f_hi)
-        points = int(np.count_nonzero(keep))
-        if not points >= n + 2:
-            raise ValueError(
-                f"band = {f_lo:g} to {f_hi:g} Hz holds {points} points of the master curve, which reaches "
-                "from "
-                f"{low:.4g} to {high:.4g} Hz: {n} branches need at least {n + 2}"
-            )
-        if not (f_lo >= 0.5 * low and f_hi <= 2 * high):
-            warnings.warn(
-                f"band = {f_lo:g} to {f_hi:g} Hz goes beyond the master curve, {low:.4g} to {high:.4g} Hz: "
-                "outside it the model is an extrapolation",
-                stacklevel=3,
-            )
-        modulus = master.storage[keep] + 1j * master.loss[keep]
-        if master.mode == "tension":
-            if not np.all(modulus.real < 9 * K):
-                raise ValueError(
-                    f"K = {K:g} Pa: must exceed a ninth of the tensile modulus, here "
-                    f"{modulus.real.max():.4g} Pa"
-                )
-            modulus = 3 * K * modulus / (9 * K - modulus)
-        return cls(2 * np.pi * master.frequency[keep], modulus.real, modulus.imag, (f_lo, f_hi))
-
-    @property
-    def limits(self) -> tuple[float, float]:
-        """ln of the shortest and the longest relaxation time the band can tell, s."""
-        f_lo, f_hi = self.band
-        return -math.log(2 * math.pi * f_hi) - _MARGIN, -math.log(2 * math.pi * f_lo) + _MARGIN
+def _best(points: Points, limits: Limits) -> Polished:
+    guesses = [Projection(points, limits).run(spread) for spread in _SPREADS]
+    return min((polish(points, limits, *guess) for guess in guesses), key=lambda p: p.cost)
 
 
-class _Projection:
-    """Relaxation times by variable projection; strengths in the order spring, branches, dashpot."""
+def _smallest(
+    points: Points,
+    bounds: Mapping[str, tuple[float, float]],
+    fixed: Mapping[str, float],
+    tolerance: float,
+    floor: tuple[float, float],
+) -> tuple[Polished, Limits]:
+    """The fit with the fewest branches that is good enough, with a warning if none is."""
+    named = [int(k.lstrip("Gtau")) for k in (*bounds, *fixed) if k.lstrip("Gtau").isdigit()]
+    most = max(min(_MOST, points.omega.size - 2), 1)
+    best: tuple[float, Polished, Limits] | None = None
+    for n in range(max([1, *named]), max([most, *named]) + 1):
+        limits = Limits.of(n, points.limits, bounds, fixed)
+        found = _best(points, limits)
+        storage, tan = (float(np.sqrt(np.mean(r**2))) for r in np.split(found.residual, 2))
+        excess = max(storage / max(tolerance, 1.2 * floor[0]), tan / max(tolerance, 1.2 * floor[1]))
+        if best is None or excess < best[0]:
+            best = excess, found, limits
+        if excess <= 1:
+            return found, limits
+    assert best is not None  # at least one number was tried
+    warnings.warn(
+        f"n = 'auto': no number of branches up to {most} comes within the tolerance of {tolerance:g} or "
+        "1.2 times "
+        f"the floor {floor[0]:.3g}, {floor[1]:.3g}; the best is {best[0]:.2g} times that",
+        stacklevel=3,
+    )
+    return best[1], best[2]
 
-    def __init__(self, data: _Data, n: int, dashpot: bool) -> None:
-        self.data, self.n, self.dashpot = data, n, dashpot
-        self._last: tuple[bytes, Strengths] | None = None
 
-    def _stack(self, storage: Array, loss: Array) -> Array:
-        return np.vstack([storage / self.data.storage[:, None], loss / self.data.loss[:, None]])
-
-    def _solve(self, theta: Array) -> Strengths:
-        key = theta.tobytes()
-        if self._last is None or self._last[0] != key:
-            omega = self.data.omega
-            storage, loss = branch_columns(omega, np.exp(theta))
-            one, none = np.ones((omega.size, 1)), np.zeros((omega.size, 1))
-            storage, loss = np.hstack([one, storage]), np.hstack([none, loss])
-            if self.dashpot:
-                storage, loss = np.hstack([storage, none]), np.hstack([loss, omega[:, None]])
-            A = self._stack(storage, loss)
-            self._last = key, solve_strengths(A, np.ones(A.shape[0]))
-        return self._last[1]
-
-    def _residual(self, theta: Array) -> Array:
-        return self._solve(theta).residual
-
-    def _jacobian(self, theta: Array) -> Array:
-        solution = self._solve(theta)
-        storage, loss = branch_slopes(self.data.omega, np.exp(theta))
-        G = solution.x[1 : self.n + 1]
-        return solution.project_out(self._stack(storage * G, loss * G))
-
-    def run(self, spread: float) -> tuple[Array, Array]:
-        """Times and strengths from a start equispaced over the band, widened by `spread` decades on both
-        sides."""
-        low, high = self.data.limits
-        margin = _MARGIN * (1 - spread)
-        edges = np.linspace(low + margin, high - margin, self.n + 1)
-        start = (edges[:-1] + edges[1:]) / 2
-        found = least_squares(
-            self._residual, start, jac=self._jacobian, bounds=(low, high), xtol=1e-8, ftol=1e-10, max_nfev=150
+def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: int | str) -> Points:
+    """The points inside the band, in shear."""
+    low, high = float(master.frequency[0]), float(master.frequency[-1])
+    if band is None:
+        band = (low, high)
+    f_lo, f_hi = float(band[0]), float(band[1])
+    if not 0 < f_lo < f_hi < math.inf:
+        raise ValueError(f"band = {band!r} Hz: must be a lower and a higher frequency, both positive")
+    keep = (master.frequency >= f_lo) & (master.frequency <= f_hi)
+    count = int(np.count_nonzero(keep))
+    needed = n + 2 if isinstance(n, int) else 3
+    if not count >= needed:
+        raise ValueError(
+            f"band = {f_lo:g} to {f_hi:g} Hz holds {count} points of the master curve, which reaches from "
+            f"{low:.4g} to {high:.4g} Hz: {n} branches need at least {needed}"
         )
-        x = self._solve(found.x).x
-        return np.exp(found.x), x if self.dashpot else np.append(x, 0.0)
+    if not (f_lo >= 0.5 * low and f_hi <= 2 * high):
+        warnings.warn(
+            f"band = {f_lo:g} to {f_hi:g} Hz goes beyond the master curve, {low:.4g} to {high:.4g} Hz: "
+            "outside it the model is an extrapolation",
+            stacklevel=3,
+        )
+    modulus = master.storage[keep] + 1j * master.loss[keep]
+    if master.mode == "tension":
+        modulus, note = shear_modulus(modulus, K, None)
+        warnings.warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand", stacklevel=3)
+    elif master.K is not None and not math.isclose(master.K, K, rel_tol=1e-6):
+        raise ValueError(
+            f"K = {K:g} Pa: the curve was turned into shear with K = {master.K:g} Pa; both must be the same"
+        )
+    T = master.temperature[keep]
+    if master.shifts:
+        means = np.array(list(master.shifts))
+        isotherm = np.argmin(np.abs(T[:, None] - means), axis=1).astype(np.int64)
+    else:
+        isotherm = np.unique(T, return_inverse=True)[1].reshape(-1).astype(np.int64)
+    omega = 2 * np.pi * master.frequency[keep]
+    return Points(omega, modulus.real, modulus.imag, isotherm, (f_lo, f_hi))
 
 
-@dataclass(frozen=True)
-class _Polished:
-    G0: float
-    G: Array
-    tau: Array
-    eta0: float
-    cost: float
-    names: tuple[str, ...]
-    residual: Array
-    jacobian: Array
+def _refits(points: Points, best: Polished, limits: Limits, count: int) -> Array:
+    """Parameters, in the order of the names, of refits to isotherms drawn with replacement; (count, p)."""
+    kinds = np.unique(points.isotherm)
+    if count and kinds.size < 3:
+        raise ValueError(f"bootstrap = {count}: the band holds points of {kinds.size} isotherms, needs three")
+    rng = np.random.default_rng(0)
+    found: list[Array] = []
+    tries = 0
+    while len(found) < count and tries < 10 * count:
+        tries += 1
+        drawn = rng.choice(kinds, kinds.size)
+        index = np.concatenate([np.flatnonzero(points.isotherm == k) for k in drawn])
+        if index.size < best.theta.size // 2 + 1 or np.unique(drawn).size < 2:
+            continue
+        again = polish(points.take(index), _like(limits, best), best.tau, best.strengths)
+        if again.names == best.names:
+            found.append(again.theta)
+    return np.array(found).reshape(len(found), best.theta.size)
 
 
-def _polish(data: _Data, tau: Array, strengths: Array) -> _Polished:
-    """Least squares of the deviations of ln G′ and ln tan δ over the logarithms of all that is not zero."""
-    omega, low, high = data.omega, *data.limits
-    active = strengths[1:-1] > 1e-9 * strengths[1:-1].max(initial=0.0)
-    tau, m = tau[active], int(np.count_nonzero(active))
-    has_spring, has_dashpot = bool(strengths[0] > 0), bool(strengths[-1] > 0)
-    target = np.concatenate([np.log(data.storage), np.log(data.loss / data.storage)])
-    spring, dashpot = np.ones((omega.size, 1)) * has_spring, omega[:, None] * has_dashpot
-    none = np.zeros((omega.size, 1))
-    used = np.concatenate([[has_spring], np.ones(m, bool), [has_dashpot]])
-
-    def columns(theta: Array) -> tuple[Array, Array, Array]:
-        x = np.zeros(m + 2)
-        x[used] = np.exp(theta[m:])
-        storage, loss = branch_columns(omega, np.exp(theta[:m]))
-        return x, np.hstack([spring, storage, none]) * x, np.hstack([none, loss, dashpot]) * x
-
-    def residual(theta: Array) -> Array:
-        _, storage, loss = columns(theta)
-        s, t = storage.sum(axis=1), loss.sum(axis=1)
-        return np.asarray(np.concatenate([np.log(s), np.log(t / s)]) - target)
-
-    def jacobian(theta: Array) -> Array:
-        x, storage, loss = columns(theta)
-        slope_s, slope_l = branch_slopes(omega, np.exp(theta[:m]))
-        ds = np.hstack([slope_s * x[1 : m + 1], storage[:, used]]) / storage.sum(axis=1)[:, None]
-        dl = np.hstack([slope_l * x[1 : m + 1], loss[:, used]]) / loss.sum(axis=1)[:, None]
-        return np.vstack([ds, dl - ds])
-
-    kept = strengths[np.concatenate([[has_spring], active, [has_dashpot]])]
-    start = np.concatenate([np.clip(np.log(tau), low, high), np.log(kept)])
-    lower = np.concatenate([np.full(m, low), np.full(start.size - m, -np.inf)])
-    upper = np.concatenate([np.full(m, high), np.full(start.size - m, np.inf)])
-    found = least_squares(
-        residual,
-        start,
-        jac=jacobian,
-        bounds=(lower, upper),
-        x_scale="jac",
-        xtol=1e-10,
-        ftol=1e-12,
-        max_nfev=300,
-    )
-    x = columns(found.x)[0]
-    names = [f"ln tau{i + 1}" for i in range(m)]
-    names += ["ln G0"] * has_spring + [f"ln G{i + 1}" for i in range(m)] + ["ln eta0"] * has_dashpot
-    return _Polished(
-        float(x[0]),
-        x[1 : m + 1],
-        np.exp(found.x[:m]),
-        float(x[-1]),
-        float(found.cost),
-        tuple(names),
-        found.fun,
-        jacobian(found.x),
+def _like(limits: Limits, best: Polished) -> Limits:
+    """Limits of as many branches as were left, those named by the user kept where none was dropped."""
+    if limits.log_lower.size == best.tau.size:
+        return limits
+    m = best.tau.size
+    return Limits(
+        np.concatenate([limits.lower[:1], np.zeros(m), limits.lower[-1:]]),
+        np.concatenate([limits.upper[:1], np.full(m, np.inf), limits.upper[-1:]]),
+        np.full(m, limits.log_lower.min()),
+        np.full(m, limits.log_upper.max()),
     )
 
 
-def _report(data: _Data, best: _Polished) -> FitReport:
-    """Errors inside the band and the covariance of the parameters, branches in rising order of time."""
-    order = np.argsort(best.tau)
-    m = order.size
-    spring = best.names.count("ln G0")
-    last = np.arange(2 * m + spring, len(best.names))
-    J = best.jacobian[:, np.concatenate([order, np.arange(m, m + spring), m + spring + order, last])]
+def _report(points: Points, best: Polished, floor: tuple[float, float], refits: Array) -> FitReport:
+    """Errors inside the band, the covariance of the parameters, and the bootstrap."""
+    J = best.jacobian
     freedom = max(1, J.shape[0] - J.shape[1])
     covariance = float(best.residual @ best.residual) / freedom * np.linalg.pinv(J.T @ J)
     storage, tan_delta = np.split(best.residual, 2)
     return FitReport(
-        data.band,
-        data.omega.size,
+        points.band,
+        points.omega.size,
         float(np.sqrt(np.mean(storage**2))),
         float(np.abs(storage).max()),
         float(np.sqrt(np.mean(tan_delta**2))),
         float(np.abs(tan_delta).max()),
         best.names,
         covariance,
+        floor,
+        refits,
     )

@@ -4,44 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.material.shift import WLF, Arrhenius, ShiftTable, law_from_dict, law_to_dict
+from bearingdyn.material.creep import creep_compliance
+from bearingdyn.material.report import FitReport, OutsideBand
+from bearingdyn.material.retune import Retunable
+from bearingdyn.material.shift import Law, RhoT, law_from_dict, law_to_dict
 
-
-@dataclass(frozen=True)
-class FitReport:
-    """How well a Maxwell model renders the master curve it was fitted to.
-
-    Errors are relative deviations ln(model/measured) of the points inside the band.
-
-    Attributes
-    ----------
-    band
-        Lowest and highest frequency at the reference temperature, Hz.
-    points
-        Number of points inside the band.
-    storage_rms, storage_max
-        Of the storage modulus G′.
-    tan_delta_rms, tan_delta_max
-        Of the loss factor tan δ.
-    names
-        Names of the fitted parameters: ln G0, ln G1 …, ln tau1 …, ln eta0; those at a bound are left out.
-    covariance
-        Of those parameters (len(names), len(names)), from the residuals' own scatter.
-    """
-
-    band: tuple[float, float]
-    points: int
-    storage_rms: float
-    storage_max: float
-    tan_delta_rms: float
-    tan_delta_max: float
-    names: tuple[str, ...]
-    covariance: NDArray[np.float64] = field(compare=False, repr=False)
+_ROUNDING = 1.001  # of the edges of a band
 
 
 def _branches(name: str, values: ArrayLike) -> NDArray[np.float64]:
@@ -55,7 +29,7 @@ def _branches(name: str, values: ArrayLike) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Maxwell:
+class Maxwell(Retunable):
     """Generalised Maxwell material: viscoelastic in shear, elastic in volume.
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
@@ -74,13 +48,18 @@ class Maxwell:
     density
         Mass density, kg/m³.
     law
-        Shift law (WLF, Arrhenius, ShiftTable), for :meth:`at`.
+        Shift law (WLF, Arrhenius, Joined, ShiftTable), for :meth:`at`.
     temperature
         Temperature at which tau and eta0 hold, °C; the law's T_ref unless given.
+    vertical
+        Vertical shift, by which :meth:`at` changes the moduli too; None for none.
+    band
+        Lowest and highest frequency, Hz, the model is good for; that of the fit unless given. The modulus
+        outside it comes with a warning (OutsideBand), except at rest.
     fit
         Report of the fit the model comes from.
 
-    Two materials are equal if everything but `fit` is.
+    Two materials are equal if everything but `band` and `fit` is.
 
     Raises
     ------
@@ -94,8 +73,10 @@ class Maxwell:
     eta0: float
     K: float
     density: float
-    law: WLF | Arrhenius | ShiftTable | None
+    law: Law | None
     temperature: float | None
+    vertical: RhoT | None
+    band: tuple[float, float] | None = field(repr=False)
     fit: FitReport | None = field(repr=False)
 
     def __init__(
@@ -107,10 +88,14 @@ class Maxwell:
         *,
         K: float,
         density: float,
-        law: WLF | Arrhenius | ShiftTable | None = None,
+        law: Law | None = None,
         temperature: float | None = None,
+        vertical: RhoT | None = None,
+        band: tuple[float, float] | None = None,
         fit: FitReport | None = None,
     ) -> None:
+        if band is None and fit is not None:
+            band = fit.band
         if temperature is None and law is not None:
             temperature = law.T_ref
         values = {
@@ -122,6 +107,8 @@ class Maxwell:
             "density": float(density),
             "law": law,
             "temperature": temperature,
+            "vertical": vertical,
+            "band": None if band is None else (float(band[0]), float(band[1])),
             "fit": fit,
         }
         for name, value in values.items():
@@ -151,6 +138,8 @@ class Maxwell:
             )
         if self.temperature is not None and not math.isfinite(self.temperature):
             raise ValueError(f"Maxwell.temperature = {self.temperature!r} °C: must be finite")
+        if self.band is not None and not 0 < self.band[0] < self.band[1] < math.inf:
+            raise ValueError(f"Maxwell.band = {self.band!r} Hz: must be a lower and a higher frequency")
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
@@ -159,7 +148,16 @@ class Maxwell:
 
     def _key(self) -> tuple[object, ...]:
         branches = (tuple(self.G.tolist()), tuple(self.tau.tolist()))
-        return (self.G0, *branches, self.eta0, self.K, self.density, self.law, self.temperature)
+        return (
+            self.G0,
+            *branches,
+            self.eta0,
+            self.K,
+            self.density,
+            self.law,
+            self.temperature,
+            self.vertical,
+        )
 
     def __eq__(self, other: object) -> bool:
         return self._key() == other._key() if isinstance(other, Maxwell) else NotImplemented
@@ -188,15 +186,34 @@ class Maxwell:
         omega = np.asarray(omega, dtype=np.float64)
         if not np.all(np.isfinite(omega)):
             raise ValueError("omega: every angular frequency must be finite, rad/s")
+        self._warn_outside(omega)
         x = omega[..., None] * self.tau
         branch = x / (1 + x * x) * (x + 1j)
         return np.asarray(self.G0 + 1j * omega * self.eta0 + branch @ self.G)
+
+    def _warn_outside(self, omega: NDArray[np.float64]) -> None:
+        if self.band is None or omega.size == 0:
+            return
+        f = np.abs(omega[omega != 0]) / (2 * np.pi)
+        outside = f[(f < self.band[0] / _ROUNDING) | (f > self.band[1] * _ROUNDING)]
+        if outside.size:
+            warnings.warn(
+                f"{outside.min():.3g} to {outside.max():.3g} Hz lies outside the band the Maxwell model "
+                "was fitted "
+                f"in, {self.band[0]:.4g} to {self.band[1]:.4g} Hz: it extrapolates there",
+                OutsideBand,
+                stacklevel=3,
+            )
 
     def loss_factor(self, omega: ArrayLike) -> NDArray[np.float64]:
         """Loss factor η = tan δ = G″/G′ at angular frequencies ω, rad/s; infinite where G′ = 0."""
         modulus = self.complex_modulus(omega)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(modulus.real > 0, modulus.imag / modulus.real, np.inf)
+
+    def tan_delta(self, omega: ArrayLike) -> NDArray[np.float64]:
+        """The loss factor under its other name, :meth:`loss_factor`."""
+        return self.loss_factor(omega)
 
     def relaxation(self, t: ArrayLike) -> NDArray[np.float64]:
         """Relaxation modulus G_rel(t), Pa, at times t ≥ 0, s, any shape (paper eq. 6).
@@ -207,6 +224,19 @@ class Maxwell:
         if not np.all(t >= 0):
             raise ValueError("t: a relaxation modulus exists for times t >= 0 s only")
         return np.asarray(self.G0 + np.exp(-t[..., None] / self.tau) @ self.G)
+
+    def creep(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Creep compliance J(t), 1/Pa, at times t ≥ 0, s, any shape: strain under a unit step of stress.
+
+        Exact: iωJ* = 1/G* expanded in its poles, which lie between those of G*. With a dashpot J(0) = 0; with
+        G0 = 0 the material flows for ever. ValueError for negative times.
+        """
+        return creep_compliance(self.G0, self.G, self.tau, self.eta0, t)
+
+    def spectrum(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Discrete relaxation spectrum: times, s, rising, and strengths, Pa, of the branches; (N,) each."""
+        order = np.argsort(self.tau, kind="stable")
+        return self.tau[order], self.G[order]
 
     def stress(self, strain_rate: ArrayLike, dt: ArrayLike) -> NDArray[np.float64]:
         """Deviatoric stress history under a strain-rate history, by the history update of the C core.
@@ -259,7 +289,8 @@ class Maxwell:
     def at(self, T: float) -> Maxwell:
         """The same material at temperature T, °C: tau and eta0 times a_T(T)/a_T(temperature), by its law.
 
-        Moduli are left as they are (no vertical shift). ValueError if the material has no law.
+        Moduli are left as they are unless there is a vertical shift, b_T(T)/b_T(temperature); the band moves
+        along. ValueError if the material has no law.
         """
         if self.law is None or self.temperature is None:
             raise ValueError(
@@ -267,92 +298,19 @@ class Maxwell:
                 "(law=WLF(C1, C2, T_ref), or one fitted by master_curve)"
             )
         aT = float(10 ** (self.law.log_shift(T) - self.law.log_shift(self.temperature)))
-        return replace(self, tau=self.tau * aT, eta0=self.eta0 * aT, temperature=float(T), fit=None)
-
-    def with_modulus(self, modulus: float, omega: float) -> Maxwell:
-        """The same material, harder or softer: all strengths scaled so that |G*(omega)| is `modulus`, Pa.
-
-        The loss factor is unchanged at every frequency.
-        """
-        if not (modulus > 0 and math.isfinite(modulus)):
-            raise ValueError(f"modulus = {modulus!r} Pa: must be positive and finite")
-        magnitude = float(np.abs(self.complex_modulus(omega)))
-        if not magnitude > 0:
-            raise ValueError(f"omega = {omega!r} rad/s: |G*| is zero there, no scaling can change it")
-        factor = modulus / magnitude
-        return replace(self, G0=self.G0 * factor, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
-
-    def with_loss_factor(self, loss_factor: float, omega: float) -> Maxwell:
-        """A causal material of the same |G*(omega)| and relaxation times, whose loss factor at omega is
-        given.
-
-        The branches and the dashpot are scaled against the spring G0, then all of them together until
-        |G*(omega)| is what it was. G′ and G″ change together as Kramers and Kronig demand; G″ scaled alone
-        would not be causal.
-
-        Parameters
-        ----------
-        loss_factor
-            Wanted tan δ at omega, > 0 and below that of the branches without the spring.
-        omega
-            Angular frequency, rad/s, > 0.
-
-        Raises
-        ------
-        ValueError
-            If the material has no spring or no branches, or the loss factor is out of reach.
-        """
-        if not (omega > 0 and math.isfinite(omega)):
-            raise ValueError(f"omega = {omega!r} rad/s: must be positive and finite")
-        modulus = complex(self.complex_modulus(omega))
-        branches = modulus - self.G0
-        if not (self.G0 > 0 and branches.imag > 0):
-            raise ValueError(
-                "Maxwell: with_loss_factor weighs branches against the spring: both must be there"
-            )
-        limit = branches.imag / branches.real if branches.real > 0 else math.inf
-        if not 0 < loss_factor < limit:
-            raise ValueError(
-                f"loss_factor = {loss_factor!r}: must lie between 0 and {limit:.4g}, "
-                "that of the branches alone at this frequency"
-            )
-        factor = loss_factor * self.G0 / (branches.imag - loss_factor * branches.real)
-        weighed = replace(self, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
-        return weighed.with_modulus(abs(modulus), omega)
-
-    def with_relaxation(self, loss_factor: float, omega: float) -> Maxwell:
-        """A causal material of the same |G*(omega)| with one more relaxation, τ = 1/omega, that raises the
-        loss factor there to the one given.
-
-        A branch of strength s adds s/2 to G′ and to G″ at its own frequency, so s = 2(tan δ G′ − G″)/(1 −
-        tan δ); then all strengths are scaled together until |G*(omega)| is what it was. Against
-        `with_loss_factor` it keeps more of the relaxed modulus G0, and so of the static stiffness, for the
-        same damping at omega.
-
-        Parameters
-        ----------
-        loss_factor
-            Wanted tan δ at omega, above the present one and below 1.
-        omega
-            Angular frequency, rad/s, > 0.
-
-        Raises
-        ------
-        ValueError
-            If omega is not positive or the loss factor out of reach.
-        """
-        if not (omega > 0 and math.isfinite(omega)):
-            raise ValueError(f"omega = {omega!r} rad/s: must be positive and finite")
-        modulus = complex(self.complex_modulus(omega))
-        present = modulus.imag / modulus.real
-        if not present < loss_factor < 1:
-            raise ValueError(
-                f"loss_factor = {loss_factor!r}: must lie between the present {present:.4g} and 1"
-            )
-        strength = 2 * (loss_factor * modulus.real - modulus.imag) / (1 - loss_factor)
-        G, tau = np.append(self.G, strength), np.append(self.tau, 1 / omega)
-        order = np.argsort(tau)
-        return replace(self, G=G[order], tau=tau[order], fit=None).with_modulus(abs(modulus), omega)
+        bT = 1.0
+        if self.vertical is not None:
+            bT = float(self.vertical.factor(T) / self.vertical.factor(self.temperature))
+        return replace(
+            self,
+            G0=self.G0 * bT,
+            G=self.G * bT,
+            tau=self.tau * aT,
+            eta0=self.eta0 * aT * bT,
+            temperature=float(T),
+            band=None if self.band is None else (self.band[0] / aT, self.band[1] / aT),
+            fit=None,
+        )
 
     def to_json(self) -> str:
         """The material as JSON text, exact to the last bit; the fit report is left out."""
@@ -366,17 +324,29 @@ class Maxwell:
             "law": None if self.law is None else law_to_dict(self.law),
             "temperature": self.temperature,
         }
+        if self.vertical is not None:
+            data["vertical"] = {"T_ref": self.vertical.T_ref, "expansion": self.vertical.expansion}
+        if self.band is not None:
+            data["band"] = list(self.band)
         return json.dumps(data, indent=1)
 
     @classmethod
     def from_json(cls, text: str) -> Maxwell:
         """The material written by :meth:`to_json`; ValueError naming what is missing or unknown."""
-        data = json.loads(text)
+        try:
+            data = json.loads(text)
+        except json.JSONDecodeError as error:
+            raise ValueError(f"Maxwell.from_json: not JSON: {error}") from error
         required = {"G0", "G", "tau", "K", "density"}
         if not isinstance(data, dict) or not required <= data.keys():
             raise ValueError(f"Maxwell.from_json: needs a JSON object with {', '.join(sorted(required))}")
-        unknown = data.keys() - required - {"eta0", "law", "temperature"}
+        unknown = data.keys() - required - {"eta0", "law", "temperature", "vertical", "band"}
         if unknown:
             raise ValueError(f"Maxwell.from_json: unknown entries {', '.join(sorted(unknown))}")
         law = data.pop("law", None)
-        return cls(**data, law=None if law is None else law_from_dict(law))
+        vertical = data.pop("vertical", None)
+        try:
+            shift = None if vertical is None else RhoT(**vertical)
+            return cls(**data, law=None if law is None else law_from_dict(law), vertical=shift)
+        except TypeError as error:
+            raise ValueError(f"Maxwell.from_json: {error}") from error

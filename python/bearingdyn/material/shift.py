@@ -1,4 +1,4 @@
-"""Time-temperature shift laws: the factor a_T by which temperature stretches relaxation times.
+"""Shift laws: the factor a_T by which temperature stretches relaxation times, b_T by which it raises moduli.
 
 A reduced frequency is f·a_T, a relaxation time at T is τ(T_ref)·a_T; log10 a_T(T_ref) = 0.
 """
@@ -118,6 +118,58 @@ class Arrhenius:
 
 
 @dataclass(frozen=True)
+class Joined:
+    """WLF above the glass transition, Arrhenius below, joined at Tg: log10 a_T = f(T) − f(T_ref).
+
+    f = −C1 (T − Tg)/(C2 + T − Tg) for T ≥ Tg and (Ea/R ln 10)(1/T − 1/Tg), absolute temperatures, below.
+
+    Parameters
+    ----------
+    C1, C2
+        Dimensionless and K, positive, of the WLF law referred to Tg.
+    Tg
+        Temperature at which the two meet, °C.
+    Ea
+        Activation energy below Tg, J/mol, positive.
+    T_ref
+        Reference temperature, °C; on either side of Tg.
+    covariance
+        Of (C1, C2, Tg, Ea), 4×4, when fitted.
+    """
+
+    C1: float
+    C2: float
+    Tg: float
+    Ea: float
+    T_ref: float
+    covariance: Covariance | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        _finite("Joined.T_ref", self.T_ref)
+        for name, value in (("C1", self.C1), ("C2", self.C2), ("Ea", self.Ea)):
+            if not (value > 0 and math.isfinite(value)):
+                raise ValueError(f"Joined.{name} = {value!r}: must be positive and finite")
+        for name, value in (("Tg", self.Tg), ("T_ref", self.T_ref)):
+            if not (value > -ZERO_CELSIUS and math.isfinite(value)):
+                raise ValueError(f"Joined.{name} = {value!r} °C: must lie above -273.15 °C")
+
+    def _from_transition(self, T: NDArray[np.float64]) -> NDArray[np.float64]:
+        above = np.maximum(T - self.Tg, 0.0)
+        below = np.minimum(T, self.Tg) + ZERO_CELSIUS
+        slope = self.Ea / (GAS_CONSTANT * math.log(10))
+        return np.asarray(
+            -self.C1 * above / (self.C2 + above) + slope * (1 / below - 1 / (self.Tg + ZERO_CELSIUS))
+        )
+
+    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+        """log10 a_T at T, °C; ValueError at or below absolute zero."""
+        T = np.asarray(T, dtype=float)
+        if not np.all(T > -ZERO_CELSIUS):
+            raise ValueError(f"T = {np.min(T):.6g} °C: must lie above -273.15 °C")
+        return np.asarray(self._from_transition(T) - self._from_transition(np.asarray(float(self.T_ref))))
+
+
+@dataclass(frozen=True)
 class ShiftTable:
     """Shifts as a table, interpolated monotonically (PCHIP), never extrapolated.
 
@@ -165,24 +217,65 @@ class ShiftTable:
         return np.asarray(curve(T) - curve(self.T_ref))
 
 
-def law_to_dict(law: WLF | Arrhenius | ShiftTable) -> dict[str, Any]:
+@dataclass(frozen=True)
+class RhoT:
+    """Vertical shift of rubber elasticity: moduli at T are those at T_ref times b_T = ρT/(ρ_ref T_ref).
+
+    Parameters
+    ----------
+    T_ref
+        Reference temperature, °C.
+    expansion
+        Volumetric thermal expansion, 1/K, ≥ 0: ρ = ρ_ref/(1 + expansion (T − T_ref)).
+    """
+
+    T_ref: float
+    expansion: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.T_ref > -ZERO_CELSIUS and math.isfinite(self.T_ref)):
+            raise ValueError(f"RhoT.T_ref = {self.T_ref!r} °C: must lie above -273.15 °C")
+        if not 0 <= self.expansion < 1e-2:
+            raise ValueError(
+                f"RhoT.expansion = {self.expansion!r} 1/K: must lie between 0 and 0.01 (rubber: 6e-4)"
+            )
+
+    def factor(self, T: ArrayLike) -> NDArray[np.float64]:
+        """b_T at T, °C; same shape as T. ValueError where ρT is not positive."""
+        T = np.asarray(T, dtype=float)
+        density = 1 + self.expansion * (T - self.T_ref)
+        if not (np.all(T > -ZERO_CELSIUS) and np.all(density > 0)):
+            raise ValueError(f"T = {T.tolist()!r} °C: ρT must be positive")
+        return np.asarray((T + ZERO_CELSIUS) / (self.T_ref + ZERO_CELSIUS) / density)
+
+
+Law = WLF | Arrhenius | Joined | ShiftTable
+
+
+def law_to_dict(law: Law) -> dict[str, Any]:
     """The numbers of a law, ready for JSON; :func:`law_from_dict` reads them back."""
     if isinstance(law, WLF):
         return {"law": "wlf", "C1": law.C1, "C2": law.C2, "T_ref": law.T_ref}
     if isinstance(law, Arrhenius):
         return {"law": "arrhenius", "Ea": law.Ea, "T_ref": law.T_ref}
+    if isinstance(law, Joined):
+        numbers = {"C1": law.C1, "C2": law.C2, "Tg": law.Tg, "Ea": law.Ea}
+        return {"law": "joined", **numbers, "T_ref": law.T_ref}
     return {"law": "free", "T": list(law.T), "log_aT": list(law.log_aT), "T_ref": law.T_ref}
 
 
-def law_from_dict(data: dict[str, Any]) -> WLF | Arrhenius | ShiftTable:
+def law_from_dict(data: dict[str, Any]) -> Law:
     """The law written by :func:`law_to_dict`; ValueError if it is none."""
     match data:
         case {"law": "wlf", "C1": C1, "C2": C2, "T_ref": T_ref}:
             return WLF(C1, C2, T_ref)
         case {"law": "arrhenius", "Ea": Ea, "T_ref": T_ref}:
             return Arrhenius(Ea, T_ref)
+        case {"law": "joined", "C1": C1, "C2": C2, "Tg": Tg, "Ea": Ea, "T_ref": T_ref}:
+            return Joined(C1, C2, Tg, Ea, T_ref)
         case {"law": "free", "T": T, "log_aT": log_aT, "T_ref": T_ref}:
             return ShiftTable(tuple(T), tuple(log_aT), T_ref)
     raise ValueError(
-        f"law = {data!r}: must hold law 'wlf' (C1, C2), 'arrhenius' (Ea) or 'free' (T, log_aT), and T_ref"
+        f"law = {data!r}: must hold law 'wlf' (C1, C2), 'arrhenius' (Ea), 'joined' (C1, C2, Tg, Ea) or "
+        "'free' (T, log_aT), and T_ref"
     )

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
+from scipy.optimize import lsq_linear, nnls
 
 Array = NDArray[np.float64]
 
@@ -55,12 +55,42 @@ class Strengths:
         return np.asarray(columns - self.basis @ (self.basis.T @ columns))
 
 
-def solve_strengths(A: Array, b: Array) -> Strengths:
-    """Solve min ‖A x − b‖, x ≥ 0, A (m, n), b (m,); columns are scaled to unit length first."""
+def solve_strengths(A: Array, b: Array, lower: Array | None = None, upper: Array | None = None) -> Strengths:
+    """Solve min ‖A x − b‖, lower ≤ x ≤ upper (0 and ∞ unless given); columns are scaled to unit length first.
+
+    A (m, n), b (m,), bounds (n,), lower ≥ 0; where they are equal the strength is fixed.
+    """
+    if lower is None or upper is None or not (lower.any() or np.isfinite(upper).any()):
+        return _non_negative(A, b)
+    x = lower.copy()
+    free = upper > lower
+    rest = b - A[:, ~free] @ x[~free]
+    low, high = lower[free], upper[free]
+    if not (low.any() or np.isfinite(high).any()):
+        inner = _non_negative(A[:, free], rest)
+        x[free] = inner.x
+        return Strengths(x, A @ x - b, inner.basis)
+    length = np.linalg.norm(A[:, free], axis=0)
+    length[length == 0] = 1.0
+    scaled = A[:, free] / length
+    found = lsq_linear(scaled, rest, bounds=(low * length, high * length), method="bvls")
+    x[free] = np.clip(found.x / length, low, high)
+    inside = found.active_mask == 0
+    return Strengths(x, A @ x - b, np.linalg.qr(scaled[:, inside])[0])
+
+
+def _non_negative(A: Array, b: Array) -> Strengths:
     length = np.linalg.norm(A, axis=0)
     length[length == 0] = 1.0
     scaled = A / length
-    y, _ = nnls(scaled, b, maxiter=30 * A.shape[1])
+    n = A.shape[1]
+    if n == 0:  # everything is fixed
+        return Strengths(np.empty(0), -b, scaled)
+    if A.shape[0] > 2 * n:  # the triangular factor poses the same problem in fewer rows
+        R: Array = np.asarray(np.linalg.qr(np.column_stack([scaled, b]), mode="r"))
+        y, _ = nnls(R[:, :n], R[:, n], maxiter=30 * n)
+    else:
+        y, _ = nnls(scaled, b, maxiter=30 * n)
     active = y > 0
     basis = np.linalg.qr(scaled[:, active])[0]
     return Strengths(y / length, scaled @ y - b, basis)

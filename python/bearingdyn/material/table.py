@@ -1,239 +1,80 @@
-"""Text tables of an instrument: which column is which, in which unit, and what the numbers are."""
+"""Tables of an instrument: found among the rows of a file, their numbers checked and brought to SI units."""
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-_FREQUENCY = {"hz": 1.0, "1/s": 1.0, "khz": 1e3, "mhz": 1e-3, "rad/s": 1 / (2 * math.pi)}
-_PRESSURE = {
-    "pa": 1.0,
-    "kpa": 1e3,
-    "mpa": 1e6,
-    "gpa": 1e9,
-    "n/mm2": 1e6,
-    "n/mm²": 1e6,
-    "n/m2": 1.0,
-    "n/m²": 1.0,
-}
-_TEMPERATURE = {"c": 0.0, "°c": 0.0, "degc": 0.0, "deg c": 0.0, "ºc": 0.0, "˚c": 0.0, "k": -273.15}
-_NONE = {"": 1.0, "-": 1.0, "1": 1.0, "[]": 1.0}
-
-_UNITS: dict[str, dict[str, float]] = {
-    "frequency": _FREQUENCY,
-    "temperature": _TEMPERATURE,
-    "storage": _PRESSURE,
-    "loss": _PRESSURE,
-    "tan_delta": _NONE,
-}
-_REQUIRED = ("frequency", "temperature", "storage", "loss")
-
-_ENDING = re.compile(
-    r"(?:[\s_,/]+|^)("
-    + "|".join(re.escape(u) for u in sorted({*_FREQUENCY, *_PRESSURE, *_TEMPERATURE}, key=len, reverse=True))
-    + r")$",
-    re.IGNORECASE,
+from bearingdyn.material.columns import (
+    UNITS,
+    Column,
+    choose,
+    columns_of,
+    factor,
+    is_number,
+    names_shear,
+    number_of,
+    quantity_of,
+    title_of,
 )
-_STORAGE = re.compile(r"^(?P<letter>[GE])?\s*(?:'|1|p|prime|stor|storage)(?:\s+modulus)?$", re.IGNORECASE)
-_LOSS = re.compile(r"^(?P<letter>[GE])?\s*(?:\"|2|pp|double prime|loss)(?:\s+modulus)?$", re.IGNORECASE)
-_KIND = re.compile(r"\b(shear|tensile|tension|young's)\b\s*", re.IGNORECASE)
+from bearingdyn.material.source import Row, Source, Splitter
+
+_MISSING = ("", "-", "--", "---", "nan", "n/a", "na", "null", "none", "#n/a")
+_TEMPERATURE_LINE = re.compile(
+    r"^\s*temperature\s*[:;,\t]?\s*(-?\d+(?:[.,]\d+)?)\s*(°C|ºC|C|K)\b", re.IGNORECASE
+)
+KNOWN = (*UNITS, "isotherm")
 
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of a table by quantity, in SI units (temperature in °C), with the lines they stand on."""
+    """Columns by quantity, Hz, °C and Pa, the rows they stand on, and what was assumed."""
 
     values: dict[str, NDArray[np.float64]]
     lines: tuple[int, ...]
     header_line: int
     mode: Literal["shear", "tension"] | None
+    shear_named: bool
+    notes: tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class _Column:
-    index: int
-    title: str
-    unit: str
-    letter: str
+class _Block:
+    """One header, the rows below it down to the next, and its columns."""
+
+    header: Row
+    rows: tuple[Row, ...]
+    splitter: Splitter
+    columns: dict[str, Column]
+    quantities: tuple[str, ...]
+    labelled: bool
 
 
-def _title(cell: str) -> tuple[str, str]:
-    """Name and unit of a header cell."""
-    text = cell.strip().strip('"') if cell.count('"') == 2 else cell.strip()
-    text = re.sub("[’′´`]", "'", re.sub("[″”“]", '"', text)).replace("''", '"')
-    bracket = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", text)
-    if bracket and bracket.start() > 0 and bracket.group(1).strip().lower() not in ("δ", "delta", "d"):
-        return text[: bracket.start()].strip(), bracket.group(1).strip()
-    ending = _ENDING.search(text)
-    if ending and ending.start() > 0:
-        return text[: ending.start()].strip(), ending.group(1)
-    return text, ""
-
-
-def _quantity(name: str) -> tuple[str, str] | None:
-    """Quantity a column's name stands for, and the letter G or E of its modulus."""
-    words = re.sub(r"[\s_\-]+", " ", name).strip()
-    low = words.lower()
-    if words in ("f", "ω", "w") or low in (
-        "freq",
-        "frequency",
-        "angular frequency",
-        "ang frequency",
-        "omega",
-    ):
-        return "frequency", ""
-    if words in ("T", "Ts") or low in ("temp", "temperature", "sample temperature"):
-        return "temperature", ""
-    if low in ("set", "t nominal", "nominal temperature", "t set", "set temperature", "isotherm"):
-        return "isotherm", ""
-    if re.sub(r"[\s()]", "", low) in ("tandelta", "tanδ", "tand", "lossfactor"):
-        return "tan_delta", ""
-    kind = _KIND.search(words)
-    words = _KIND.sub("", words).strip()
-    for quantity, pattern in (("storage", _STORAGE), ("loss", _LOSS)):
-        match = pattern.match(words)
-        if match:
-            letter = (match.group("letter") or "").upper()
-            if not letter and kind:
-                letter = "G" if kind.group(1).lower() == "shear" else "E"
-            if letter or "modulus" in low or low in ("storage", "loss"):
-                return quantity, letter
-    return None
-
-
-def _splitter(header: str) -> tuple[Callable[[str], list[str]], str]:
-    """How the lines of a table come apart, judged by its header, and the separator."""
-    separator = next((mark for mark in ("\t", ";", ",") if mark in header), " ")
-    if separator == " ":
-        return str.split, separator
-    # a double quote that opens no cell is the mark of a loss modulus, E"
-    if '"' in header and not re.search(r'(^|[,;\t])\s*"', header):
-        return lambda line: line.split(separator), separator
-    return lambda line: next(csv.reader([line], delimiter=separator), []), separator
-
-
-def _read_lines(path: Path) -> list[tuple[int, str]]:
-    """Numbered lines that are neither blank nor comments."""
-    data = path.read_bytes()
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        text = data.decode("utf-16")
-    elif b"\0" in data or data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
-        raise ValueError(
-            f"{path}: a binary file (a spreadsheet or an instrument's own format), not a text table: "
-            "export it as CSV"
-        )
-    else:
-        try:
-            text = data.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = data.decode("latin-1")
-    lines = [
-        (i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and line.lstrip()[0] != "#"
-    ]
-    if not lines:
-        raise ValueError(f"{path}: the file holds no table: a header and rows of numbers are needed")
-    return lines
-
-
-def _columns_of(
-    cells: list[str], wanted: Mapping[str, str]
-) -> tuple[dict[str, _Column], list[tuple[str, str, str]]]:
-    """Recognised columns of a line taken for a header, and those that are two of a kind."""
-    found: dict[str, _Column] = {}
-    doubles: list[tuple[str, str, str]] = []
-    for index, cell in enumerate(cells):
-        name, unit = _title(cell)
-        named = next((q for q, title in wanted.items() if title in (cell.strip(), name)), None)
-        recognised = _quantity(name)
-        if named is not None:
-            letter = recognised[1] if recognised and recognised[0] == named else ""
-        elif recognised is None or recognised[0] in wanted:
-            continue
-        else:
-            named, letter = recognised
-        if named in found and named in (*_REQUIRED, "tan_delta"):
-            doubles.append((named, found[named].title, cell.strip()))
-        found.setdefault(named, _Column(index, cell.strip(), unit, letter))
-    return found, doubles
-
-
-def _find_header(
-    path: Path, lines: list[tuple[int, str]], wanted: Mapping[str, str]
-) -> tuple[int, dict[str, _Column], Callable[[str], list[str]], str]:
-    """Position of the header among the lines, its columns, and the splitter."""
-    best: tuple[int, set[str]] = (-1, set())
-    for position, (number, line) in enumerate(lines):
-        split, separator = _splitter(line)
-        columns, doubles = _columns_of(split(line), wanted)
-        if "tan_delta" in columns and "loss" not in columns:
-            columns["loss"] = columns["tan_delta"]
-        if columns.keys() >= set(_REQUIRED):
-            for quantity, first, second in doubles:
-                raise ValueError(
-                    f"{path}, line {number}: columns {first!r} and {second!r} both look like the {quantity}: "
-                    f"choose by columns={{{quantity!r}: ...}}"
-                )
-            return position, columns, split, separator
-        if len(columns) > len(best[1]):
-            best = (number, set(columns))
-    missing = [q for q in _REQUIRED if q not in best[1]]
-    where = f"{path}, line {best[0]}" if best[1] else f"{path}"
-    raise ValueError(
-        f"{where}: no column recognised as {', '.join(missing)}: the header must name frequency, "
-        "temperature, "
-        "storage modulus and loss modulus (or tan delta), or give columns={...} with the names used"
-    )
-
-
-def _number(cell: str, separator: str) -> float:
-    text = cell.strip().strip('"')
-    if separator != "," and "," in text and "." not in text:
-        text = text.replace(",", ".")
-    if "_" in text:
-        raise ValueError(cell)
-    return float(text)
-
-
-def _is_number(cell: str, separator: str) -> bool:
-    try:
-        _number(cell, separator)
-    except ValueError:
-        return False
-    return True
-
-
-def _factor(quantity: str, unit: str, column: _Column, where: str) -> float:
-    known = _UNITS[quantity]
-    key = unit.strip().strip("[]()").strip().lower()
-    if key not in known:
-        stated = f"unit {unit.strip()!r}" if key else "no unit"
-        raise ValueError(
-            f"{where}, column {column.title!r}: {stated} for the {quantity}: known are {', '.join(known)}; "
-            f"give units={{{quantity!r}: ...}}"
-        )
-    return known[key]
-
-
-def read_table(path: Path, wanted: Mapping[str, str], units: Mapping[str, str], drop_invalid: bool) -> Table:
-    """Read the columns frequency, temperature, storage, loss and, if present, isotherm of a text table.
+def read_table(
+    source: Source,
+    wanted: Mapping[str, str],
+    units: Mapping[str, str],
+    drop_invalid: bool,
+    temperature: float | None,
+) -> Table:
+    """Every table of a source, one below the other, as one.
 
     Parameters
     ----------
-    path
-        File to read.
     wanted, units
-        Column names and units by quantity, that go before what the file says.
+        Column names and units by quantity, that go before what the source says.
     drop_invalid
-        Leave out, with a warning, points with an empty, non-finite or non-positive value.
+        Leave out, with a warning, points whose frequency or moduli are not positive too.
+    temperature
+        Of all points, °C, where the table has no such column.
 
     Raises
     ------
@@ -241,85 +82,309 @@ def read_table(path: Path, wanted: Mapping[str, str], units: Mapping[str, str], 
         Naming file, line, column, value and remedy.
     """
     for mapping, name in ((wanted, "columns"), (units, "units")):
-        unknown = set(mapping) - {*_UNITS, "isotherm"}
+        unknown = set(mapping) - set(KNOWN)
         if unknown:
-            raise ValueError(
-                f"{name}: unknown quantities {sorted(unknown)}: known are {[*_UNITS, 'isotherm']}"
-            )
-    lines = _read_lines(path)
-    position, columns, split, separator = _find_header(path, lines, wanted)
-    header_line = lines[position][0]
-    rows = lines[position + 1 :]
-
-    quantities = [*_REQUIRED, *(["isotherm"] if "isotherm" in columns else [])]
-    by_tan = columns["loss"] is columns.get("tan_delta")
-    unit_cells: list[str] = []
-    if rows:
-        cells = split(rows[0][1])
-        if not any(_is_number(cell, separator) for cell in cells):
-            unit_cells, unit_line, rows = cells, rows[0][0], rows[1:]
-    if not rows:
-        raise ValueError(
-            f"{path}, line {header_line}: the table is empty: no rows of numbers follow the header"
-        )
-
-    factors: dict[str, float] = {}
-    for quantity in _REQUIRED:
-        column = columns[quantity]
-        kind = "tan_delta" if quantity == "loss" and by_tan else quantity
-        where, unit = f"{path}, line {header_line}", column.unit
-        if column.index < len(unit_cells) and not unit:
-            where, unit = f"{path}, line {unit_line}", unit_cells[column.index]
-        factors[quantity] = _factor(kind, units.get(kind, unit), column, where)
-
-    kept: list[list[float]] = []
+            raise ValueError(f"{name}: unknown quantities {sorted(unknown)}: known are {list(KNOWN)}")
+    blocks = _blocks(source, wanted)
+    if temperature is None:
+        temperature = _stated_temperature(source, blocks)
+    kept: list[dict[str, float]] = []
     numbers: list[int] = []
-    dropped: list[str] = []
-    for number, line in rows:
-        cells = split(line)
-        row: list[float] = []
-        reason = ""
-        for quantity in quantities:
-            column = columns[quantity]
-            where = f"{path}, line {number}, column {column.title!r}"
-            cell = cells[column.index].strip() if column.index < len(cells) else ""
-            if cell and not _is_number(cell, separator):
-                raise ValueError(
-                    f"{where}: {cell!r} is not a number: must be a decimal number such as 1.25e6"
-                )
-            value = _number(cell, separator) if cell else math.nan
-            positive = quantity in ("frequency", "storage", "loss")
-            if not math.isfinite(value) or (positive and not value > 0):
-                shown = cell or "empty"
-                reason = f"{where}: {shown} for the {quantity}"
-                if not drop_invalid:
-                    need = "positive and finite" if positive else "finite"
-                    raise ValueError(f"{reason}: must be {need}; drop_invalid=True leaves such points out")
-            row.append(value)
-        if reason:
-            dropped.append(reason)
-        else:
-            kept.append(row)
-            numbers.append(number)
-    if dropped:
-        warnings.warn(f"{len(dropped)} of {len(rows)} points left out: first {dropped[0]}", stacklevel=3)
+    tally = _Tally(source)
+    notes: list[str] = []
+    for block in blocks:
+        _read_block(source, block, units, drop_invalid, temperature, kept, numbers, tally, notes)
+    tally.warn(len(kept))
     if not kept:
-        raise ValueError(f"{path}: no valid point is left of {len(rows)}: first {dropped[0]}")
-
-    values = dict(zip(quantities, np.array(kept, dtype=np.float64).T, strict=True))
-    for quantity in ("frequency", "storage", "loss"):
-        values[quantity] = values[quantity] * factors[quantity]
-    values["temperature"] = values["temperature"] + factors["temperature"]
-    if by_tan:
-        values["loss"] = values["loss"] * values["storage"]
-    letters = {columns[q].letter for q in ("storage", "loss")} - {""}
-    if len(letters) > 1:
+        first = blocks[0].header.number
+        why = tally.first or f"{source.at(first)}: the table is empty: no rows of numbers follow the header"
+        raise ValueError(f"{why}; no valid point is left" if tally.first else why)
+    if not any(k["storage"] > 0 and k["loss"] > 0 for k in kept):
+        bad = "storage" if not kept[0]["storage"] > 0 else "loss"
+        column = blocks[0].columns.get(bad)
+        title = f", column {column.title!r}" if column else ""
         raise ValueError(
-            f"{path}, line {header_line}: storage is {columns['storage'].title!r}, loss "
-            f"{columns['loss'].title!r}: "
-            "must be both in shear (G) or both in tension (E)"
+            f"{source.at(numbers[0])}{title}: {kept[0][bad]:g} for the {bad}: must be positive and finite, "
+            "and is so at no point"
         )
-    mode: Literal["shear", "tension"] | None = None
-    if letters:
-        mode = "shear" if letters == {"G"} else "tension"
-    return Table(values, tuple(numbers), header_line, mode)
+    common = set.intersection(*(set(k) for k in kept))
+    values = {q: np.array([k[q] for k in kept]) for q in ("frequency", "temperature", "storage", "loss")}
+    if "isotherm" in common:
+        values["isotherm"] = np.array([k["isotherm"] for k in kept])
+    text = " ".join(row.text for row in source.rows if row.number <= blocks[0].header.number)
+    return Table(
+        values,
+        tuple(numbers),
+        blocks[0].header.number,
+        _mode(source, blocks),
+        names_shear(text),
+        tuple(dict.fromkeys(notes)),
+    )
+
+
+class _Tally:
+    """Rows left out, by reason, for one warning."""
+
+    def __init__(self, source: Source) -> None:
+        self.source, self.first, self.count = source, "", 0
+        self.after: list[Row] = []
+
+    def drop(self, reason: str) -> None:
+        self.first = self.first or reason
+        self.count += 1
+
+    def warn(self, kept: int) -> None:
+        if self.count:
+            warnings.warn(
+                f"{self.count} of {self.count + kept} points left out: first {self.first}", stacklevel=4
+            )
+        if self.after:
+            row = self.after[0]
+            numbers = sum(any(is_number(c) for c in r.text.split()) for r in self.after)
+            warnings.warn(
+                f"{self.source.at(row.number)}: {len(self.after)} lines after the table left out, "
+                f"{numbers} of "
+                f"them with numbers: first {row.text.strip()[:60]!r}",
+                stacklevel=4,
+            )
+
+
+def _blocks(source: Source, wanted: Mapping[str, str]) -> list[_Block]:
+    """Headers and what stands below them."""
+    heads: list[tuple[int, dict[str, Column], Splitter, tuple[str, str, str], bool]] = []
+    best: tuple[int, set[str]] = (source.rows[0].number, set())
+    for position, row in enumerate(source.rows):
+        splitter = Splitter.of(row.text)
+        cells = splitter.cells(row)
+        columns, doubles = columns_of(cells, wanted)
+        chosen = choose(columns)
+        if chosen is None:
+            if len(columns) > len(best[1]):
+                best = (row.number, set(columns))
+            continue
+        for quantity, first, second in doubles:
+            if quantity in (*chosen, "temperature"):
+                raise ValueError(
+                    f"{source.at(row.number)}: columns {first!r} and {second!r} both look like the "
+                    f"{quantity}: "
+                    f"choose by columns={{{quantity!r}: ...}}"
+                )
+        label = bool(cells) and cells[0].strip().endswith(":") and quantity_of(title_of(cells[0])[0]) is None
+        heads.append((position, columns, splitter, chosen, label))
+    if not heads:
+        has = best[1] | ({"frequency"} if "angular" in best[1] else set())
+        missing = [q for q in ("frequency", "temperature", "storage", "loss") if q not in has]
+        raise ValueError(
+            f"{source.at(best[0])}: no column recognised as {', '.join(missing)}: the header must name "
+            "frequency, temperature, storage modulus and loss modulus (or tan delta, or |G*| and phase), or "
+            "give columns={...} with the names used"
+        )
+    ends = [h[0] for h in heads[1:]] + [len(source.rows)]
+    return [
+        _Block(source.rows[p], source.rows[p + 1 : end], splitter, columns, chosen, label)
+        for (p, columns, splitter, chosen, label), end in zip(heads, ends, strict=True)
+    ]
+
+
+def _read_block(
+    source: Source,
+    block: _Block,
+    units: Mapping[str, str],
+    drop_invalid: bool,
+    temperature: float | None,
+    kept: list[dict[str, float]],
+    numbers: list[int],
+    tally: _Tally,
+    notes: list[str],
+) -> None:
+    wanted = list(block.quantities)
+    if "temperature" in block.columns:
+        wanted.append("temperature")
+    elif temperature is None:
+        raise ValueError(
+            f"{source.at(block.header.number)}: no column recognised as temperature: give "
+            "temperature=..., °C, if "
+            "the sweep is one isotherm, or columns={'temperature': ...}"
+        )
+    if "isotherm" in block.columns:
+        wanted.append("isotherm")
+    rows, unit_cells, unit_line = _units_row(block)
+    factors = {
+        q: _unit(source, block, q, units, unit_cells, unit_line, notes) for q in wanted if q != "isotherm"
+    }
+    for position, row in enumerate(rows):
+        cells = _aligned(block, row)
+        texts = {q: _cell(cells, block.columns[q].index) for q in wanted}
+        if not any(is_number(texts[q]) for q in (*block.quantities,)):
+            empty = all(not t for t in texts.values()) and not any(c.strip() for c in cells)
+            if empty:
+                continue
+            if any(t.lower() not in _MISSING for t in texts.values()) or len(cells) < 2:
+                if position == 0:
+                    q, text = next((q, t) for q, t in texts.items() if not is_number(t))
+                    raise ValueError(
+                        f"{source.at(row.number)}, column {block.columns[q].title!r}: {text!r} is not a "
+                        "number: "
+                        "must be a decimal number such as 1.25e6"
+                    )
+                if not _ends_section(row):
+                    tally.after.extend(r for r in rows[position:] if not _ends_section(r))
+                return
+        point = _point(source, block, row, texts, drop_invalid, tally, factors)
+        if point is None:
+            continue
+        if "temperature" not in point:
+            assert temperature is not None  # checked above
+            point["temperature"] = temperature
+        kept.append(point)
+        numbers.append(row.number)
+
+
+def _ends_section(row: Row) -> bool:
+    """Whether a row opens or describes a new step of the instrument, which belongs to no table."""
+    text = row.text.strip()
+    return bool(
+        re.match(r"^\[[^\]]*\]$|^(step name|number of points|result|interval|project|test)\b", text, re.I)
+    )
+
+
+def _units_row(block: _Block) -> tuple[tuple[Row, ...], list[str], int]:
+    if block.rows:
+        cells = _aligned(block, block.rows[0])
+        if not any(is_number(cell) for cell in cells):
+            known = {u for table in UNITS.values() for u in table} - {""}
+            here = [_cell(cells, c.index).strip("[]() ").lower() for c in block.columns.values()]
+            if any(unit in known for unit in here):
+                return block.rows[1:], cells, block.rows[0].number
+    return block.rows, [], 0
+
+
+def _aligned(block: _Block, row: Row) -> list[str]:
+    """Cells of a row; a label in front of the header has none in front of the numbers."""
+    cells = block.splitter.cells(row)
+    if block.labelled and cells and is_number(cells[0]):
+        return ["", *cells]
+    return cells
+
+
+def _cell(cells: list[str], index: int) -> str:
+    return cells[index].strip() if index < len(cells) else ""
+
+
+def _unit(
+    source: Source,
+    block: _Block,
+    quantity: str,
+    units: Mapping[str, str],
+    unit_cells: list[str],
+    unit_line: int,
+    notes: list[str],
+) -> float:
+    """Factor of a column; what is assumed of a frequency is said."""
+    column = block.columns[quantity]
+    where, unit = source.at(block.header.number), column.unit
+    if unit_cells and not unit and _cell(unit_cells, column.index):
+        where, unit = source.at(unit_line), _cell(unit_cells, column.index)
+    given = units.get(quantity, units.get("frequency") if quantity == "angular" else None)
+    if given is None and quantity in ("frequency", "angular"):
+        bare = unit.strip().strip("[]()").strip().lower()
+        if not bare:
+            unit = "Hz" if quantity == "frequency" else "rad/s"
+            text = (
+                f"{where}, column {column.title!r}: no unit for the {quantity} frequency: taken as {unit}; "
+                "units={'frequency': ...} says otherwise"
+            ).replace("frequency frequency", "frequency")
+            notes.append(text)
+            warnings.warn(text, stacklevel=6)
+        elif quantity == "angular" and bare != "rad/s" and "ang" in column.title.lower():
+            warnings.warn(
+                f"{where}, column {column.title!r}: an angular frequency in {unit}: taken as {unit}, not "
+                "rad/s",
+                stacklevel=6,
+            )
+        note = f"frequency read in {unit.strip('[] ')}"
+        if not any(n.endswith(note) for n in notes):
+            notes.append(f"{where}: {note}")
+    return factor(quantity, unit if given is None else given, column, where)
+
+
+def _point(
+    source: Source,
+    block: _Block,
+    row: Row,
+    texts: Mapping[str, str],
+    drop_invalid: bool,
+    tally: _Tally,
+    factors: Mapping[str, float],
+) -> dict[str, float] | None:
+    """Frequency, moduli and temperature of a row, None if it is left out."""
+    raw: dict[str, float] = {}
+    for quantity, text in texts.items():
+        where = f"{source.at(row.number)}, column {block.columns[quantity].title!r}"
+        missing = text.lower() in _MISSING
+        if not missing and not is_number(text):
+            raise ValueError(f"{where}: {text!r} is not a number: must be a decimal number such as 1.25e6")
+        value = math.nan if missing else number_of(text)
+        if not math.isfinite(value):
+            tally.drop(f"{where}: {text or 'empty'} for the {quantity}: must be finite")
+            return None
+        if quantity in ("frequency", "angular") and not value > 0:
+            reason = f"{where}: {text} for the frequency: must be positive and finite"
+            if not drop_invalid:
+                raise ValueError(f"{reason}; drop_invalid=True leaves such points out")
+            tally.drop(reason)
+            return None
+        raw[quantity] = (
+            value * factors.get(quantity, 1.0) if quantity != "temperature" else value + factors[quantity]
+        )
+        if drop_invalid and quantity in ("storage", "loss", "complex", "tan_delta") and not value > 0:
+            tally.drop(f"{where}: {text} for the {quantity}: must be positive")
+            return None
+    first, second = block.quantities[1:]
+    storage, loss = _modulus(first, second, raw[first], raw[second])
+    if not (math.isfinite(storage) and math.isfinite(loss)):
+        raise ValueError(
+            f"{source.at(row.number)}: {first} = {raw[first]:g} and {second} = {raw[second]:g}: make no "
+            "finite modulus"
+        )
+    point = {"frequency": raw[block.quantities[0]], "storage": storage, "loss": loss}
+    return point | {q: raw[q] for q in ("temperature", "isotherm") if q in raw}
+
+
+def _modulus(first: str, second: str, a: float, b: float) -> tuple[float, float]:
+    """Storage and loss modulus of a pair of quantities."""
+    if second == "loss":
+        return a, b
+    if first == "storage":
+        return a, a * (b if second == "tan_delta" else math.tan(b))
+    angle = math.atan(b) if second == "tan_delta" else b
+    return a * math.cos(angle), a * math.sin(angle)
+
+
+def _stated_temperature(source: Source, blocks: list[_Block]) -> float | None:
+    """A temperature stated above a table without such a column."""
+    if len(blocks) > 1 or "temperature" in blocks[0].columns:
+        return None
+    for row in source.rows:
+        match = _TEMPERATURE_LINE.match(row.text)
+        if match and row.number < blocks[0].header.number:
+            value = float(match.group(1).replace(",", "."))
+            return value - 273.15 if match.group(2).upper() == "K" else value
+    return None
+
+
+def _mode(source: Source, blocks: list[_Block]) -> Literal["shear", "tension"] | None:
+    used = [(b.header.number, b.columns[q]) for b in blocks for q in b.quantities[1:]]
+    letters = {column.letter for _, column in used} - {""}
+    if len(letters) > 1:
+        (_, a), (number, b) = next(
+            (x, y) for x, y in pairwise([u for u in used if u[1].letter]) if x[1].letter != y[1].letter
+        )
+        raise ValueError(
+            f"{source.at(number)}: storage is {a.title!r}, loss {b.title!r}: must be both in shear (G) "
+            "or both "
+            "in tension (E)"
+        )
+    if not letters:
+        return None
+    return "shear" if letters == {"G"} else "tension"

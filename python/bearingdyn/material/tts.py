@@ -3,37 +3,28 @@
 The reduced frequency of a point is f·a_T(T); the shifts log10 a_T of the isotherms are free numbers, found
 first from the overlap of neighbouring isotherms, then all together as those by which one non-negative
 relaxation spectrum renders every point best, storage and loss modulus alike. A law is fitted to them
-afterwards.
+afterwards, and, if wished, once more directly to the data.
 """
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from itertools import pairwise
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import least_squares
 
-from bearingdyn.material.dma import DMAData, Mode
-from bearingdyn.material.shift import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrhenius, ShiftTable
-from bearingdyn.material.spectrum import (
-    Strengths,
-    branch_columns,
-    branch_slopes,
-    dense_times,
-    solve_strengths,
-)
+from bearingdyn.material.dma import DMAData, Mode, check_range, shear_modulus
+from bearingdyn.material.kk import Suspect, summary, suspects
+from bearingdyn.material.laws import LawName, fit_law, fit_law_to_data, require_isotherms
+from bearingdyn.material.shift import ZERO_CELSIUS, Law, RhoT
+from bearingdyn.material.superpose import Superposed, Superposition, first_shifts
 
 Array = NDArray[np.float64]
-LawName = Literal["wlf", "arrhenius", "free"]
 
 _JITTER = 0.5  # K; as far as a mean temperature may miss the one that was meant
-_STEEPEST = 1e4  # largest C1 sought
 _LAW_MISFIT = 0.3  # decades rms, beyond which a law misleads: a factor of two in frequency
 
 
@@ -67,6 +58,16 @@ class MasterCurve:
         spectrum, which satisfies the Kramers–Kronig relations exactly.
     source
         Where the data come from.
+    left_out
+        Points that no passive material could give, and that are not in the curve.
+    smoothness
+        Strength of the prior on the curvature of log10 a_T(T) the shifts were found with; 0 is none.
+    vertical
+        Vertical shift the moduli were divided by; None for none.
+    notes
+        What was assumed in reading, and what was converted.
+    K
+        Bulk modulus, Pa, that turned tension into shear; None if nothing did.
     """
 
     frequency: Array
@@ -77,18 +78,46 @@ class MasterCurve:
     T_ref: float
     shifts: Mapping[float, float]
     shift_errors: Mapping[float, float]
-    law: WLF | Arrhenius | ShiftTable
+    law: Law
     law_residual: float
     kk_residual: tuple[float, float]
     source: str = field(default="", repr=False)
+    left_out: tuple[Suspect, ...] = field(default=(), repr=False)
+    smoothness: float = 0.0
+    vertical: RhoT | None = None
+    notes: tuple[str, ...] = field(default=(), repr=False)
+    K: float | None = None
 
     @property
     def tan_delta(self) -> Array:
         """Loss factor tan δ of each point, (n,)."""
         return np.asarray(self.loss / self.storage)
 
+    def to_shear(self, *, K: float | None = None, nu: float | None = None) -> MasterCurve:
+        """The same curve in shear, by a bulk modulus or a Poisson's ratio, as :meth:`DMAData.to_shear`.
 
-def master_curve(dma: DMAData, T_ref: float = 20.0, law: LawName = "wlf") -> MasterCurve:
+        ValueError unless exactly one of K, Pa, and nu is given, in its range, and the curve is in tension.
+        """
+        if self.mode != "tension":
+            raise ValueError(f"mode = {self.mode!r}: only a measurement in tension is converted")
+        modulus, note = shear_modulus(self.storage + 1j * self.loss, K, nu)
+        notes = (*self.notes, note)
+        known = None if K is None else float(K)
+        return replace(self, storage=modulus.real, loss=modulus.imag, mode="shear", notes=notes, K=known)
+
+
+def master_curve(
+    dma: DMAData,
+    T_ref: float = 20.0,
+    law: LawName = "wlf",
+    *,
+    clean: bool = True,
+    shifts: Mapping[float, float] | None = None,
+    refine: bool = True,
+    law_from: Literal["shifts", "data"] = "shifts",
+    vertical: RhoT | Literal["rhoT"] | None = None,
+    smoothness: float | None = None,
+) -> MasterCurve:
     """Shift the isotherms of a DMA measurement to a master curve.
 
     Parameters
@@ -98,244 +127,169 @@ def master_curve(dma: DMAData, T_ref: float = 20.0, law: LawName = "wlf") -> Mas
     T_ref
         Reference temperature, °C; need not be one that was measured.
     law
-        "wlf" or "arrhenius", fitted to the free shifts and good beyond the measured temperatures too,
-        or "free": the shifts themselves, interpolated.
+        "wlf", "arrhenius" or both "joined" at Tg: good beyond the measured temperatures too; or "free": the
+        shifts themselves, interpolated.
+    clean
+        Leave out, with a warning, the points that no passive material could give (:func:`suspects`). Points
+        with a modulus that is not positive are left out in any case.
+    shifts
+        log10 a_T by temperature, °C, set by hand for some or all isotherms (the nearest, within 2 K).
+    refine
+        Whether shifts set by hand are a start only; else they are kept as they are.
+    law_from
+        Fit the law to the free shifts, or, from there, directly to the data; the curve is then shifted by
+        the law, each point by its own temperature.
+    vertical
+        Divide moduli by b_T = ρT/(ρ_ref T_ref) first: a RhoT, or "rhoT" for one without expansion. Off
+        unless asked for.
+    smoothness
+        Strength of a prior on the curvature of log10 a_T(T); 0 for none. Chosen by the data unless given.
 
     Raises
     ------
     ValueError
-        If there is only one isotherm, neighbouring isotherms share no moduli, or T_ref lies where the law
-        cannot reach.
+        If there is only one isotherm, two have one temperature, or T_ref lies where the law cannot reach.
     """
-    if law not in ("wlf", "arrhenius", "free"):
-        raise ValueError(f"law = {law!r}: must be 'wlf', 'arrhenius' or 'free'")
+    if law not in ("wlf", "arrhenius", "joined", "free"):
+        raise ValueError(f"law = {law!r}: must be 'wlf', 'arrhenius', 'joined' or 'free'")
+    if law_from not in ("shifts", "data") or (law, law_from) == ("free", "data"):
+        raise ValueError(
+            f"law_from = {law_from!r}: must be 'shifts', or 'data' with a law that has constants"
+        )
     if not -ZERO_CELSIUS < T_ref < 1e4:
         raise ValueError(f"T_ref = {T_ref!r} °C: must be a temperature in °C")
+    if smoothness is not None and not 0 <= smoothness < np.inf:
+        raise ValueError(f"smoothness = {smoothness!r}: must be zero or positive")
+    check_range(dma)
+    used, left_out = _cleaned(dma, clean)
+    if vertical is not None:
+        vertical = RhoT(float(T_ref)) if vertical == "rhoT" else vertical
+        if vertical.T_ref != T_ref:
+            raise ValueError(f"vertical = {vertical!r}: its T_ref must be that of the curve, {T_ref:g} °C")
+        factor = vertical.factor(used.temperature)
+        used = replace(used, storage=used.storage / factor, loss=used.loss / factor)
+    T = _temperatures(used, T_ref)
+    require_isotherms(law, T.size)
+
+    start = first_shifts(used)
+    held = np.zeros(T.size, dtype=bool)
+    if shifts:
+        start, held = _by_hand(T, start, shifts)
+    pinned = bool(shifts) and not refine
+    nearest = int(np.argmin(np.abs(T - T_ref)))
+    anchor = (T.size - 1) // 2  # whatever T_ref: the same data superpose in the same way
+    fixed = held if pinned else np.arange(T.size) == anchor
+    if not shifts:
+        start = start - start[anchor]
+    fit = Superposition(used, start, np.flatnonzero(~fixed))
+    found = fit.run(smoothness, nearest)
+    fitted, offset = fit_law(T, found.shifts, float(T_ref), law, pinned)
+    if law_from == "data":
+        fitted, misfit, points = fit_law_to_data(fit, fitted, float(T_ref), law)
+        found, offset = Superposed(found.shifts, found.errors, points, misfit, found.smoothness), 0.0
+        by_law = fitted.log_shift(T)
+        shifts_found = found.shifts - float(np.mean(found.shifts - by_law))
+    else:
+        by_law, shifts_found = fitted.log_shift(T), found.shifts - offset
+    residual = float(np.sqrt(np.mean((shifts_found - by_law) ** 2)))
+    if not residual < _LAW_MISFIT:
+        warnings.warn(
+            f"{dma.source}: the shifts deviate from the {law} law by {residual:.2g} decades rms: a WLF or "
+            "Arrhenius law does not hold through a glass transition; take law='joined' or 'free', or fewer "
+            "isotherms",
+            stacklevel=2,
+        )
+    frequency = used.frequency * 10 ** (found.point_shifts - offset)
+    order = np.argsort(frequency, kind="stable")
+    return MasterCurve(
+        frequency[order],
+        used.storage[order],
+        used.loss[order],
+        used.temperature[order],
+        used.mode,
+        float(T_ref),
+        dict(zip(T.tolist(), shifts_found.tolist(), strict=True)),
+        dict(zip(T.tolist(), found.errors.tolist(), strict=True)),
+        fitted,
+        residual,
+        found.misfit,
+        used.source,
+        left_out,
+        found.smoothness,
+        vertical,
+        used.notes,
+        used.K,
+    )
+
+
+def _cleaned(dma: DMAData, clean: bool) -> tuple[DMAData, tuple[Suspect, ...]]:
+    """The points to be shifted, and those left out, with a warning that counts them."""
+    flagged, found = suspects(dma)
+    if not clean:
+        flagged = ~((dma.storage > 0) & (dma.loss > 0))
+        found = tuple(s for s in found if s.reason == "negative modulus")
+    if not found:
+        return dma, ()
+    if flagged.all():
+        raise ValueError(f"{dma.source}: no point has positive moduli: the columns or their signs are wrong")
+    more = "; clean=False keeps what is positive" if clean else ""
+    warnings.warn(
+        f"{dma.source}: {len(found)} of {flagged.size} points left out that no passive material could give: "
+        f"{summary(found)}{more}",
+        stacklevel=3,
+    )
+    return dma.take(np.flatnonzero(~flagged)), found
+
+
+def _temperatures(dma: DMAData, T_ref: float) -> Array:
+    """Temperatures of the isotherms, checked."""
     T = dma.isotherm_temperatures
     if T.size < 2:
         raise ValueError(
             f"{dma.source}: one isotherm only, at {T[0]:.4g} °C: shifts need frequency sweeps at two "
             "temperatures or more"
         )
+    twin = np.flatnonzero(~(np.diff(T) > 1e-3))
+    if twin.size:
+        raise ValueError(
+            f"{dma.source}: two isotherms at {T[twin[0]]:.4g} °C: a shift belongs to a temperature; "
+            "leave one "
+            "out, or give both the same isotherm number"
+        )
+    single = [k for k in range(T.size) if np.unique(dma.frequency[dma.labels == k]).size < 2]
+    if len(single) == T.size:
+        raise ValueError(
+            f"{dma.source}: one frequency per isotherm: shifts need sweeps over several frequencies at each "
+            "temperature"
+        )
+    if single:
+        warnings.warn(
+            f"{dma.source}: one frequency only at {', '.join(f'{T[k]:.4g}' for k in single)} °C: these "
+            "shifts "
+            "rest on a single point",
+            stacklevel=3,
+        )
     if not T[0] - _JITTER <= T_ref <= T[-1] + _JITTER:
         warnings.warn(
             f"T_ref = {T_ref:g} °C lies outside the measured {T[0]:.4g} to {T[-1]:.4g} °C: the law "
             "extrapolates",
-            stacklevel=2,
+            stacklevel=3,
         )
-    anchor = int(np.argmin(np.abs(T - T_ref)))
-    start = _pairwise_shifts(dma)
-    refined = _Refinement(dma, anchor, start - start[anchor]).run()
-    fitted, offset = _fit_law(T, refined.shifts, refined.errors, T_ref, law)
-    shifts = refined.shifts - offset
-    residual = float(np.sqrt(np.mean((shifts - fitted.log_shift(T)) ** 2)))
-    if not residual < _LAW_MISFIT:
-        warnings.warn(
-            f"{dma.source}: the shifts deviate from the {law} law by {residual:.2g} decades rms: a WLF or "
-            "Arrhenius law "
-            "does not hold through a glass transition; take law='free' or fewer isotherms",
-            stacklevel=2,
-        )
-    frequency = dma.frequency * 10 ** (refined.point_shifts - offset)
-    order = np.argsort(frequency, kind="stable")
-    return MasterCurve(
-        frequency[order],
-        dma.storage[order],
-        dma.loss[order],
-        dma.temperature[order],
-        dma.mode,
-        float(T_ref),
-        dict(zip(T.tolist(), shifts.tolist(), strict=True)),
-        dict(zip(T.tolist(), refined.errors.tolist(), strict=True)),
-        fitted,
-        residual,
-        refined.residual,
-        dma.source,
-    )
+    return T
 
 
-def _pairwise_shifts(dma: DMAData) -> Array:
-    """First guess of the shifts, decades, (k,), from the overlap of neighbours, the coldest at zero."""
-    isotherms = dma.isotherms
-    steps = [_overlap_shift(cold, warm) for cold, warm in pairwise(isotherms)]
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def _overlap_shift(cold: DMAData, warm: DMAData) -> float:
-    """Shift of the warm isotherm against the cold one, decades, ≤ 0, that best joins ln G′ and ln tan δ
-    together."""
-    curves = []
-    for sweep in (cold, warm):
-        x, first = np.unique(np.log10(sweep.frequency), return_index=True)
-        curves.append((x, np.log(sweep.storage[first]), np.log(sweep.tan_delta[first])))
-    (xc, storage_c, tan_c), (xw, storage_w, tan_w) = curves
-    span = min(np.ptp(xc), np.ptp(xw))
-    # tan δ varies little where G′ varies much and the other way round: each is weighed by its own range
-    scale_s = max(np.ptp(np.concatenate([storage_c, storage_w])), 1e-3)
-    scale_t = max(np.ptp(np.concatenate([tan_c, tan_w])), 1e-3)
-    best, best_cost = 0.0, np.inf
-    for shift in np.arange(xc[0] - xw[-1] + 0.15 * span, xc[-1] - xw[0] - 0.15 * span, 0.01):
-        if shift > 0:
-            break
-        inside = (xw + shift >= xc[0]) & (xw + shift <= xc[-1])
-        if np.count_nonzero(inside) < 2:
-            continue
-        at = xw[inside] + shift
-        ds = (np.interp(at, xc, storage_c) - storage_w[inside]) / scale_s
-        dt = (np.interp(at, xc, tan_c) - tan_w[inside]) / scale_t
-        cost = float(np.mean(ds * ds) + np.mean(dt * dt))
-        if cost < best_cost:
-            best, best_cost = float(shift), cost
-    return best
-
-
-@dataclass(frozen=True)
-class _Refined:
-    shifts: Array
-    errors: Array
-    point_shifts: Array
-    residual: tuple[float, float]
-
-
-class _Refinement:
-    """Joint least squares of all shifts, a dense non-negative spectrum being solved for inside."""
-
-    def __init__(self, dma: DMAData, anchor: int, start: Array) -> None:
-        self.dma, self.anchor, self.start = dma, anchor, start
-        self.T = dma.isotherm_temperatures
-        self.free = np.array([k for k in range(start.size) if k != anchor])
-        self.within = np.zeros(dma.frequency.size)
-        self.tau = self._times(start)
-        self._last: tuple[bytes, Strengths] | None = None
-
-    def _times(self, shifts: Array) -> Array:
-        omega = 2 * np.pi * self.dma.frequency * 10 ** shifts[self.dma.labels]
-        return dense_times(float(omega.min()), float(omega.max()))
-
-    def _shifts(self, theta: Array) -> Array:
-        shifts = np.zeros(self.T.size)
-        shifts[self.free] = theta
-        return shifts
-
-    def _omega(self, theta: Array) -> Array:
-        return np.asarray(
-            2 * np.pi * self.dma.frequency * 10 ** (self._shifts(theta)[self.dma.labels] + self.within)
-        )
-
-    def _stack(self, storage: Array, loss: Array) -> Array:
-        return np.vstack([storage / self.dma.storage[:, None], loss / self.dma.loss[:, None]])
-
-    def _solve(self, theta: Array) -> Strengths:
-        key = theta.tobytes()
-        if self._last is None or self._last[0] != key:
-            storage, loss = branch_columns(self._omega(theta), self.tau)
-            spring = np.ones((storage.shape[0], 1))
-            A = self._stack(np.hstack([spring, storage]), np.hstack([0 * spring, loss]))
-            self._last = key, solve_strengths(A, np.ones(A.shape[0]))
-        return self._last[1]
-
-    def _residual(self, theta: Array) -> Array:
-        return self._solve(theta).residual
-
-    def _jacobian(self, theta: Array) -> Array:
-        solution = self._solve(theta)
-        storage, loss = branch_slopes(self._omega(theta), self.tau)
-        slope = self._stack(*(np.log(10) * (s @ solution.x[1:])[:, None] for s in (storage, loss)))[:, 0]
-        owner = np.tile(self.dma.labels, 2)
-        columns = np.where(owner[:, None] == self.free, slope[:, None], 0.0)
-        return solution.project_out(columns)
-
-    def _scatter(self, theta: Array) -> tuple[float, float]:
-        storage, loss = np.split(self._residual(theta), 2)
-        return float(np.sqrt(np.mean(storage**2))), float(np.sqrt(np.mean(loss**2)))
-
-    def run(self) -> _Refined:
-        theta = self.start[self.free]
-        for _ in range(3):
-            result = least_squares(
-                self._residual,
-                theta,
-                jac=self._jacobian,
-                method="lm",
-                x_scale=0.1,
-                xtol=1e-6,
-                ftol=1e-8,
-                max_nfev=40,
+def _by_hand(T: Array, start: Array, shifts: Mapping[float, float]) -> tuple[Array, NDArray[np.bool_]]:
+    """First shifts with those set by hand put in, the others moved along with them, and which are set."""
+    held, values = np.zeros(T.size, dtype=bool), np.zeros(T.size)
+    for temperature, shift in shifts.items():
+        k = int(np.argmin(np.abs(T - temperature)))
+        if not abs(T[k] - temperature) <= 2.0 or held[k]:
+            have = ", ".join(f"{t:.4g}" for t in T)
+            raise ValueError(
+                f"shifts: {temperature!r} °C names no isotherm, or one already named; there are {have} °C"
             )
-            theta = result.x
-            self.within = self._within(self._shifts(theta))
-            self.tau = self._times(self._shifts(theta))
-            self._last = None
-        scatter = self._scatter(theta)
-        J = self._jacobian(theta)
-        freedom = max(1, J.shape[0] - J.shape[1] - self._solve(theta).basis.shape[1])
-        variance = float(self._residual(theta) @ self._residual(theta)) / freedom
-        errors = np.zeros(self.T.size)
-        errors[self.free] = np.sqrt(variance * np.diag(np.linalg.pinv(J.T @ J)))
-        shifts = self._shifts(theta)
-        return _Refined(shifts, errors, shifts[self.dma.labels] + self.within, scatter)
-
-    def _within(self, shifts: Array) -> Array:
-        """What a point's own temperature adds to its isotherm's shift, decades, (n,)."""
-        slope = PchipInterpolator(self.T, shifts).derivative()(self.T)
-        labels = self.dma.labels
-        return np.asarray(slope[labels] * (self.dma.temperature - self.T[labels]))
-
-
-def _fit_law(
-    T: Array, shifts: Array, errors: Array, T_ref: float, law: LawName
-) -> tuple[WLF | Arrhenius | ShiftTable, float]:
-    """Law through the shifts, decades, and the shift at T_ref it implies."""
-    if law == "free":
-        table = ShiftTable(tuple(T), tuple(shifts), T_ref)
-        offset = float(PchipInterpolator(T, shifts)(T_ref))
-        return ShiftTable(table.T, tuple(shifts - offset), T_ref), offset
-    if law == "arrhenius":
-        x = 1 / (T + ZERO_CELSIUS) - 1 / (T_ref + ZERO_CELSIUS)
-        A = np.column_stack([x, np.ones_like(x)])
-        (slope, offset), *_ = np.linalg.lstsq(A, shifts, rcond=None)
-        misfit = shifts - A @ np.array([slope, offset])
-        unit = GAS_CONSTANT * np.log(10)
-        variance = float(misfit @ misfit) / max(1, T.size - 2) * float(np.linalg.inv(A.T @ A)[0, 0]) * unit**2
-        if not slope > 0:
-            raise ValueError("law = 'arrhenius': the shifts do not fall with temperature; take law='free'")
-        return Arrhenius(float(slope * unit), float(T_ref), variance if T.size > 2 else None), float(offset)
-    return _fit_wlf(T, shifts, T_ref)
-
-
-def _fit_wlf(T: Array, shifts: Array, T_ref: float) -> tuple[WLF, float]:
-    """WLF constants, with covariance, and the shift at T_ref: shifts ≈ offset − C1 x/(C2 + x), x = T −
-    T_ref."""
-    if T.size < 3:
-        raise ValueError(
-            f"law = 'wlf' has three constants, the data {T.size} isotherms: take law='arrhenius' or 'free'"
-        )
-    x = T - T_ref
-    lowest = max(1.0, -float(min(x.min(), 0.0)) + 1.0)  # K: the pole stays 1 K below the coldest isotherm
-
-    def residual(p: Array) -> Array:
-        return np.asarray(p[0] - p[1] * x / (p[2] + x) - shifts)
-
-    def jacobian(p: Array) -> Array:
-        return np.column_stack([np.ones_like(x), -x / (p[2] + x), p[1] * x / (p[2] + x) ** 2])
-
-    best = None
-    for C2 in (lowest + 10.0, lowest + 50.0, lowest + 200.0):
-        A = np.column_stack([np.ones_like(x), -x / (C2 + x)])
-        offset, C1 = np.linalg.lstsq(A, shifts, rcond=None)[0]
-        bounds = ([-np.inf, 1e-6, lowest], [np.inf, _STEEPEST, 1e5])
-        found = least_squares(
-            residual, [offset, max(C1, 0.1), C2], jac=jacobian, bounds=bounds, x_scale=[1, 10, 50]
-        )
-        if best is None or found.cost < best.cost * (1 - 1e-9):
-            best = found
-    assert best is not None
-    offset, C1, C2 = best.x
-    J = jacobian(best.x)
-    covariance = None
-    if (
-        T.size > 3 and C1 < 0.99 * _STEEPEST
-    ):  # at its bound the law is a straight line and C1, C2 mean nothing
-        full = 2 * best.cost / (T.size - 3) * np.linalg.pinv(J.T @ J)
-        covariance = tuple(tuple(float(v) for v in row) for row in full[1:, 1:])
-    return WLF(float(C1), float(C2), float(T_ref), covariance), float(offset)
+        if not np.isfinite(shift):
+            raise ValueError(f"shifts[{temperature!r}] = {shift!r}: must be a finite log10 a_T")
+        held[k], values[k] = True, shift
+    correction = np.interp(T, T[held], (values - start)[held])
+    return np.where(held, values, start + correction), held

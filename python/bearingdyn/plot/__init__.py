@@ -7,9 +7,12 @@ are halved and the upper ones returned; ``ax.figure`` is the whole.
 
 from bearingdyn.plot.material import isotherms, layer_stiffness, master, shifts
 from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum
+from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
 
 __all__ = [
     "ball_loads",
+    "causality",
+    "cole_cole",
     "frequency_response",
     "isotherms",
     "layer_stiffness",
@@ -17,4 +20,6 @@ __all__ = [
     "orbit",
     "shifts",
     "spectrum",
+    "spectrum_of",
+    "van_gurp_palmen",
 ]

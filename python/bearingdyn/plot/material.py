@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.material import DMAData, MasterCurve, Maxwell, ShiftTable
+from bearingdyn.material import DMAData, MasterCurve, Maxwell, OutsideBand, ShiftTable
 from bearingdyn.parts import Layer
 from bearingdyn.plot.frame import COLOURS, colour, finish, frame_log, halve, new_axes, some, style
 
@@ -25,16 +26,19 @@ def isotherms(dma: DMAData, ax: Axes | None = None) -> Axes:
 
     The axes given are halved; those of the storage modulus are returned.
     """
-    letter = _letter(dma.mode)
+    letter = letter_of(dma.mode)
     with style():
         ax = ax or new_axes(height=4.8)
-        colours = _temperature_scale(dma.temperature)
+        colours = temperature_scale(dma.temperature)
         lower = halve(ax)
         for sweep in dma.isotherms:
-            look: dict[str, Any] = {"color": _colour(colours, float(sweep.temperature.mean())), "marker": "."}
+            look: dict[str, Any] = {
+                "color": temperature_colour(colours, float(sweep.temperature.mean())),
+                "marker": ".",
+            }
             ax.loglog(sweep.frequency, sweep.storage / 1e6, markersize=3, linewidth=0.8, **look)
             lower.loglog(sweep.frequency, sweep.tan_delta, markersize=3, linewidth=0.8, **look)
-        _colourbar(ax, lower, colours)
+        temperature_bar([ax, lower], colours)
         ax.set_ylabel(f"storage modulus {letter}′, MPa")
         lower.set_ylabel("loss factor tan δ")
         frame_log(ax, dma.storage / 1e6)
@@ -59,10 +63,10 @@ def master(curve: MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None =
             f"maxwell holds at {maxwell.temperature} °C, the master curve at {curve.T_ref} °C; "
             f"pass maxwell.at({curve.T_ref})"
         )
-    letter = _letter(curve.mode)
+    letter = letter_of(curve.mode)
     with style():
         ax = ax or new_axes(height=4.8)
-        colours = _temperature_scale(curve.temperature)
+        colours = temperature_scale(curve.temperature)
         lower = halve(ax)
         for panel, values in ((ax, curve.storage / 1e6), (lower, curve.tan_delta)):
             panel.set_xscale("log")
@@ -78,7 +82,7 @@ def master(curve: MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None =
             )
         if maxwell is not None:
             _draw_model(ax, lower, curve, maxwell)
-        _colourbar(ax, lower, colours)
+        temperature_bar([ax, lower], colours)
         ax.set_ylabel(f"storage modulus {letter}′, MPa")
         lower.set_ylabel("loss factor tan δ")
         frame_log(ax, curve.storage / 1e6)
@@ -91,11 +95,13 @@ def master(curve: MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None =
 
 def _draw_model(ax: Axes, lower: Axes, curve: MasterCurve, maxwell: Maxwell) -> None:
     low, high = float(curve.frequency[0]), float(curve.frequency[-1])
-    band = maxwell.fit.band if maxwell.fit else None
+    band = maxwell.band
     if band is not None:
         low, high = min(low, band[0]), max(high, band[1])
     f = np.geomspace(low, high, 400)
-    modulus = maxwell.complex_modulus(2 * np.pi * f)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideBand)  # it is drawn dashed
+        modulus = maxwell.complex_modulus(2 * np.pi * f)
     if curve.mode == "tension":
         modulus = 9 * maxwell.K * modulus / (3 * maxwell.K + modulus)
     values = ((ax, modulus.real / 1e6), (lower, modulus.imag / modulus.real))
@@ -117,7 +123,9 @@ def shifts(curve: MasterCurve, ax: Axes | None = None) -> Axes:
     T = np.array(list(curve.shifts))
     values = np.array([curve.shifts[t] for t in T.tolist()])
     errors = np.array([curve.shift_errors[t] for t in T.tolist()])
-    name = {"WLF": "WLF law", "Arrhenius": "Arrhenius law"}.get(type(curve.law).__name__)
+    name = {"WLF": "WLF law", "Arrhenius": "Arrhenius law", "Joined": "WLF and Arrhenius"}.get(
+        type(curve.law).__name__
+    )
     label = f"{name}, rms {curve.law_residual:.2g} decades" if name else "interpolation"
     with style():
         ax = ax or new_axes()
@@ -160,17 +168,20 @@ def layer_stiffness(layers: Mapping[str, Layer], frequency: ArrayLike, ax: Axes 
     return ax
 
 
-def _letter(mode: str) -> str:
+def letter_of(mode: str) -> str:
+    """G in shear, E in tension."""
     return "G" if mode == "shear" else "E"
 
 
-def _temperature_scale(temperature: NDArray[np.float64]) -> Normalize:
+def temperature_scale(temperature: NDArray[np.float64]) -> Normalize:
+    """Scale of the colours over these temperatures, °C."""
     from matplotlib.colors import Normalize
 
     return Normalize(float(temperature.min()), float(temperature.max()))
 
 
-def _colour(scale: Normalize, temperature: float) -> tuple[float, ...]:
+def temperature_colour(scale: Normalize, temperature: float) -> tuple[float, ...]:
+    """Colour of a temperature, °C."""
     return tuple(_temperature_colours()(float(scale(temperature))))
 
 
@@ -181,11 +192,12 @@ def _temperature_colours() -> Colormap:
     return ListedColormap(matplotlib.colormaps[TEMPERATURES](np.linspace(0.0, BRIGHTEST, 256)))
 
 
-def _colourbar(ax: Axes, lower: Axes, scale: Normalize) -> None:
+def temperature_bar(panels: list[Axes], scale: Normalize) -> None:
+    """The colours of the temperatures, beside the panels."""
     from matplotlib.cm import ScalarMappable
 
-    bar = ax.figure.colorbar(
-        ScalarMappable(scale, _temperature_colours()), ax=[ax, lower], aspect=35, pad=0.02
+    bar = panels[0].figure.colorbar(
+        ScalarMappable(scale, _temperature_colours()), ax=panels, aspect=35, pad=0.02
     )
     bar.set_label("temperature, °C")
     outline: Any = bar.outline

@@ -1,0 +1,156 @@
+"""Reading of DMA measurements: text tables, instruments' exports, spreadsheets, frames and arrays."""
+
+from __future__ import annotations
+
+import importlib.resources
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bearingdyn.material.dma import DMAData, Mode, check_range, first_unsorted, group_isotherms
+from bearingdyn.material.source import Source, read_source, source_of
+from bearingdyn.material.table import Table, read_table
+
+
+def read_dma(
+    data: str | Path | Any,
+    mode: Mode | None = None,
+    *,
+    columns: Mapping[str, str] | None = None,
+    units: Mapping[str, str] | None = None,
+    temperature: float | None = None,
+    sort: bool = False,
+    drop_invalid: bool = False,
+) -> DMAData:
+    """Read isothermal frequency sweeps from a table with a header.
+
+    Understood are plain tables (comma, semicolon, tab or blanks; decimal point or comma; UTF-8, UTF-16 or
+    Latin-1; # opens a comment), TA TRIOS (CSV and LIMS text), Anton Paar RheoCompass, GABO Eplexor XLS, and
+    XLSX. Columns are known by their names (frequency or angular frequency, temperature, storage and loss
+    modulus, or one of them with tan δ or the phase, or |G*| with either, and the nominal temperature or
+    number of the isotherm), units by the name's ending, a bracket or a row of units. Where one file holds
+    several tables (a step each), all are read. Points with an empty or non-finite value are left out with a
+    warning that counts them; negative moduli are kept, for :func:`master_curve` to leave out openly.
+
+    Parameters
+    ----------
+    data
+        File to read, or a pandas frame, a mapping of columns by name, or an array (n, 4) of frequency, Hz,
+        temperature, °C, storage and loss modulus, Pa.
+    mode
+        "shear" or "tension"; deduced from the letters G or E in the header when not given.
+    columns
+        Column names by quantity ("frequency", "temperature", "storage", "loss", "tan_delta", "complex",
+        "phase", "isotherm"), where the header is not understood.
+    units
+        Units by quantity, where the file names none, e.g. {"storage": "MPa"}. A frequency without unit is
+        taken as Hz, an angular frequency as rad/s, and that is said.
+    temperature
+        Of all points, °C, where the table has no such column.
+    sort
+        Sort the points by isotherm and frequency instead of refusing an unsorted table.
+    drop_invalid
+        Leave out points whose frequency or modulus is not positive, too.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If the file is not such a table; the message names file, line, column, value and remedy. If a
+        spreadsheet needs a package that is not installed.
+    """
+    if temperature is not None and not -273.15 < temperature < 1e4:
+        raise ValueError(f"temperature = {temperature!r} °C: must be a temperature in °C")
+    sources = read_source(Path(data)) if isinstance(data, str | Path) else [source_of(data)]
+    source, table = _first_table(sources, columns or {}, units or {}, drop_invalid, temperature)
+    header = source.at(table.header_line)
+    if mode is None:
+        mode = table.mode
+        if mode is None and table.shear_named:
+            mode = "shear"
+            warnings.warn(
+                f"{header}: the header does not tell G from E: taken as shear, because the file speaks "
+                "of shear "
+                "(torque, plates); mode='tension' says otherwise",
+                stacklevel=2,
+            )
+        if mode is None:
+            raise ValueError(
+                f"{header}: the header does not tell G (shear) from E (tension): give mode='shear' or "
+                "mode='tension'"
+            )
+    elif table.mode is not None and table.mode != mode:
+        raise ValueError(
+            f"{header}: the header says {table.mode}, mode = {mode!r}: give the right mode, or name the "
+            "right "
+            "columns"
+        )
+    values = {name: table.values[name] for name in ("frequency", "temperature", "storage", "loss")}
+    if not np.all(values["temperature"] > -273.15):
+        i = int(np.argmin(values["temperature"]))
+        raise ValueError(
+            f"{source.at(table.lines[i])}: temperature {values['temperature'][i]:g} °C: must lie above "
+            "-273.15 °C"
+        )
+    if "isotherm" in table.values:
+        labels = np.unique(table.values["isotherm"], return_inverse=True)[1].reshape(-1).astype(np.int64)
+    else:
+        labels = group_isotherms(values["temperature"])
+    if sort:
+        order = np.lexsort((values["frequency"], labels))
+        values = {name: column[order] for name, column in values.items()}
+        labels = labels[order]
+    else:
+        i_back = first_unsorted(values["frequency"], labels)
+        if i_back is not None:
+            raise ValueError(
+                f"{source.at(table.lines[i_back])}: frequency {values['frequency'][i_back]:g} Hz runs "
+                "back within "
+                f"the isotherm at {values['temperature'][i_back]:.4g} °C: must rise throughout, or fall "
+                "throughout; "
+                "sort=True sorts the table; two sweeps at one temperature are told apart by a column "
+                "'isotherm'"
+            )
+    name = source.name if source.word == "row" else str(data)
+    try:
+        dma = DMAData(
+            values["frequency"],
+            values["temperature"],
+            values["storage"],
+            values["loss"],
+            mode,
+            name,
+            labels,
+            table.notes,
+        )
+    except ValueError as error:
+        raise ValueError(f"{source.at(table.lines[0])} to {table.lines[-1]}: {error}") from error
+    check_range(dma)
+    return dma
+
+
+def _first_table(
+    sources: list[Source],
+    columns: Mapping[str, str],
+    units: Mapping[str, str],
+    drop_invalid: bool,
+    temperature: float | None,
+) -> tuple[Source, Table]:
+    """The first sheet that holds a table."""
+    for source in sources[:-1]:
+        try:
+            return source, read_table(source, columns, units, drop_invalid, temperature)
+        except ValueError as error:
+            if "no column recognised as" not in str(error):
+                raise
+    return sources[-1], read_table(sources[-1], columns, units, drop_invalid, temperature)
+
+
+def sample_dma_path() -> Path:
+    """Path of the sample table shipped with the package: made from a model its header states, not
+    measured."""
+    return Path(str(importlib.resources.files("bearingdyn.material") / "sample_dma.csv"))

@@ -1,0 +1,111 @@
+"""Another modulus or loss factor for the same material, causal in every case."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Retunable:
+    """What a Maxwell model offers to be made harder, softer, or more lossy."""
+
+    G0: float
+    G: NDArray[np.float64]
+    tau: NDArray[np.float64]
+    eta0: float
+
+    def complex_modulus(self, omega: Any) -> NDArray[np.complex128]:
+        """Complex shear modulus at ω rad/s, Pa; given by the model."""
+        raise TypeError("Retunable has no modulus of its own")
+
+    def _with(self, **change: Any) -> Self:
+        return replace(self, **change)  # type: ignore[type-var]
+
+    def with_modulus(self, modulus: float, omega: float) -> Self:
+        """The same material, harder or softer: all strengths scaled so that |G*(omega)| is `modulus`, Pa.
+
+        The loss factor is unchanged at every frequency.
+        """
+        if not (modulus > 0 and math.isfinite(modulus)):
+            raise ValueError(f"modulus = {modulus!r} Pa: must be positive and finite")
+        magnitude = float(np.abs(self.complex_modulus(omega)))
+        if not magnitude > 0:
+            raise ValueError(f"omega = {omega!r} rad/s: |G*| is zero there, no scaling can change it")
+        factor = modulus / magnitude
+        return self._with(G0=self.G0 * factor, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
+
+    def with_loss_factor(self, loss_factor: float, omega: float) -> Self:
+        """A causal material of the same |G*(omega)| and relaxation times, whose loss factor at omega is
+        given.
+
+        The branches and the dashpot are scaled against the spring G0, then all of them together until
+        |G*(omega)| is what it was. G′ and G″ change together as Kramers and Kronig demand; G″ scaled alone
+        would not be causal.
+
+        Parameters
+        ----------
+        loss_factor
+            Wanted tan δ at omega, > 0 and below that of the branches without the spring.
+        omega
+            Angular frequency, rad/s, > 0.
+
+        Raises
+        ------
+        ValueError
+            If the material has no spring or no branches, or the loss factor is out of reach.
+        """
+        if not (omega > 0 and math.isfinite(omega)):
+            raise ValueError(f"omega = {omega!r} rad/s: must be positive and finite")
+        modulus = complex(self.complex_modulus(omega))
+        branches = modulus - self.G0
+        if not (self.G0 > 0 and branches.imag > 0):
+            raise ValueError(
+                "Maxwell: with_loss_factor weighs branches against the spring: both must be there"
+            )
+        limit = branches.imag / branches.real if branches.real > 0 else math.inf
+        if not 0 < loss_factor < limit:
+            raise ValueError(
+                f"loss_factor = {loss_factor!r}: must lie between 0 and {limit:.4g}, "
+                "that of the branches alone at this frequency"
+            )
+        factor = loss_factor * self.G0 / (branches.imag - loss_factor * branches.real)
+        weighed = self._with(G=self.G * factor, eta0=self.eta0 * factor, fit=None)
+        return weighed.with_modulus(abs(modulus), omega)
+
+    def with_relaxation(self, loss_factor: float, omega: float) -> Self:
+        """A causal material of the same |G*(omega)| with one more relaxation, τ = 1/omega, that raises the
+        loss factor there to the one given.
+
+        A branch of strength s adds s/2 to G′ and to G″ at its own frequency, so s = 2(tan δ G′ − G″)/(1 −
+        tan δ); then all strengths are scaled together until |G*(omega)| is what it was. Against
+        `with_loss_factor` it keeps more of the relaxed modulus G0, and so of the static stiffness, for the
+        same damping at omega.
+
+        Parameters
+        ----------
+        loss_factor
+            Wanted tan δ at omega, above the present one and below 1.
+        omega
+            Angular frequency, rad/s, > 0.
+
+        Raises
+        ------
+        ValueError
+            If omega is not positive or the loss factor out of reach.
+        """
+        if not (omega > 0 and math.isfinite(omega)):
+            raise ValueError(f"omega = {omega!r} rad/s: must be positive and finite")
+        modulus = complex(self.complex_modulus(omega))
+        present = modulus.imag / modulus.real
+        if not present < loss_factor < 1:
+            raise ValueError(
+                f"loss_factor = {loss_factor!r}: must lie between the present {present:.4g} and 1"
+            )
+        strength = 2 * (loss_factor * modulus.real - modulus.imag) / (1 - loss_factor)
+        G, tau = np.append(self.G, strength), np.append(self.tau, 1 / omega)
+        order = np.argsort(tau)
+        return self._with(G=G[order], tau=tau[order], fit=None).with_modulus(abs(modulus), omega)
