@@ -143,7 +143,8 @@ def shape_moduli(regions: Sequence[Region], moduli: Sequence[float] | None) -> l
             high.append(G0)
             continue
         low.append(G0 if G0 > 0 else abs(complex(q.material.complex_modulus(1 / tau.max()))))
-        high.append(abs(complex(q.material.complex_modulus(1 / tau.min()))))
+        # the stiffest the branches can be: asking for G* at their top would ask beyond the band of a fit
+        high.append(float(getattr(q.material, "G_instantaneous", G0)))
     ratio = float(np.max(np.divide(high, low)))
     if ratio < 1.001:
         return [low]
