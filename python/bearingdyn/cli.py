@@ -14,7 +14,7 @@ import warnings
 from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -63,6 +63,11 @@ def _line(message: object) -> str:
     return " ".join(str(message).split())
 
 
+def _branches(text: str) -> int | Literal["auto"]:
+    """A number of branches, or "auto"."""
+    return "auto" if text == "auto" else int(text)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="bearingdyn", description="Dynamics of rotors on ball bearings with viscoelastic layers."
@@ -72,7 +77,7 @@ def _parser() -> argparse.ArgumentParser:
     fit = commands.add_parser("fit", help="a Maxwell model from measured DMA data")
     fit.set_defaults(run=_fit)
     fit.add_argument("data", help="table of isothermal frequency sweeps, with a header")
-    fit.add_argument("--n", type=int, default=5, help="number of branches (default 5)")
+    fit.add_argument("--n", type=_branches, default=5, help='number of branches, or "auto" (default 5)')
     fit.add_argument(
         "--band", type=float, nargs=2, metavar=("LOW", "HIGH"), help="frequencies to fit between at T-ref, Hz"
     )
@@ -80,12 +85,13 @@ def _parser() -> argparse.ArgumentParser:
         "--T-ref", type=float, default=20.0, metavar="T", help="reference temperature, C (default 20)"
     )
     fit.add_argument(
-        "--law", choices=("wlf", "arrhenius", "free"), default="wlf", help="shift law (default wlf)"
+        "--law", choices=("wlf", "arrhenius", "joined", "free"), default="wlf", help="shift law (default wlf)"
     )
     fit.add_argument("--K", type=float, help=f"bulk modulus, Pa (default {BULK_MODULUS:g}, usual for rubber)")
     fit.add_argument("--density", type=float, help=f"kg/m3 (default {DENSITY:g}, usual for rubber)")
     fit.add_argument("--mode", choices=("shear", "tension"), help="where the header does not say it")
     fit.add_argument("--f-max", type=float, metavar="F", help="leave out what was measured above, Hz")
+    fit.add_argument("--no-clean", action="store_true", help="keep points that look like fixture resonance")
     fit.add_argument("--out", metavar="FILE", help="write the model there, as Maxwell.from_json reads it")
     fit.add_argument("--json", action="store_true", help="print JSON instead of a table")
 
@@ -111,7 +117,7 @@ def _fit(arguments: argparse.Namespace) -> str:
     dma = read_dma(arguments.data, arguments.mode)
     if arguments.f_max is not None:
         dma = dma.select(f_max=arguments.f_max)
-    curve = master_curve(dma, T_ref=arguments.T_ref, law=arguments.law)
+    curve = master_curve(dma, T_ref=arguments.T_ref, law=arguments.law, clean=not arguments.no_clean)
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
     model = fit_maxwell(
         curve,

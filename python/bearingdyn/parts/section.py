@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.fem.revolution_mesh import SAME, Rectangle, RevolutionMesh
-from bearingdyn.material import Elastic
+from bearingdyn.material import Elastic, Maxwell
 
 
 class ViscoelasticSolid(Protocol):
@@ -143,8 +143,9 @@ def shape_moduli(regions: Sequence[Region], moduli: Sequence[float] | None) -> l
             high.append(G0)
             continue
         low.append(G0 if G0 > 0 else abs(complex(q.material.complex_modulus(1 / tau.max()))))
-        # the stiffest the branches can be: asking for G* at their top would ask beyond the band of a fit
-        high.append(float(getattr(q.material, "G_instantaneous", G0)))
+        # shapes want the branches' whole range, also beyond the band of a fit: without it nothing warns
+        bare = replace(q.material, fit=None, band=None) if isinstance(q.material, Maxwell) else q.material
+        high.append(abs(complex(bare.complex_modulus(1 / tau.min()))))
     ratio = float(np.max(np.divide(high, low)))
     if ratio < 1.001:
         return [low]
