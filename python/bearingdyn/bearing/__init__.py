@@ -11,9 +11,11 @@ from bearingdyn.bearing.hertz import (
 )
 from bearingdyn.bearing.kernel import BearingKernel, ConstantDamping, Damping, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.running import Balls, Running
 
 __all__ = [
     "BallBearing",
+    "Balls",
     "BearingKernel",
     "ConstantDamping",
     "Damping",
@@ -25,6 +27,7 @@ __all__ = [
     "Lubricant",
     "Pit",
     "PointContact",
+    "Running",
     "TabulatedDamping",
     "Walther",
     "Waviness",
