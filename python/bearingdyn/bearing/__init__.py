@@ -11,12 +11,21 @@ from bearingdyn.bearing.hertz import (
 )
 from bearingdyn.bearing.kernel import BearingKernel, ConstantDamping, Damping, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.quasistatic import (
+    BearingWarning,
+    LoadDistribution,
+    Passage,
+    load_distribution,
+    passage,
+    without_spin,
+)
 from bearingdyn.bearing.running import Balls, Running
 
 __all__ = [
     "BallBearing",
     "Balls",
     "BearingKernel",
+    "BearingWarning",
     "ConstantDamping",
     "Damping",
     "Film",
@@ -24,7 +33,9 @@ __all__ = [
     "Geometry",
     "Imperfections",
     "LoadDamping",
+    "LoadDistribution",
     "Lubricant",
+    "Passage",
     "Pit",
     "PointContact",
     "Running",
@@ -33,7 +44,10 @@ __all__ = [
     "Waviness",
     "contact_modulus",
     "hamrock_dowson",
+    "load_distribution",
     "nijenbanning_venner_moes",
+    "passage",
     "resultant_damping",
     "resultant_deflection_coefficient",
+    "without_spin",
 ]

@@ -116,7 +116,7 @@ class Running:
         return self.bearing.coefficients().T @ self._response(self.bearing.relative(q), angle)[0]
 
     def stiffness(self, q: ArrayLike, angle: float = 0.0) -> Array:
-        """Tangent (6, 6) ∂force/∂q, the balls in balance throughout; N/m, N and N m. Not symmetric at speed."""
+        """Tangent (6, 6) ∂force/∂q, the balls in balance; N/m, N and N m. Not symmetric at speed."""
         B = self.bearing.coefficients()
         return B.T @ self._response(self.bearing.relative(q), angle)[1] @ B
 
@@ -156,7 +156,7 @@ class Running:
                 break
             z, g, K = z + step, g_new, K_new
         raise ArithmeticError(
-            f"no equilibrium at {self.speed:.6g} rad/s under the load {f.tolist()}: residual {residual:.3g} N; "
+            f"no equilibrium at {self.speed:.6g} rad/s under {f.tolist()}: {residual:.3g} N are left; "
             "is the load enough to hold the balls against their centrifugal force?"
         )
 
@@ -185,7 +185,7 @@ class Running:
         return float((self._nominal_force / self._races[3]) ** (2 / 3))
 
     def _grooves(self, z: Array, angle: float) -> tuple[Array, Array, Array]:
-        """Azimuths (Z,), inner groove centres from the outer (2, Z) as (axial, radial), and their rows on z."""
+        """Azimuths (Z,), inner groove centres from the outer, (2, Z) axial and radial, and rows on z."""
         brg = self.bearing
         start = brg.angle0 + number("angle", angle, "the cage angle in rad must be finite")
         psi = start + 2 * math.pi * np.arange(brg.Z) / brg.Z
@@ -201,7 +201,7 @@ class Running:
         return b / l_o, (I - b) / l_i, _load(kappa_o, l_o - rest_o), _load(kappa_i, l_i - rest_i)
 
     def _motion(self, n_o: Any, n_i: Any) -> _Motion:
-        """Orbit, centrifugal force and gyroscopic moment by the rolling of the ball on both races (Harris)."""
+        """Orbit, centrifugal force and gyroscopic moment of a ball rolling on both races (Harris)."""
         brg, ratio = self.bearing, self.bearing.Dw / self.bearing.Dpw
         (s_o, c_o), (s_i, c_i) = n_o, n_i
         tan = s_o / (c_o + ratio) if self.control == "outer" else s_i / (c_i - ratio)

@@ -1,0 +1,186 @@
+"""Answers at rest: who carries the load, at which angle and pressure; the stiffness over a passage."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.bearing.ball_bearing import STATIC_PRESSURE, BallBearing
+from bearingdyn.bearing.checks import number, positive, require
+from bearingdyn.bearing.hertz import PointContact
+from bearingdyn.bearing.running import Running
+
+Array = NDArray[np.float64]
+
+
+class BearingWarning(UserWarning):
+    """A bearing is asked for more than its parts bear, or than its model covers."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadDistribution:
+    """Balls of a loaded bearing in the order of their azimuth; all arrays (Z,)."""
+
+    azimuth: Array
+    """rad, from x towards y."""
+    load_inner: Array
+    """Load of the inner contact, N."""
+    load_outer: Array
+    """Load of the outer contact, N; the same but for a Running bearing."""
+    angle_inner: Array
+    """Contact angle at the inner race, rad; of an open contact, that of the line of the groove centres."""
+    angle_outer: Array
+    """Contact angle at the outer race, rad."""
+    pressure_inner: Array
+    """Largest pressure of the inner contact, Pa."""
+    pressure_outer: Array
+    """Largest pressure of the outer contact, Pa."""
+
+    @property
+    def loaded(self) -> int:
+        """Number of balls between both races."""
+        return int(np.count_nonzero(self.load_inner > 0))
+
+
+def load_distribution(
+    bearing: BallBearing | Running, q: ArrayLike, angle: float = 0.0, *, shoulder: float | None = None
+) -> LoadDistribution:
+    """Loads, contact angles and pressures of the balls with the inner ring at q (6,), m and rad.
+
+    Parameters
+    ----------
+    bearing
+        At rest, or with the inertia of its balls.
+    q
+        (6,) inner relative to outer ring.
+    angle
+        Cage angle, rad.
+    shoulder
+        Height of the shoulders over the bottom of their grooves, m; None: not checked. The ellipse ends at
+        α + arcsin(a/R), R = 2fDw/(2f + 1), the shoulder at arccos(1 − height/fDw) (Harris).
+
+    Warns
+    -----
+    BearingWarning
+        Where a pressure exceeds 4.2 GPa (ISO 76), or the shoulder cuts an ellipse; the ball is
+        named, counted from 1.
+
+    Raises
+    ------
+    ValueError
+        On a wrong shape, or where a ball runs beyond the shoulder: the axial load is more than it can hold.
+    """
+    if shoulder is not None:
+        positive("shoulder", shoulder, "the height of the shoulder in metres must be positive and finite")
+    if isinstance(bearing, Running):
+        brg, b = bearing.bearing, bearing.balls(q, angle)
+        psi, Q_i, Q_o, a_i, a_o = b.azimuth, b.Q_i, b.Q_o, b.alpha_i, b.alpha_o
+    else:
+        brg = bearing
+        Q_i = Q_o = brg.ball_loads(q, angle)
+        psi, a_i = _angles(brg, q, angle)
+        a_o = a_i
+    pressures = []
+    for race, contact, f, Q, alpha in (
+        ("inner", brg.inner_contact, brg.fi, Q_i, a_i),
+        ("outer", brg.outer_contact, brg.fo, Q_o, a_o),
+    ):
+        p = contact.pressure(1.0) * np.cbrt(Q)
+        _warn_of_pressure(race, p)
+        if shoulder is not None:
+            _check_shoulder(race, contact, f * brg.Dw, 2 * f * brg.Dw / (2 * f + 1), Q, alpha, shoulder)
+        pressures.append(p)
+    return LoadDistribution(psi, Q_i, Q_o, a_i, a_o, *pressures)
+
+
+def _angles(brg: BallBearing, q: ArrayLike, angle: float) -> tuple[Array, Array]:
+    """Azimuths and angles of the lines between the groove centres (Z,), rad; surfaces taken as smooth."""
+    kernel, z = brg.kernel(), brg.relative(q)
+    psi = brg.angle0 + number("angle", angle) + 2 * math.pi * np.arange(brg.Z) / brg.Z
+    axial = kernel.x0 + z[2] + z[3] * np.cos(psi) + z[4] * np.sin(psi)
+    radial = kernel.y0 + z[0] * np.cos(psi) + z[1] * np.sin(psi)
+    return psi, np.arctan2(axial, radial)
+
+
+def _warn_of_pressure(race: str, p: Array) -> None:
+    over = np.flatnonzero(p > STATIC_PRESSURE)
+    if over.size:
+        j = int(np.argmax(p))
+        others = f", and {over.size - 1} more above it" if over.size > 1 else ""
+        text = f"ball {j + 1}: {p[j] / 1e9:.3g} GPa on the {race} race, over 4.2 GPa (ISO 76){others}"
+        warnings.warn(text, BearingWarning, stacklevel=3)
+
+
+def _check_shoulder(
+    race: str, contact: PointContact, groove: float, surface: float, Q: Array, alpha: Array, shoulder: float
+) -> None:
+    edge = math.acos(max(1 - shoulder / groove, 0.0))
+    half = np.array([contact.semi_axes(float(load))[0] for load in Q])
+    reach = np.where(Q > 0, np.abs(alpha) + np.arcsin(np.minimum(half / surface, 1.0)), 0.0)
+    j = int(np.argmax(reach))
+    where = f"ball {j + 1}: contact angle {math.degrees(abs(alpha[j])):.3g}° on the {race} race"
+    limit = f"the shoulder begins at {math.degrees(edge):.3g}°"
+    if Q[j] > 0 and abs(alpha[j]) >= edge:
+        raise ValueError(f"load beyond the shoulder: {where}, {limit}; less axial load, or a higher shoulder")
+    if reach[j] > edge:
+        text = f"{where}, the ellipse ends at {math.degrees(reach[j]):.3g}°, {limit} and cuts it"
+        warnings.warn(text, BearingWarning, stacklevel=3)
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """Equilibria under one load while the cage turns by one ball spacing."""
+
+    angle: Array
+    """(n,) cage angle, rad."""
+    displacement: Array
+    """(n, 6) of the inner ring, m and rad."""
+    stiffness: Array
+    """(n, 6, 6) tangent at each equilibrium, N/m, N and N m."""
+
+    @property
+    def mean_displacement(self) -> Array:
+        """(6,) mean over the passage, m and rad."""
+        return np.asarray(self.displacement.mean(axis=0))
+
+    @property
+    def mean_stiffness(self) -> Array:
+        """(6, 6) mean over the passage, N/m, N and N m."""
+        return np.asarray(self.stiffness.mean(axis=0))
+
+
+def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Passage:
+    """Equilibria under a load (6,), N and N m, at n cage angles over one ball spacing.
+
+    The mean of equally spaced values of a periodic function: it converges fast unless balls come and go.
+
+    Raises
+    ------
+    ValueError
+        If n is not a positive whole number, on a wrong load, or for a bearing with waviness, defects or
+        unequal balls, which does not repeat after a ball spacing.
+    ArithmeticError
+        If no equilibrium is found.
+    """
+    require(isinstance(n, int) and n >= 1, "n", n, "must be a whole number of positions, one or more")
+    brg = bearing.bearing if isinstance(bearing, Running) else bearing
+    smooth = not (brg.waviness or brg.defects or brg.oversize)
+    require(smooth, "bearing", brg, "must have neither waviness, defects nor unequal balls")
+    angle = 2 * math.pi / brg.Z * np.arange(n) / n
+    q = np.array([bearing.displacement(load, float(a)) for a in angle])
+    K = np.array([bearing.stiffness(place, float(a)) for place, a in zip(q, angle, strict=True)])
+    return Passage(angle, q, K)
+
+
+def without_spin(stiffness: ArrayLike) -> Array:
+    """(…, 5, 5) over (x, y, z, θx, θy) of a stiffness (…, 6, 6): a bearing holds no rotation about its axis.
+
+    Raises ValueError if the last two axes are not 6 long.
+    """
+    K = np.asarray(stiffness, dtype=np.float64)
+    require(K.shape[-2:] == (6, 6), "stiffness", K.shape, "the last two axes must be 6 long")
+    return K[..., :5, :5]
