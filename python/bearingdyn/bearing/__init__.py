@@ -11,6 +11,8 @@ from bearingdyn.bearing.hertz import (
 )
 from bearingdyn.bearing.kernel import BearingKernel, ConstantDamping, Damping, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.mounting import Mounting, Seat
+from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.quasistatic import (
     BearingWarning,
     LoadDistribution,
@@ -35,10 +37,13 @@ __all__ = [
     "LoadDamping",
     "LoadDistribution",
     "Lubricant",
+    "Mounting",
+    "Pair",
     "Passage",
     "Pit",
     "PointContact",
     "Running",
+    "Seat",
     "TabulatedDamping",
     "Walther",
     "Waviness",

@@ -312,6 +312,12 @@ class BallBearing:
         """Contact load (Z,) of each ball at rest, N, balls in the order of their azimuth."""
         return self._evaluate(q, angle, np.zeros(6), 0.0)[3]
 
+    def energy(self, q: ArrayLike, angle: float = 0.0) -> float:
+        """Energy stored in the contacts at rest, Σ (2/5)κ(δ + film)^{5/2}, J."""
+        # in terms of the load F = κ s^{3/2}
+        loads = self.ball_loads(q, angle)
+        return float(0.4 * (loads * (loads / self.kappa) ** (2 / 3)).sum())
+
     def displacement(self, load: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
         """Static equilibrium q (6,) of the inner ring under a load (6,), θz held, outer ring fixed.
 

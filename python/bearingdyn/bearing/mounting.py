@@ -1,0 +1,156 @@
+"""What press fits and temperatures leave of a bearing's clearance.
+
+Rings, shaft and housing as thick cylinders in plane stress (Lamé), the rings smooth at the bottom of their
+grooves: T. A. Harris, Rolling Bearing Analysis, chapter on interference fits and clearance.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+
+from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.checks import nonnegative, number, positive, require
+from bearingdyn.material import STEEL, Elastic
+
+_STEEL_EXPANSION = 11.5e-6
+"""Thermal expansion of bearing steel, 1/K; handbooks give 11 to 12.5e-6."""
+
+
+@dataclass(frozen=True)
+class Seat:
+    """The shaft under the inner ring, or the housing around the outer ring.
+
+    Parameters
+    ----------
+    interference
+        Diametral, before mounting, m; zero or positive.
+    other
+        Diameter of the seat's other surface, m: bore of a hollow shaft (0: solid), outside of a housing (inf:
+        very thick).
+    material
+        Elastic material of shaft or housing.
+    expansion
+        Its thermal expansion, 1/K.
+    warming
+        Its temperature over that of assembly, K.
+
+    Raises ValueError naming the field, its value and what would be right.
+    """
+
+    interference: float = 0.0
+    other: float | None = None
+    material: Elastic = STEEL
+    expansion: float = _STEEL_EXPANSION
+    warming: float = 0.0
+
+    def __post_init__(self) -> None:
+        nonnegative("interference", self.interference, "diametral, in m, must be zero or positive")
+        require(isinstance(self.material, Elastic), "material", self.material, "give a material.Elastic")
+        nonnegative("expansion", self.expansion, "the thermal expansion in 1/K must be zero or positive")
+        number("warming", self.warming, "must be a finite temperature difference in K")
+        if self.other is not None:
+            require(self.other >= 0, "other", self.other, "a diameter in m must be zero or positive")
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """A bearing in its place: seats of both rings, and temperatures.
+
+    Parameters
+    ----------
+    bore, outside
+        Of the bearing, m.
+    shaft, housing
+        Seats; by default without interference.
+    inner, outer, balls
+        Temperatures of rings and balls over that of assembly, K.
+    expansion, ball_expansion
+        Thermal expansion of rings and of balls, 1/K (silicon nitride: about 3e-6).
+
+    Raises
+    ------
+    ValueError
+        Naming the field, its value and what would be right.
+    """
+
+    bore: float
+    outside: float
+    shaft: Seat = Seat()
+    housing: Seat = Seat()
+    inner: float = 0.0
+    outer: float = 0.0
+    balls: float = 0.0
+    expansion: float = _STEEL_EXPANSION
+    ball_expansion: float = _STEEL_EXPANSION
+
+    def __post_init__(self) -> None:
+        positive("bore", self.bore)
+        require(
+            positive("outside", self.outside) > self.bore, "outside", self.outside, "must exceed the bore"
+        )
+        for name in ("inner", "outer", "balls"):
+            number(name, getattr(self, name), "must be a finite temperature difference in K")
+        nonnegative("expansion", self.expansion)
+        nonnegative("ball_expansion", self.ball_expansion)
+        hollow = 0.0 if self.shaft.other is None else self.shaft.other
+        require(hollow < self.bore, "shaft.other", hollow, f"must be less than the bore of {self.bore!r} m")
+        around = math.inf if self.housing.other is None else self.housing.other
+        wide = f"must exceed the bearing's outside diameter of {self.outside!r} m"
+        require(around > self.outside, "housing.other", around, wide)
+
+    def clearance_change(self, bearing: BallBearing) -> float:
+        """Change of the diametral clearance, m; negative where fits and temperatures take from it.
+
+        Raises ValueError if the races do not lie between bore and outside diameter.
+        """
+        race_i, race_o = bearing.Dpw - bearing.Dw, bearing.Dpw + bearing.Dw
+        inside = self.bore < race_i and race_o < self.outside
+        remedy = f"the races, {race_i:.6g} and {race_o:.6g} m, must lie between it and the other diameter"
+        require(inside, "bore, outside", (self.bore, self.outside), remedy)
+        shaft, housing, ring = self.shaft, self.housing, bearing.material
+        warm_i, warm_o = self.expansion * self.inner, self.expansion * self.outer
+        fit_i = shaft.interference + self.bore * (shaft.expansion * shaft.warming - warm_i)
+        fit_o = housing.interference + self.outside * (warm_o - housing.expansion * housing.warming)
+        grown = _race_strain(self.bore, race_i, shaft.other or 0.0, ring, shaft.material) * max(fit_i, 0.0)
+        far = math.inf if housing.other is None else housing.other
+        shrunk = _race_strain(self.outside, race_o, far, ring, housing.material) * max(fit_o, 0.0)
+        thermal = warm_o * race_o - warm_i * race_i - 2 * self.ball_expansion * self.balls * bearing.Dw
+        return thermal - grown - shrunk
+
+    def mounted(self, bearing: BallBearing) -> BallBearing:
+        """The bearing with the clearance, or the free contact angle, that is left.
+
+        Raises
+        ------
+        ValueError
+            If less than no clearance is left: the model has no rings pressed together by their balls.
+        """
+        left = bearing.geometry.Pd + self.clearance_change(bearing)
+        why = "fits and temperatures leave less than none; choose looser fits or a larger clearance"
+        require(left >= 0, "clearance", left, why)
+        if bearing.clearance is not None:
+            return dataclasses.replace(bearing, clearance=left)
+        A = bearing.geometry.A
+        require(left < 2 * A, "clearance", left, f"must stay below 2A = {2 * A:.6g} m")
+        return dataclasses.replace(bearing, contact_angle=2 * math.asin(math.sqrt(left / (4 * A))))
+
+
+def _race_strain(seat: float, race: float, other: float, ring: Elastic, mate: Elastic) -> float:
+    """Change of the race's diameter over the interference at the seat, by Lamé; both ≥ 0.
+
+    The ring lies between seat and race, its mate between seat and `other` (0 or inf: full).
+    """
+    ring_ratio = (race / seat) ** 2 if race > seat else (seat / race) ** 2
+    mate_ratio = (
+        0.0 if other in (0.0, math.inf) else (other / seat) ** 2 if other < seat else (seat / other) ** 2
+    )
+    outwards = 1.0 if race > seat else -1.0  # the ring is pressed from inside
+    # hoop and radial strain at the seat under unit pressure, ring and mate
+    of_ring = ((ring_ratio + 1) / (ring_ratio - 1) + outwards * ring.nu) / ring.E
+    of_mate = ((1 + mate_ratio) / (1 - mate_ratio) - outwards * mate.nu) / mate.E
+    pressure = 1 / (seat * (of_ring + of_mate))
+    if race > seat:
+        return 2 * pressure * race / (ring.E * (ring_ratio - 1))
+    return 2 * pressure * race * ring_ratio / (ring.E * (ring_ratio - 1))
