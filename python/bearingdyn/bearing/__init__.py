@@ -10,7 +10,9 @@ from bearingdyn.bearing.hertz import (
     resultant_deflection_coefficient,
 )
 from bearingdyn.bearing.kernel import BearingKernel, ConstantDamping, Damping, LoadDamping, TabulatedDamping
+from bearingdyn.bearing.lines import fault_lines, waviness_lines
 from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.lubrication import Lubrication, lubricate
 from bearingdyn.bearing.mounting import Mounting, Seat
 from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.quasistatic import (
@@ -22,6 +24,7 @@ from bearingdyn.bearing.quasistatic import (
     without_spin,
 )
 from bearingdyn.bearing.running import Balls, Running
+from bearingdyn.bearing.surface import WavinessSpectrum, dent, diameter_scatter, spall
 
 __all__ = [
     "BallBearing",
@@ -37,6 +40,7 @@ __all__ = [
     "LoadDamping",
     "LoadDistribution",
     "Lubricant",
+    "Lubrication",
     "Mounting",
     "Pair",
     "Passage",
@@ -47,12 +51,19 @@ __all__ = [
     "TabulatedDamping",
     "Walther",
     "Waviness",
+    "WavinessSpectrum",
     "contact_modulus",
+    "dent",
+    "diameter_scatter",
+    "fault_lines",
     "hamrock_dowson",
     "load_distribution",
+    "lubricate",
     "nijenbanning_venner_moes",
     "passage",
     "resultant_damping",
     "resultant_deflection_coefficient",
+    "spall",
+    "waviness_lines",
     "without_spin",
 ]

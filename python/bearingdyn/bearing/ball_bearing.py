@@ -206,9 +206,15 @@ class BallBearing:
         Q = min(c.load_at_pressure(STATIC_PRESSURE) for c in (self.inner_contact, self.outer_contact))
         return self.Z * Q * math.cos(self.contact_angle or 0.0) / 5
 
-    def frequencies(self, speed: float) -> Frequencies:
-        """Cage, ball-pass and ball-spin frequencies, Hz, by geometry, at the inner-ring speed in rad/s."""
-        return self.geometry.frequencies(speed)
+    def frequencies(self, speed: float, contact_angle: float | None = None) -> Frequencies:
+        """Cage, ball-pass and ball-spin frequencies, Hz, at the inner-ring speed in rad/s, in pure rolling.
+
+        contact_angle: of the loaded state, rad; None: the nominal one, 0 if a clearance is given.
+        """
+        if contact_angle is None:
+            return self.geometry.frequencies(speed)
+        loaded = abs(number("contact_angle", contact_angle, "must be a finite angle in rad"))
+        return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(speed)
 
     def kernel(self) -> BearingKernel:
         """The bearing as the contact kernel takes it: five raceway coefficients, see `coefficients`."""

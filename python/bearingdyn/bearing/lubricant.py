@@ -17,6 +17,9 @@ _ROELANDS_PRESSURE = 1.96e8  # Pa
 _ROELANDS_LOG_VISCOSITY = 9.67  # −ln(6.31e-5 Pa s)
 _ZERO_CELSIUS = 273.15
 
+# lg lg(ν + 0.7) at 2 and at 2e7 mm²/s, between which the constant 0.7 holds (ASTM D341)
+_LEAST, _MOST = (math.log10(math.log10(nu + 0.7)) for nu in (2.0 * (1 - 1e-12), 2e7 * (1 + 1e-12)))
+
 # Kinematic viscosity at 100 °C, mm²/s, common for mineral hydraulic oils of viscosity index near 100.
 # ISO 3448 fixes the 40 °C value only. VG 32 is theory's; the rest is customary and unverified.
 _VG_AT_100 = {10: 2.6, 15: 3.4, 22: 4.3, 32: 5.4, 46: 6.7, 68: 8.6, 100: 11.1, 150: 14.8, 220: 19.0}
@@ -48,12 +51,12 @@ class Walther:
     def from_two_points(cls, T1: float, nu1: float, T2: float, nu2: float) -> Walther:
         """Through the kinematic viscosities nu1, nu2 in m²/s at the temperatures T1 < T2 in °C.
 
-        Raises ValueError unless T1 < T2 and nu1 > nu2 > 0.3 mm²/s.
+        Raises ValueError unless T1 < T2 and nu1 > nu2 ≥ 2 mm²/s, below which the law does not hold.
         """
         first, second = _kelvin("T1", T1), _kelvin("T2", T2)
         require(first < second, "T1, T2", (T1, T2), "temperatures in °C must increase")
         x, y = positive("nu1", nu1) * 1e6, positive("nu2", nu2) * 1e6
-        require(y > 0.3, "nu2", nu2, "must exceed 0.3e-6 m²/s (give m²/s: 32 mm²/s is 32e-6)")
+        require(y >= 2, "nu2", nu2, "must be 2e-6 m²/s or more (give m²/s: 32 mm²/s is 32e-6)")
         require(x > y, "nu1, nu2", (nu1, nu2), "an oil thins with temperature: nu1 must exceed nu2")
         a, b = math.log10(math.log10(x + 0.7)), math.log10(math.log10(y + 0.7))
         B = (a - b) / (math.log10(second) - math.log10(first))
@@ -75,8 +78,20 @@ class Walther:
         return cls.from_two_points(40.0, positive("grade", grade) * 1e-6, 100.0, nu_100)
 
     def viscosity(self, T: float) -> float:
-        """Kinematic viscosity, m²/s, at T in °C."""
-        return float((10 ** (10 ** (self.A - self.B * math.log10(_kelvin("T", T)))) - 0.7) * 1e-6)
+        """Kinematic viscosity, m²/s, at T in °C.
+
+        Raises ValueError where it would lie outside 2 to 2e7 mm²/s, in which the law holds (ASTM D341).
+        """
+        kelvin = _kelvin("T", T)
+        double_log = self.A - self.B * math.log10(kelvin)
+        # lg(20 000 000.7) at one end, lg(2.7) at the other
+        if not _LEAST <= double_log <= _MOST:
+            limits = ", ".join(
+                f"{10 ** ((self.A - y) / self.B) - _ZERO_CELSIUS:.0f}" for y in (_MOST, _LEAST)
+            )
+            remedy = f"outside the viscosity law of this oil (2 to 2e7 mm²/s), which holds in {limits} °C"
+            require(False, "T", T, remedy)
+        return float((10 ** (10**double_log) - 0.7) * 1e-6)
 
 
 @dataclass(frozen=True)
@@ -184,6 +199,25 @@ def nijenbanning_venner_moes(contact: PointContact, F: float, us: float, eta0: f
     M = positive("F", F, "the contact load in N must be positive") / (E * Rx**2) * speed**-0.75
     L = positive("alpha", alpha) * E * speed**0.25
     return dimensionless_film(M, L, Rx / contact.Ry) * Rx * math.sqrt(speed)
+
+
+def wijnant_damping(contact: PointContact, F: float, us: float, eta0: float, alpha: float) -> float:
+    """Damping of one lubricated contact, N s/m, after Y. H. Wijnant (1998). UNVERIFIED.
+
+    c = C (F/δ)(2a/us), C = r M^{−s}, r = .98 − L/60, s = .83 − .008L; δ the dry approach, a the half-width in
+    rolling direction. The form was written from memory and not read again in its source; that its load number
+    is the M of Nijenbanning, Venner and Moes is an assumption of this package. Values of 4 to 15 N s/m are
+    quoted for it. Arguments as `nijenbanning_venner_moes`.
+
+    Raises ValueError if a value is not positive, Rx > Ry, or L ≥ 58.8, where r vanishes.
+    """
+    E, Rx = _film_scales(contact)
+    speed = positive("eta0", eta0) * positive("us", us, "u1 + u2 in m/s must be positive") / (E * Rx)
+    M = positive("F", F, "the contact load in N must be positive") / (E * Rx**2) * speed**-0.75
+    L = positive("alpha", alpha) * E * speed**0.25
+    require(L < 58.8, "alpha", alpha, f"L = {L:.3g} is beyond the fit of the damping")
+    C = (0.98 - L / 60) * M ** -(0.83 - 0.008 * L)
+    return float(C * F / contact.approach(F) * 2 * contact.semi_axes(F)[1] / us)
 
 
 def dimensionless_film(M: float, L: float, D: float) -> float:

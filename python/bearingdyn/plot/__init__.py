@@ -5,17 +5,22 @@ holds inside a call and leaves matplotlib's own settings alone. Where a figure h
 are halved and the upper ones returned; ``ax.figure`` is the whole.
 """
 
+from bearingdyn.plot.bearing import bearing_spectrum, bearing_stiffness, film, load_distribution
 from bearingdyn.plot.material import isotherms, layer_stiffness, master, shifts
 from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum
 from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
 
 __all__ = [
     "ball_loads",
+    "bearing_spectrum",
+    "bearing_stiffness",
     "causality",
     "cole_cole",
+    "film",
     "frequency_response",
     "isotherms",
     "layer_stiffness",
+    "load_distribution",
     "master",
     "orbit",
     "shifts",

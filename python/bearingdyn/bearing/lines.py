@@ -1,0 +1,92 @@
+"""Frequencies at which a bearing shows in a spectrum, by name."""
+
+from __future__ import annotations
+
+import math
+
+from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.checks import number, require
+
+
+def fault_lines(
+    bearing: BallBearing, speed: float, *, harmonics: int = 1, contact_angle: float | None = None
+) -> dict[str, float]:
+    """Name -> frequency, Hz, of localised defects and the cage: shaft, FTF, BPFO, BPFI, 2 BSF and multiples.
+
+    A defect of a ball meets a race at twice the spin of the ball.
+
+    Parameters
+    ----------
+    bearing, speed
+        Inner ring at `speed`, rad/s, outer ring at rest.
+    harmonics
+        How many multiples of the ball passes and of 2 BSF.
+    contact_angle
+        Of the loaded state, rad; None: nominal.
+
+    Raises ValueError if harmonics is no positive whole number or speed is not finite.
+    """
+    _whole("harmonics", harmonics)
+    f = bearing.frequencies(number("speed", speed), contact_angle)
+    lines = {"shaft": abs(speed) / (2 * math.pi), "FTF": f.FTF}
+    for k in range(1, harmonics + 1):
+        lines |= {
+            f"{k} BPFO" if k > 1 else "BPFO": k * f.BPFO,
+            f"{k} BPFI" if k > 1 else "BPFI": k * f.BPFI,
+            f"{2 * k} BSF": 2 * k * f.BSF,
+        }
+    return lines
+
+
+def waviness_lines(
+    bearing: BallBearing,
+    speed: float,
+    *,
+    multiples: int = 1,
+    ball_orders: tuple[int, ...] = (2,),
+    contact_angle: float | None = None,
+) -> dict[str, float]:
+    """Name -> frequency, Hz, at which waves of order n vibrate a uniformly loaded, elastically held ring.
+
+    Inner race: n = qZ axial at qZ(ω_i − ω_c), n = qZ ± 1 radial at qZ(ω_i − ω_c) ± ω_i. Outer race: n = qZ
+    axial and n = qZ ± 1 radial at qZω_c. Ball, even n: axial nω_b, radial nω_b ± ω_c (J. A. Wensing 1998;
+    reference page §2).
+
+    Parameters
+    ----------
+    bearing, speed
+        Inner ring at `speed`, rad/s, outer ring at rest.
+    multiples
+        q = 1 … multiples.
+    ball_orders
+        Even orders of the balls' waves.
+    contact_angle
+        Of the loaded state, rad; None: nominal.
+
+    Raises ValueError for an odd order of a ball, or a value that is no positive whole number.
+    """
+    _whole("multiples", multiples)
+    for n in ball_orders:
+        even = isinstance(n, int) and n > 0 and n % 2 == 0
+        require(even, "ball_orders", ball_orders, "must be even: odd orders cancel across a ball")
+    f = bearing.frequencies(number("speed", speed), contact_angle)
+    turn, Z = abs(speed) / (2 * math.pi), bearing.Z
+    lines: dict[str, float] = {}
+    for q in range(1, multiples + 1):
+        lines |= {
+            f"inner n={q * Z} axial": q * f.BPFI,
+            f"inner n={q * Z - 1} radial": q * f.BPFI - turn,
+            f"inner n={q * Z + 1} radial": q * f.BPFI + turn,
+            f"outer n={q * Z}, {q * Z}±1": q * f.BPFO,
+        }
+    for n in ball_orders:
+        lines |= {
+            f"ball n={n} axial": n * f.BSF,
+            f"ball n={n} radial −": n * f.BSF - f.FTF,
+            f"ball n={n} radial +": n * f.BSF + f.FTF,
+        }
+    return lines
+
+
+def _whole(field: str, value: object) -> None:
+    require(isinstance(value, int) and value >= 1, field, value, "must be a whole number, one or more")

@@ -1,0 +1,131 @@
+"""Surfaces drawn at random but repeatably, and named kinds of damage, as the objects of `excitation`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from bearingdyn.bearing.checks import nonnegative, number, positive, require
+from bearingdyn.bearing.excitation import BODIES, Body, Pit, Waviness
+
+
+@dataclass(frozen=True)
+class WavinessSpectrum:
+    """Amplitudes of the waves of a race or a ball over their order n: A_n = amplitude (order/n)^exponent.
+
+    Parameters
+    ----------
+    amplitude
+        At the reference order, m.
+    exponent
+        How fast waves shrink with their order; 1 to 2 is said of measured races, which is unverified.
+    order
+        Reference order, ≥ 1.
+    scatter
+        "none": each wave has the amplitude of the law; "rayleigh": it is Rayleigh-distributed with the law as
+        its root mean square, as that of a Gaussian surface is.
+
+    Raises ValueError naming the field, its value and what would be right.
+    """
+
+    amplitude: float
+    exponent: float = 1.0
+    order: int = 1
+    scatter: Literal["none", "rayleigh"] = "none"
+
+    def __post_init__(self) -> None:
+        nonnegative("spectrum.amplitude", self.amplitude, "in m, must be zero or positive, and finite")
+        number("spectrum.exponent", self.exponent)
+        whole = isinstance(self.order, int) and self.order >= 1
+        require(whole, "spectrum.order", self.order, "must be a whole number of waves, one or more")
+        known = self.scatter in ("none", "rayleigh")
+        require(known, "spectrum.scatter", self.scatter, 'must be "none" or "rayleigh"')
+
+    def at(self, order: int) -> float:
+        """Amplitude by the law, m."""
+        return float(self.amplitude * (self.order / order) ** self.exponent)
+
+    def draw(
+        self,
+        body: Body,
+        orders: Iterable[int],
+        seed: int,
+        *,
+        direction: Literal["radial", "axial"] = "radial",
+        Z: int | None = None,
+    ) -> tuple[Waviness, ...]:
+        """Waves of the given orders with even phases; the same seed gives the same surface.
+
+        The wave of an order does not depend on which other orders are drawn.
+
+        Parameters
+        ----------
+        body
+            "inner", "outer" or "ball".
+        orders
+            Whole numbers ≥ 1.
+        seed
+            ≥ 0. Surfaces that are to differ need seeds that do.
+        direction
+            Of a race's waves.
+        Z
+            Number of balls, for body "ball": each ball gets a surface of its own.
+
+        Raises ValueError naming the field, its value and what would be right.
+        """
+        require(body in BODIES, "body", body, f"must be one of {BODIES}")
+        require(isinstance(seed, int) and seed >= 0, "seed", seed, "must be a whole number, zero or more")
+        on_ball = body == "ball"
+        given = Z is not None and Z >= 1
+        require(given == on_ball, "Z", Z, "give the number of balls with body 'ball', and only then")
+        waves = []
+        for order in orders:
+            whole = isinstance(order, int) and order >= 1
+            require(whole, "orders", order, "must be whole numbers of waves, one or more")
+            for ball in range(1, (Z or 1) + 1):
+                random = np.random.default_rng([seed, order, ball])
+                phase = float(random.uniform(0, 2 * math.pi))
+                # Rayleigh of unit root mean square
+                size = math.sqrt(random.standard_exponential()) if self.scatter == "rayleigh" else 1.0
+                which = ball if on_ball else None
+                waves.append(Waviness(body, order, self.at(order) * size, phase, direction, which))
+        return tuple(waves)
+
+
+def diameter_scatter(Z: int, deviation: float, seed: int) -> tuple[float, ...]:
+    """Deviations of Z ball diameters, m, normal with the standard deviation given: `oversize` of BallBearing.
+
+    Raises ValueError for a Z or seed that is no whole number, or a negative deviation.
+    """
+    require(isinstance(Z, int) and Z >= 1, "Z", Z, "must be a whole number of balls")
+    require(isinstance(seed, int) and seed >= 0, "seed", seed, "must be a whole number, zero or more")
+    sigma = nonnegative("deviation", deviation, "in m, must be zero or positive, and finite")
+    return tuple(float(x) for x in sigma * np.random.default_rng(seed).standard_normal(Z))
+
+
+def spall(body: Body, angle: float, length: float, depth: float, *, ball: int = 1) -> Pit:
+    """A flaked patch with a flat bottom, `length` along the rolling direction and `depth` deep, m.
+
+    A ball drops to the bottom if the spall is long enough, 2√(Dw depth) and more; arguments as `Pit`.
+    """
+    return Pit(body, angle, length, depth, ball)
+
+
+def dent(body: Body, angle: float, width: float, particle: float, *, ball: int = 1) -> Pit:
+    """The dent of a hard round particle of the diameter `particle`, `width` across, m; arguments as `Pit`.
+
+    As deep as the cap of that sphere, (particle − √(particle² − width²))/2. The rim around it is left out.
+
+    Raises ValueError if the dent is wider than the particle.
+    """
+    positive("width", width, "in m, must be positive and finite")
+    require(
+        width <= positive("particle", particle), "width", width, f"exceeds the particle of {particle!r} m"
+    )
+    # without the difference of nearly equal numbers
+    depth = width**2 / (2 * (particle + math.sqrt(particle**2 - width**2)))
+    return Pit(body, angle, width, depth, ball)
