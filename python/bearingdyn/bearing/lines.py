@@ -50,7 +50,7 @@ def waviness_lines(
 
     Inner race: n = qZ axial at qZ(ω_i − ω_c), n = qZ ± 1 radial at qZ(ω_i − ω_c) ± ω_i. Outer race: n = qZ
     axial and n = qZ ± 1 radial at qZω_c. Ball, even n: axial nω_b, radial nω_b ± ω_c (J. A. Wensing 1998;
-    reference page §2).
+    reference page §2). Names are body, order, direction; "outer 9(±1)" is 9 axial and 8, 10 radial.
 
     Parameters
     ----------
@@ -74,16 +74,16 @@ def waviness_lines(
     lines: dict[str, float] = {}
     for q in range(1, multiples + 1):
         lines |= {
-            f"inner n={q * Z} axial": q * f.BPFI,
-            f"inner n={q * Z - 1} radial": q * f.BPFI - turn,
-            f"inner n={q * Z + 1} radial": q * f.BPFI + turn,
-            f"outer n={q * Z}, {q * Z}±1": q * f.BPFO,
+            f"inner {q * Z} ax": q * f.BPFI,
+            f"inner {q * Z - 1} rad": q * f.BPFI - turn,
+            f"inner {q * Z + 1} rad": q * f.BPFI + turn,
+            f"outer {q * Z}(±1)": q * f.BPFO,
         }
     for n in ball_orders:
         lines |= {
-            f"ball n={n} axial": n * f.BSF,
-            f"ball n={n} radial −": n * f.BSF - f.FTF,
-            f"ball n={n} radial +": n * f.BSF + f.FTF,
+            f"ball {n} ax": n * f.BSF,
+            f"ball {n} rad −": n * f.BSF - f.FTF,
+            f"ball {n} rad +": n * f.BSF + f.FTF,
         }
     return lines
 

@@ -37,7 +37,7 @@ def load_distribution(distributions: Mapping[str, LoadDistribution], ax: Axes | 
             # out and back at each ball: a line without area, so that several states stay readable
             psi = np.repeat(d.azimuth, 3)
             spokes = np.column_stack([0 * d.load_inner, d.load_inner, 0 * d.load_inner]).ravel()
-            ax.plot(psi, spokes, color=colour(k), linewidth=1.6)
+            ax.plot(psi, spokes, color=colour(k), linewidth=max(4.0 - 1.6 * k, 0.8))
             around = np.append(d.azimuth, d.azimuth[0] + 2 * np.pi)
             ring = np.append(d.load_inner, d.load_inner[0])
             name = f"{label}: {d.loaded} of {d.azimuth.size} loaded"
@@ -172,18 +172,17 @@ def bearing_spectrum(
 ) -> Axes:
     """Spectra as by `spectrum`, the lines of the bearing's faults named, and of its waviness if asked for.
 
+    A wave at the frequency of a fault goes by the name of the fault.
+
     speed: of the inner ring, rad/s. harmonics: multiples of the ball passes. contact_angle: of the loaded
     state, rad. Raises ValueError as `spectrum`, `fault_lines` and `waviness_lines`.
     """
     lines = fault_lines(bearing, speed, harmonics=harmonics, contact_angle=contact_angle)
     if waviness:
-        for name, f in lines_of_waviness(
-            bearing, speed, multiples=harmonics, contact_angle=contact_angle
-        ).items():
-            # one name for one place
-            same = [k for k, known in lines.items() if np.isclose(known, f, rtol=1e-9)]
-            if same:
-                lines[f"{same[0]}, {name}"] = lines.pop(same[0])
-            else:
-                lines[name] = f
+        waves = lines_of_waviness(bearing, speed, multiples=harmonics, contact_angle=contact_angle)
+        known = list(lines.values())
+        lines |= {name: f for name, f in waves.items() if not np.isclose(known, f, rtol=1e-9).any()}
+        if ax is None:
+            with style():
+                ax = new_axes(width=6.8, height=4.8)  # room for the names
     return spectrum(datasets, lines, ax, f_max=f_max)
