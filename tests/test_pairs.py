@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from bearingdyn.bearing import BallBearing, Pair
+from verified.closed_forms import axial, closed_forms
 
 pytest.importorskip("bearingdyn.core")
 
@@ -20,30 +21,6 @@ WIDTH = 15e-3
 
 def load(**components: float) -> np.ndarray:
     return np.array([components.get(name, 0.0) for name in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")])
-
-
-def axial(brg: BallBearing, s: float) -> float:
-    """Axial force of one row, s beyond touching: Z κ (Λ − A)^{3/2} sinα (theory.md §2)."""
-    A = brg.geometry.A
-    X, Y = A * math.sin(brg.geometry.alpha0) + s, A * math.cos(brg.geometry.alpha0)
-    length = math.hypot(X, Y)
-    return brg.Z * brg.kappa * max(length - A, 0.0) ** 1.5 * X / length
-
-
-def closed_forms(brg: BallBearing, s: float) -> dict[str, float]:
-    """Stiffness of one row in pure axial compression (theory.md §2)."""
-    A, Z, R = brg.geometry.A, brg.Z, brg.arm
-    X, Y = A * math.sin(brg.geometry.alpha0) + s, A * math.cos(brg.geometry.alpha0)
-    length = math.hypot(X, Y)
-    delta, sin, cos = length - A, X / length, Y / length
-    Q, Kn = brg.kappa * delta**1.5, 1.5 * brg.kappa * math.sqrt(delta)
-    kzz = Z * (Kn * sin**2 + Q / length * cos**2)
-    return {
-        "xx": Z / 2 * (Kn * cos**2 + Q / length * sin**2),
-        "zz": kzz,
-        "tt": R**2 * kzz / 2,
-        "xt": -Z / 2 * R * (Kn - Q / length) * sin * cos,
-    }
 
 
 @pytest.mark.parametrize("row", [ROW, DEEP])

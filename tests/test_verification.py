@@ -15,6 +15,9 @@ QUICK = [
     "Hertz contact",
     "Bearings of ISO/TS 16281",
     "Bearing 6202 under preload",
+    "Balls with inertia",
+    "Paired bearings",
+    "Press fits",
     "Rigid rotor",
 ]
 

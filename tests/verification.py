@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import contacts, materials, motion, structures
+from verified import bearings, contacts, materials, motion, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -23,6 +23,9 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Bearing 209": contacts.harris_209,
     "Bearing 6202 under preload": contacts.preloaded_6202,
     "Catalogue": contacts.catalogue,
+    "Balls with inertia": bearings.jones_harris,
+    "Paired bearings": bearings.pairs,
+    "Press fits": bearings.fits,
     "Varying compliance": motion.varying_compliance,
     "Bonded rings": structures.bonded_rings,
     "Damping-layer sample": structures.sample,
