@@ -120,6 +120,18 @@ class TestJonesAndHarris:
         np.testing.assert_allclose(b.Q_o[away], b.centrifugal[away], rtol=1e-9)
         np.testing.assert_allclose(b.alpha_o[away], 0, atol=1e-9)
 
+    @pytest.mark.parametrize("speed", [100 * RPM, 3000 * RPM, 10_000 * RPM])
+    def test_radial_load_alone_on_an_angular_contact_bearing(self, speed):
+        # it gives way along z until its contacts are radial; balls opposite are far from the inner race
+        running = Running(B218, speed)
+        f = load(Fx=20e3)
+        q = running.displacement(f)
+        np.testing.assert_allclose(running.force(q), f, atol=1e-5)
+        b = running.balls(q)
+        held = b.Q_i > 0
+        assert 1 < held.sum() < 9
+        np.testing.assert_allclose(b.alpha_i[held], 0, atol=1e-6)
+
     def test_ceramic_balls_are_thrown_less(self):
         ceramic = dataclasses.replace(B218, ball_material=Elastic(310e9, 0.26, 3200.0))
         spread = []

@@ -13,6 +13,7 @@ symmetric at speed.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
@@ -29,6 +30,8 @@ _STEP = 1e-30
 _ITERATIONS = 80
 # of the loads of a ball; beside it the round-off of distances, which a lightly loaded ball feels more
 _BALANCED = 1e-11
+# cosines of contact angles (80°, 70°) between which a ball is taken to have left the inner race
+_OPEN = (0.17, 0.34)
 _ROUNDING = 8 * float(np.finfo(float).eps)
 
 
@@ -148,9 +151,10 @@ class Running:
                 return np.array([z[0], z[1], z[2], z[4] / R, -z[3] / R, 0.0])
             step = np.linalg.lstsq(K, target - g, rcond=1e-12)[0]
             for _ in range(30):
-                g_new, K_new = self._response(z + step, angle)
-                if float(np.linalg.norm(target - g_new)) < residual:
-                    break
+                with suppress(ArithmeticError):  # too far for the balls: halve
+                    g_new, K_new = self._response(z + step, angle)
+                    if float(np.linalg.norm(target - g_new)) < residual:
+                        break
                 step = step / 2
             else:
                 break
@@ -203,7 +207,11 @@ class Running:
     def _motion(self, n_o: Any, n_i: Any) -> _Motion:
         """Orbit, centrifugal force and gyroscopic moment of a ball rolling on both races (Harris)."""
         brg, ratio = self.bearing, self.bearing.Dw / self.bearing.Dpw
-        (s_o, c_o), (s_i, c_i) = n_o, n_i
+        # a ball far from the inner race has no angle there: it runs on as one with equal angles would
+        part = (n_i[1] - _OPEN[0]) / (_OPEN[1] - _OPEN[0])
+        part = np.where(part.real <= 0, 0.0, np.where(part.real >= 1, 1.0, part * part * (3 - 2 * part)))
+        mixed = n_o + part * (n_i - n_o)
+        (s_o, c_o), (s_i, c_i) = n_o, mixed / _length(mixed)
         tan = s_o / (c_o + ratio) if self.control == "outer" else s_i / (c_i - ratio)
         outer = (c_o + tan * s_o) / (1 + ratio * c_o)
         inner = (c_i + tan * s_i) / (1 - ratio * c_i)
