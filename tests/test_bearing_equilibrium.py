@@ -9,8 +9,11 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.bearing.catalogue import bearing
+from bearingdyn.parts import RigidBody
+from bearingdyn.system import assemble
 
 pytest.importorskip("bearingdyn.core")
 
@@ -76,3 +79,33 @@ class TestEquilibrium:
         work, _ = quad(lambda x: brg.force([x, 0, 0, 0, 0, 0])[0], 0, d, epsrel=1e-10)
         # groove-centre distances change the lever of no ball at α = 0: exact but for the quadrature
         assert work == pytest.approx(0.4 * 1000.0 * d, rel=1e-8)
+
+
+class TestBetweenTwoRings:
+    """A bearing between two bodies, as an application assembles it."""
+
+    @pytest.fixture
+    def rings(self):
+        app = Application()
+        app.add("inner", RigidBody(1.0, (1e-3,) * 3))
+        app.add("outer", RigidBody(2.0, (2e-3,) * 3))
+        app.bearing(
+            "b", bearing("6305", clearance=0.0, film=1e-6), inner="inner.centre", outer="outer.centre"
+        )
+        for name in ("inner", "outer"):
+            app.ground(f"{name}.centre", stiffness=(1e3,) * 6)  # springs: every motion stays a coordinate
+        return assemble(app)
+
+    def test_action_is_reaction_in_all_six_components(self, rings):
+        brg = bearing("6305", clearance=0.0, film=1e-6)
+        f = brg.force([3e-6, -2e-6, 8e-6, 1e-4, -2e-4, 1e-3], 0.3)
+        # the coefficients' forces g with f = Bᵀ g of the bearing alone
+        g = np.linalg.lstsq(brg.coefficients().T, f, rcond=None)[0]
+        inner, outer = (rings.rows(f"{name}.centre") @ rings.B.T @ g for name in ("inner", "outer"))
+        np.testing.assert_allclose(inner, f, rtol=1e-12, atol=1e-12 * np.abs(f).max())
+        np.testing.assert_allclose(inner + outer, 0, atol=1e-12 * np.abs(f).max())
+
+    def test_rings_moved_together_feel_nothing(self, rings):
+        # both rings are one rigid body about their common reference
+        together = rings.rows("inner.centre").T + rings.rows("outer.centre").T
+        np.testing.assert_array_equal(rings.B @ together, 0)
