@@ -104,7 +104,7 @@ def test_temperature_outside_the_viscosity_law_is_named(T):
 
 
 def test_viscosity_law_holds_up_to_its_ends():
-    # VG 32 reaches 2 mm²/s where lg lg 2.7 = A − B lg T, with theory.md's constants: 186 °C
+    # VG 32 reaches 2 mm²/s where lg lg 2.7 = A − B lg T, with theory.md's constants: 165 °C
     end = 10 ** ((9.53082 - math.log10(math.log10(2.7))) / 3.74658) - 273.15
     # constants of six digits, times ln 10 · 450 K
     assert OIL.kinematic.viscosity(end - 0.01) == pytest.approx(2e-6, rel=1e-3)
