@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from pathlib import Path
 from time import process_time
 
 import numpy as np
@@ -25,21 +24,7 @@ from bearingdyn.material import (
     sample_dma_path,
     suspects,
 )
-
-DATA = Path(__file__).parents[2] / "shared" / "data"
-
-
-def measured(name):
-    """A measured table, or a skip."""
-    path = DATA / name / "dma.csv"
-    if not path.exists():
-        pytest.skip(f"measured data {path} are not here")
-    return read_dma(path)
-
-
-def table(master):
-    """Temperatures, °C, and shifts, decades."""
-    return np.array(list(master.shifts)), np.array(list(master.shifts.values()))
+from measured import DATA, measured, shift_table
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +104,7 @@ def test_glassy_polymer_superposes_through_its_transition(glassy):
     assert master.kk_residual[0] <= 0.045
     assert master.kk_residual[1] <= 0.077
     assert master.smoothness > 0  # the prior was needed
-    assert (np.diff(table(master)[1]) < 0).all()
+    assert (np.diff(shift_table(master)[1]) < 0).all()
     assert seconds < 40.0
 
 
@@ -131,7 +116,7 @@ def test_glassy_shifts_are_the_published_ones_where_those_are_smooth(glassy):
     """
     path = DATA / "glassy_polymer" / "published_shifts.csv"
     nominal, published = np.genfromtxt(path, delimiter=",", skip_header=1).T
-    difference = table(glassy[0])[1] - published
+    difference = shift_table(glassy[0])[1] - published
     smooth = (nominal <= 40) | (nominal >= 65)
     middle = (difference[smooth].max() + difference[smooth].min()) / 2  # they share no reference
     assert np.abs(difference - middle)[smooth].max() <= 0.3
@@ -146,7 +131,7 @@ def test_adhesive_superposes():
     assert process_time() - start < 40.0  # 21 isotherms
     assert master.kk_residual[0] <= 0.030
     assert master.kk_residual[1] <= 0.035
-    assert (np.diff(table(master)[1]) < 0).all()
+    assert (np.diff(shift_table(master)[1]) < 0).all()
 
 
 def test_same_input_same_output_bit_for_bit(sample):
@@ -167,14 +152,16 @@ def test_shifts_by_hand_are_kept_or_refined(sample):
     exact = {T: float(made.log_shift(T)) for T in made.TEMPERATURES}
     held = {T: exact[T] for T in (-20.0, 20.0, 60.0)}
     some = master_curve(sample, shifts=held, refine=False)
-    T, shifts = table(some)
+    T, shifts = shift_table(some)
     for name, value in held.items():
         assert shifts[np.argmin(np.abs(T - name))] == value
     np.testing.assert_allclose(shifts, made.log_shift(T), atol=0.02)  # as the free ones
     every = master_curve(sample, shifts=exact, refine=False)
-    assert table(every)[1].tolist() == list(exact.values())
+    assert shift_table(every)[1].tolist() == list(exact.values())
     wrong = {T: value + 0.3 * (-1) ** k for k, (T, value) in enumerate(exact.items())}
-    np.testing.assert_allclose(table(master_curve(sample, shifts=wrong))[1], made.log_shift(T), atol=0.02)
+    np.testing.assert_allclose(
+        shift_table(master_curve(sample, shifts=wrong))[1], made.log_shift(T), atol=0.02
+    )
     with pytest.raises(ValueError, match=r"shifts: 33.0 °C names no isotherm"):
         master_curve(sample, shifts={33.0: 1.0})
     with pytest.raises(ValueError, match="must be a finite log10"):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,21 +20,7 @@ from bearingdyn.material import (
     read_dma,
     sample_dma_path,
 )
-
-DATA = Path(__file__).parents[2] / "shared" / "data"
-
-
-def measured(name):
-    """A measured table, or a skip."""
-    path = DATA / name / "dma.csv"
-    if not path.exists():
-        pytest.skip(f"measured data {path} are not here")
-    return read_dma(path)
-
-
-def shift_table(master):
-    """Temperatures, °C, and shifts, decades."""
-    return np.array(list(master.shifts)), np.array(list(master.shifts.values()))
+from measured import DATA, measured, shift_table
 
 
 @pytest.fixture(scope="module")
