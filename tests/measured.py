@@ -24,3 +24,10 @@ def measured(name: str) -> DMAData:
 def shift_table(master: MasterCurve) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Temperatures, °C, and shifts, decades."""
     return np.array(list(master.shifts)), np.array(list(master.shifts.values()))
+
+
+def written(folder: Path, text: str, encoding: str = "utf-8") -> Path:
+    """A file with this text in a folder."""
+    path = folder / "table.csv"
+    path.write_bytes(text.encode(encoding))
+    return path

@@ -14,8 +14,6 @@ from bearingdyn.bearing import BallBearing, ConstantDamping, Geometry, LoadDampi
 from bearingdyn.bearing.catalogue import bearing
 from bearingdyn.material import Elastic
 
-pytest.importorskip("bearingdyn.core")
-
 ISO = dict(Z=7, Dw=11.5e-3, Dpw=43.5e-3, fi=0.52, fo=0.53)
 SIX_202 = dict(Z=8, Dw=5.953e-3, Dpw=25e-3, fi=0.52, fo=0.53)
 

@@ -15,8 +15,6 @@ from bearingdyn.bearing.catalogue import bearing
 from bearingdyn.parts import RigidBody
 from bearingdyn.system import assemble
 
-pytest.importorskip("bearingdyn.core")
-
 ISO = dict(Z=7, Dw=11.5e-3, Dpw=43.5e-3, fi=0.52, fo=0.53)
 
 

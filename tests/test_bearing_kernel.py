@@ -138,7 +138,6 @@ def test_damping_power_is_what_the_moving_balls_cost():
 @settings(deadline=None, max_examples=150)
 @given(cases())
 def test_c_equals_its_twin(case):
-    pytest.importorskip("bearingdyn._core")
     from bearingdyn import core
 
     away_from_kinks(*case)
@@ -162,7 +161,6 @@ def test_c_equals_its_twin(case):
 @settings(deadline=None, max_examples=60)
 @given(cases())
 def test_tangent_of_c_is_the_derivative_of_its_force(case):
-    pytest.importorskip("bearingdyn._core")
     from bearingdyn import core
 
     away_from_kinks(*case)

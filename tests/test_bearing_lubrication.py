@@ -12,8 +12,6 @@ from bearingdyn.bearing import BallBearing, Lubricant, Walther, lubricate
 from bearingdyn.bearing.catalogue import bearing
 from bearingdyn.bearing.lubricant import wijnant_damping
 
-pytest.importorskip("bearingdyn.core")
-
 OIL = Lubricant(Walther.iso_vg(32), density=870.0, alpha=2e-8)
 BRG = bearing("6305", clearance=10e-6)
 AXIAL = (0, 0, 300.0, 0, 0, 0)

@@ -20,7 +20,6 @@ from bearingdyn.bearing import (
 )
 from bearingdyn.bearing.catalogue import bearing
 
-pytest.importorskip("bearingdyn.core")
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
 xarray = pytest.importorskip("xarray")

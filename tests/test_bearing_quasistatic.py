@@ -21,8 +21,6 @@ from bearingdyn.bearing import (
 from bearingdyn.bearing.catalogue import bearing
 from bearingdyn.material import Elastic
 
-pytest.importorskip("bearingdyn.core")
-
 METAL = Elastic(207e9, 0.3, 7850.0)
 SIX_202 = BallBearing(8, 5.953e-3, 25e-3, 0.52, 0.53, clearance=10e-6, material=METAL, ball_material=METAL)
 B218 = BallBearing(16, 22.225e-3, 125.26e-3, 0.5232, 0.5232, contact_angle=math.radians(40))

@@ -12,8 +12,6 @@ from bearingdyn.bearing import BallBearing, Running, Waviness
 from bearingdyn.material import Elastic
 from verified.closed_forms import inertia_forces, jones
 
-pytest.importorskip("bearingdyn.core")
-
 RPM = math.pi / 30
 # the 218 of Harris' examples: 40°, sixteen balls of 7/8 inch, osculation .5232
 B218 = BallBearing(16, 22.225e-3, 125.26e-3, 0.5232, 0.5232, contact_angle=math.radians(40))

@@ -10,8 +10,6 @@ import pytest
 
 from bearingdyn.bearing import BallBearing, WavinessSpectrum, dent, diameter_scatter, spall
 
-pytest.importorskip("bearingdyn.core")
-
 BRG = BallBearing(9, 7.94e-3, 39.04e-3, 0.52, 0.53, clearance=0.0, film=2e-6)
 
 

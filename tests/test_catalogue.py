@@ -9,8 +9,6 @@ import pytest
 
 from bearingdyn.bearing.catalogue import CATALOGUE, ESTIMATE, bearing, entry, estimate, from_entry
 
-pytest.importorskip("bearingdyn.core")
-
 SOURCED = [name for name, e in CATALOGUE.items() if e.source != ESTIMATE]
 
 

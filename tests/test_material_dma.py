@@ -10,6 +10,7 @@ import pytest
 
 import make_sample_dma
 from bearingdyn.material import DMAData, group_isotherms, read_dma, sample_dma_path
+from measured import written
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 
@@ -21,13 +22,6 @@ def measured(name):
     if not (DATA / name).exists():
         pytest.skip(f"measured data {DATA / name} are not here")
     return DATA / name
-
-
-def written(tmp_path, text, encoding="utf-8"):
-    """A file with this text."""
-    path = tmp_path / "table.csv"
-    path.write_bytes(text.encode(encoding))
-    return path
 
 
 def table(header, rows=ROWS, separator=",", form=repr):

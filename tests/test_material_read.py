@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from bearingdyn.material import read_dma
+from measured import written
 
 FORMATS = Path(__file__).parents[2] / "shared" / "data" / "formats"
 ROWS = [(1.0, 20.0, 5e6, 1e6), (10.0, 20.0, 6e6, 1.5e6), (1.0, 40.0, 4e6, 0.7e6), (10.0, 40.0, 4.5e6, 9e5)]
@@ -25,13 +26,6 @@ def export(name):
     if not (FORMATS / name).exists():
         pytest.skip(f"{FORMATS / name} is not here")
     return FORMATS / name
-
-
-def written(tmp_path, text, encoding="utf-8"):
-    """A file with this text."""
-    path = tmp_path / "table.csv"
-    path.write_bytes(text.encode(encoding))
-    return path
 
 
 def same_points(dma):

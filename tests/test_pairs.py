@@ -11,8 +11,6 @@ from scipy.optimize import brentq
 from bearingdyn.bearing import BallBearing, Pair
 from verified.closed_forms import axial, closed_forms
 
-pytest.importorskip("bearingdyn.core")
-
 ALPHA = math.radians(25)
 ROW = BallBearing(13, 7.938e-3, 38.5e-3, 0.52, 0.53, contact_angle=ALPHA)
 DEEP = BallBearing(9, 7.94e-3, 39.04e-3, 0.52, 0.53, clearance=10e-6)
