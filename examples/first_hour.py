@@ -1,4 +1,4 @@
-"""Start here: from a DMA table to the response of a rotor, without and with a layer of rubber at each bearing.
+"""Start here: from a DMA table to the response of a rotor, without and with rubber around its bearings.
 
 Put in your own numbers: table, bearing, layer, shaft. SI units; z lies along the shaft, y is vertical. Run it
 as `python examples/first_hour.py`; it writes the table, if there is none yet, and the picture to out/.

@@ -28,8 +28,10 @@ def test_the_first_hour_takes_under_30_lines_of_python() -> None:
 
 
 class RigidRotor:
-    """A rigid cylinder on two springs, each a bearing and a layer in series, in (y, z, θx): no finite elements
-    but those of the layer, which is solved anew at every G*(ω)."""
+    """A rigid cylinder on two springs, each a bearing and a layer in series, in (y, z, θx).
+
+    No finite elements but those of the layer, which is solved anew at every G*(ω).
+    """
 
     def __init__(self, ball: bd.BallBearing, layer: bd.Layer | None) -> None:
         self.layer = layer
@@ -86,7 +88,7 @@ def test_the_rotor_of_the_first_hour_peaks_where_a_rigid_one_on_springs_does(
     plain = RigidRotor(names["ball"], None)
     peaks = f[1:-1][[H[1] > max(H[0], H[2]) for H in triples([plain.receptance(x) for x in f])]]
     assert np.abs(peaks / found["no layer"][1] - 1).min() < 0.04  # (1.2/6)²
-    # far below resonance the compliance, to which the bending and the shear of the shaft between its seats add
+    # far below resonance the compliance, to which bending and shear of the shaft between its seats add
     L, area, inertia = 0.12, np.pi / 4 * 0.05**2, np.pi / 64 * 0.05**4
     shaft = L**3 / (48 * 210e9 * inertia) + L / (4 * 0.886 * 80.8e9 * area)
     low = abs(names["responses"]["no layer"]["response"]).values[0, 0, 0]
