@@ -1,0 +1,96 @@
+"""Which layer for the motor? A design goes in; its isolation, resonance peak and sag come out.
+
+`design` is what a study calls in each of its processes. Run it as `python examples/layer_study.py`; it
+computes a grid of thickness, width and loss factor on all cores, keeps each finished case in out/layer_study,
+marks the designs that no other one beats, and prints them.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+
+import motor
+import numpy as np
+import xarray
+
+import bearingdyn as bd
+from bearingdyn import study
+
+GRID = {"thickness": [0.004, 0.006, 0.008, 0.011], "width": [0.017, 0.0255], "loss_factor": [0.15, 0.3, 0.45]}
+FREQUENCY = np.linspace(10.0, 6000.0, 1000)
+NOISY = (1e3, 5e3)  # Hz, where the motor is too loud
+
+
+@cache
+def rubber() -> bd.Maxwell:
+    """The rubber all designs start from: fitted once in each process."""
+    return motor.rubber()[0]
+
+
+@cache
+def without_layer() -> np.ndarray:
+    """Receptances (f, output) of the motor without layers, m/N."""
+    return receptance(motor.motor(motor.Design("no layer")))
+
+
+def receptance(app: bd.Application) -> np.ndarray:
+    """Receptances (f, output) about the equilibrium of a motor, m/N."""
+    return motor.response(bd.equilibrium(app), FREQUENCY)["response"].values[:, :, 0]
+
+
+def design(case: Mapping[str, float]) -> dict[str, float]:
+    """One layer: thickness and width, m, and loss factor at 1 kHz at equal |G*|.
+
+    Returns isolation: by how much the velocity of the housing from 1 to 5 kHz falls, dB, mean of y and z;
+    peak: the highest receptance of the shaft's end, m/N; sag: how far mid-shaft gives statically under 10 kN,
+    m; strain: the layer's nominal static strain under it.
+    """
+    material = rubber().with_relaxation(case["loss_factor"], motor.ONE_KHZ)
+    variant = motor.Design("layer", case["thickness"], case["width"], material)
+    app = motor.motor(variant)
+    H = receptance(app)
+    band = (FREQUENCY >= NOISY[0]) & (FREQUENCY <= NOISY[1])
+    speed = FREQUENCY[band, None]
+    level, plain = (((speed * np.abs(h[band, 1:3])) ** 2).mean() for h in (H, without_layer()))
+    app.load("shaft.middle", (0, -motor.RADIAL, 0, 0, 0, 0))
+    loaded = bd.equilibrium(app)
+    layer = variant.layer
+    assert layer is not None
+    relative = loaded.displacement("left_ring.centre") - loaded.displacement("left_housing.bore")
+    return {
+        "isolation": float(10 * np.log10(plain / level)),
+        "peak": float(np.abs(H[:, 0]).max()),
+        "sag": float(-loaded.displacement("shaft.middle")[1]),
+        "strain": float(layer.nominal_strain(relative)),
+    }
+
+
+def table(
+    store: Path | None = None, progress: Callable[[int, int], object] | None = None, **axes: list[float]
+) -> xarray.Dataset:
+    """The study over GRID, or other axes, with the variable "front": designs no other one beats."""
+    cases = study.sweep(design, study.grid(**(axes or GRID)), store=store, progress=progress)
+    return study.pareto(study.table(cases), minimise=["sag", "peak"], maximise=["isolation"])
+
+
+def main() -> int:
+    """Run the study; returns the exit code."""
+    from tqdm import tqdm
+
+    with tqdm(desc="designs", leave=False) as bar:
+
+        def advance(done: int, cases: int) -> None:
+            bar.total = cases
+            bar.update(done - bar.n)
+
+        found = table(Path("out", "layer_study"), advance)
+    front = found.isel(case=found["front"].values).sortby("sag")
+    print(front.to_dataframe().drop(columns=["error", "front"]).to_string(float_format=lambda x: f"{x:.4g}"))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
