@@ -327,3 +327,19 @@ def test_the_four_peaks_by_themselves_find_the_discs_and_one_stiffness() -> None
     assert more_error < 2e-3
     assert 0.8 < share < 0.95
     assert share_error < 0.01
+
+
+@needs_data
+def test_the_figure_shows_four_masses_measured_and_predicted(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    path = tmp_path / "new" / "shaker.png"
+    shaker.figure(measured(), path)
+    assert 20e3 < path.stat().st_size < 200e3  # a picture, and small enough for the README
+
+
+def test_without_the_measurement_the_example_says_so(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(shaker, "DATA", tmp_path / "absent")
+    assert shaker.main() == 0
+    assert "skipped" in capsys.readouterr().out
