@@ -60,6 +60,7 @@ asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 
 bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/transient.py --json
+	$(PY) benchmarks/harmonic.py --json
 	$(PY) benchmarks/bearing.py --json
 	$(PY) benchmarks/memory.py --json
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import bearings, contacts, materials, motion, structures
+from verified import bearings, contacts, materials, motion, shaker, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -33,6 +33,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Free shaft and ring": structures.free_bodies,
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
+    "Rings on a shaker": shaker.transmissibility,
 }
 
 
