@@ -21,6 +21,7 @@ from bearingdyn import study
 
 GRID = {"thickness": [0.004, 0.006, 0.008, 0.011], "width": [0.017, 0.0255], "loss_factor": [0.15, 0.3, 0.45]}
 FREQUENCY = np.linspace(10.0, 6000.0, 1000)
+UNITS = {"thickness": "m", "width": "m", "isolation": "dB", "peak": "m/N", "sag": "m"}
 NOISY = (1e3, 5e3)  # Hz, where the motor is too loud
 
 
@@ -69,24 +70,18 @@ def design(case: Mapping[str, float]) -> dict[str, float]:
 
 
 def table(
-    store: Path | None = None, progress: Callable[[int, int], object] | None = None, **axes: list[float]
+    store: Path | None = None,
+    progress: Callable[[int, int], object] | bool = False,
+    **axes: list[float],
 ) -> xarray.Dataset:
     """The study over GRID, or other axes, with the variable "front": designs no other one beats."""
     cases = study.sweep(design, study.grid(**(axes or GRID)), store=store, progress=progress)
-    return study.pareto(study.table(cases), minimise=["sag", "peak"], maximise=["isolation"])
+    return study.pareto(study.table(cases, UNITS), minimise=["sag", "peak"], maximise=["isolation"])
 
 
 def main() -> int:
     """Run the study; returns the exit code."""
-    from tqdm import tqdm
-
-    with tqdm(desc="designs", leave=False) as bar:
-
-        def advance(done: int, cases: int) -> None:
-            bar.total = cases
-            bar.update(done - bar.n)
-
-        found = table(Path("out", "layer_study"), advance)
+    found = table(Path("out", "layer_study"), progress=True)
     front = found.isel(case=found["front"].values).sortby("sag")
     print(front.to_dataframe().drop(columns=["error", "front"]).to_string(float_format=lambda x: f"{x:.4g}"))
     return 0

@@ -21,7 +21,7 @@
 # %%
 import sys
 
-import matplotlib.pyplot as plt
+from bearingdyn import plot
 
 sys.path.insert(0, "../examples")
 import layer_study
@@ -35,19 +35,14 @@ print("measured rubber" if motor.MEASURED.exists() else "measurement absent: the
 
 # %%
 found = layer_study.table(thickness=[0.004, 0.006, 0.008, 0.011], width=[0.0255], loss_factor=[0.15, 0.3, 0.45])
-found.to_dataframe().drop(columns="width")
+found.drop_vars(["width", "error"]).to_dataframe()
 
 # %% [markdown]
 # ## What isolation costs
 
 # %%
-front = found["front"].values
-points = plt.scatter(found["sag"] * 1e6, found["isolation"], c=found["loss_factor"], cmap="cividis")
-plt.scatter(found["sag"][front] * 1e6, found["isolation"][front], s=120, facecolors="none", edgecolors="k", label="not beaten")
-plt.colorbar(points, label="loss factor at 1 kHz")
-plt.xlabel("sag of mid-shaft under 10 kN, µm")
-plt.ylabel("housing quieter by, dB (1 to 5 kHz)")
-plt.legend()
+axes = plot.trade_off(found, "sag", "isolation", colour="loss_factor")
+axes.axvline(0.7e-3, color="0.5", linestyle=":")
 
 # %% [markdown]
 # ## Decision
@@ -56,7 +51,7 @@ plt.legend()
 # both, and that no other one beats, the one that isolates best.
 
 # %%
-allowed = found.isel(case=front & (found["sag"].values <= 0.7e-3) & (found["strain"].values <= 0.05))
+allowed = found.isel(case=found["front"].values & (found["sag"].values <= 0.7e-3) & (found["strain"].values <= 0.05))
 best = allowed.isel(case=int(allowed["isolation"].values.argmax()))
 print(
     f"Take {best.thickness * 1e3:.0f} mm of the rubber with a loss factor of {best.loss_factor:.2f}: the housing is "
