@@ -19,7 +19,7 @@ import xarray
 import bearingdyn as bd
 from bearingdyn import study
 
-GRID = {"thickness": [0.004, 0.006, 0.008, 0.011], "width": [0.017, 0.0255], "loss_factor": [0.15, 0.3, 0.45]}
+GRID = {"thickness": [0.004, 0.006, 0.008, 0.011], "width": [0.017, 0.0255], "loss_factor": [0.3, 0.45, 0.6]}
 FREQUENCY = np.linspace(10.0, 6000.0, 1000)
 UNITS = {"thickness": "m", "width": "m", "isolation": "dB", "peak": "m/N", "sag": "m"}
 NOISY = (1e3, 5e3)  # Hz, where the motor is too loud

@@ -13,9 +13,9 @@
 # %% [markdown]
 # # Which Maxwell model does this rubber get?
 #
-# The laboratory sent frequency sweeps of a rubber at ten temperatures. The layer around a bearing will work from
-# 10 Hz to 5 kHz, on a cold day at 20 °C and in a warm machine at 40 °C. Which points can be trusted, how many
-# branches does the model need, and what does warmth do to the layer?
+# The laboratory sent frequency sweeps of a rubber at ten temperatures. The layer around a bearing will work
+# from 10 Hz to 5 kHz, on a cold day at 20 °C and in a warm machine at 40 °C. Which points can be trusted, how
+# many branches does the model need, and what does warmth do to the layer?
 
 # %%
 import math
@@ -29,20 +29,23 @@ from motor import MEASURED
 
 source = MEASURED if MEASURED.exists() else bd.sample_dma_path()
 table = bd.read_dma(source)
-print("measured:" if MEASURED.exists() else "measurement absent, the shipped sample (made) instead:", source.name)
+print(
+    "measured:" if MEASURED.exists() else "measurement absent, the shipped sample (made) instead:",
+    source.name,
+)
 print(f"{table.frequency.size} points, {table.frequency.min():g} to {table.frequency.max():g} Hz")
 
 # %% [markdown]
 # ## Which points can be trusted?
 #
-# Storage and loss modulus of a causal material are tied: where G″ is much more than (π/2) dG′/d ln ω, something
-# else than the rubber was measured, most often the fixture.
+# Storage and loss modulus of a causal material are tied: where G″ is much more than (π/2) dG′/d ln ω,
+# something else than the rubber was measured, most often the fixture.
 
 # %%
-plot.causality(table)
+axes = plot.causality(table)
 
 # %%
-plot.isotherms(table)
+axes = plot.isotherms(table)
 
 # %% [markdown]
 # The ratio should stay near one. In the measured table it climbs steadily from some 20 Hz on, at every
@@ -52,7 +55,7 @@ plot.isotherms(table)
 # %%
 trusted = table.select(f_max=20.0)
 master = bd.master_curve(trusted, T_ref=20.0)
-plot.shifts(master)
+axes = plot.shifts(master)
 
 # %%
 warm = 10 ** float(master.law.log_shift(40.0))
@@ -62,8 +65,8 @@ print(f"10 Hz at 40 °C lies at {10 * warm:.2g} Hz of the curve at 20 °C")
 # %% [markdown]
 # ## How many branches?
 #
-# The band of the fit must hold both temperatures: from 10 Hz at 40 °C to 5 kHz at 20 °C. More branches than the
-# data can tell apart are of no use; the last line is what the best possible spectrum leaves.
+# The band of the fit must hold both temperatures: from 10 Hz at 40 °C to 5 kHz at 20 °C. More branches than
+# the data can tell apart are of no use; the last line is what the best possible spectrum leaves.
 
 # %%
 band = (10 * warm, 5e3)
@@ -76,7 +79,7 @@ print(f"  any {fit.floor[0]:11.1%} {fit.floor[1]:9.1%}")
 
 # %%
 rubber = bd.fit_maxwell(master, n="auto", tolerance=0.05, band=band, **given)
-plot.master(master, rubber)
+axes = plot.master(master, rubber)
 
 # %% [markdown]
 # ## Decision
@@ -86,8 +89,8 @@ omega = 2 * math.pi * 1e3
 cold, hot = (rubber.at(T).complex_modulus(omega) for T in (20.0, 40.0))
 softer = 1 - abs(hot) / abs(cold)
 print(
-    f"Take {rubber.G.size} branches: within {rubber.fit.storage_rms:.1%} of G′ and {rubber.fit.tan_delta_rms:.1%} "
-    f"of tan δ (rms), {band[0]:.2g} Hz to {band[1] / 1e3:g} kHz at 20 °C.\n"
-    f"At 1 kHz |G*| is {abs(cold) / 1e6:.2f} MPa at 20 °C; at 40 °C the layer is {softer:.0%} softer and tan δ "
-    f"goes from {cold.imag / cold.real:.3f} to {hot.imag / hot.real:.3f}: design for both."
+    f"Take {rubber.G.size} branches: within {rubber.fit.storage_rms:.1%} of G′ and "
+    f"{rubber.fit.tan_delta_rms:.1%} of tan δ (rms), {band[0]:.2g} Hz to {band[1] / 1e3:g} kHz at 20 °C.\n"
+    f"At 1 kHz |G*| is {abs(cold) / 1e6:.2f} MPa at 20 °C; at 40 °C the layer is {softer:.0%} softer and\n"
+    f"tan δ goes from {cold.imag / cold.real:.3f} to {hot.imag / hot.real:.3f}: design for both."
 )

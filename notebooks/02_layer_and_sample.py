@@ -13,9 +13,9 @@
 # %% [markdown]
 # # How thick must the layer be, and which sample proves it?
 #
-# A 6305 carries 5 kN. A ring of rubber, as wide as one can fit, goes around its outer ring. It isolates only where
-# it is much softer than the bearing, at most a third at 1 kHz, but more than 5 % static strain and it creeps. Which
-# thickness keeps both limits? And what would a laboratory see on a small sample of three rings?
+# A 6305 carries 5 kN. A ring of rubber, as wide as one can fit, goes around its outer ring. It isolates only
+# where it is much softer than the bearing, at most a third at 1 kHz, but more than 5 % static strain and it
+# creeps. Which thickness keeps both limits? And what would a laboratory see on a small sample of three rings?
 
 # %%
 import math
@@ -41,13 +41,13 @@ load, omega = 5e3, 2 * math.pi * 1e3  # N for each bearing; rad/s
 ball = bearing("6305", clearance=10e-6)
 state = ball.displacement((0, -load, 90, 0, 0, 0))
 k_bearing = ball.stiffness(state)[1, 1]
-print(f"6305 under {load / 1e3:g} kN: {-state[1] * 1e6:.1f} µm, {k_bearing / 1e6:.0f} N/µm in the load's direction")
+print(f"6305 under {load / 1e3:g} kN: {-state[1] * 1e6:.1f} µm, {k_bearing / 1e6:.0f} N/µm along the load")
 
 # %% [markdown]
 # ## The layer
 #
-# Each stiffness is a finite element solution at the modulus of that frequency: near-incompressible rubber between
-# two rigid rings stiffens fast as it gets thinner, most of all radially.
+# Each stiffness is a finite element solution at the modulus of that frequency: near-incompressible rubber
+# between two rigid rings stiffens fast as it gets thinner, most of all radially.
 
 # %%
 width = 0.0255  # m
@@ -61,13 +61,13 @@ for name, layer in layers.items():
     print(f"{name:>9} {share[name] * k_bearing / 1e6:9.1f} N/µm {share[name]:16.2f} {strain[name]:20.1%}")
 
 # %%
-plot.layer_stiffness({name: layers[name] for name in ("2 mm", "8 mm")}, np.geomspace(10, 5e3, 40))
+axes = plot.layer_stiffness({name: layers[name] for name in ("2 mm", "8 mm")}, np.geomspace(10, 5e3, 40))
 
 # %% [markdown]
 # ## The sample
 #
-# Two steel rings with rubber between them, hung freely and struck, as in the paper's section 3. If the model of the
-# rubber is right, the axial and the tilting mode come where it says, and as damped as it says.
+# Two steel rings with rubber between them, hung freely and struck, as in the paper's section 3. If the model
+# of the rubber is right, the axial and the tilting mode come where it says, and as damped as it says.
 
 # %%
 sample = bd.Application()
@@ -76,11 +76,11 @@ for face in ("inner", "outer"):
     sample.free(f"sample.{face}")
 frequency = np.linspace(1e3, 8e3, 1401)
 struck = bd.frequency_response(sample, frequency, ["sample.inner.z"], ["sample.outer.z"])
-plot.frequency_response({"sample": struck}, "sample.outer.z", "sample.inner.z", phase=True)
+axes = plot.frequency_response({"sample": struck}, "sample.outer.z", "sample.inner.z", phase=True)
 
 # %% [markdown]
-# Every damped mode, exact, with the branches of the rubber as states: axial and torsion once each, tilting and
-# radial motion twice.
+# Every damped mode, exact, with the branches of the rubber as states: axial and torsion once each, tilting
+# and radial motion twice.
 
 # %%
 modes = bd.modes(sample, damped=True)
@@ -95,9 +95,10 @@ fits = [name for name in layers if share[name] <= 1 / 3 and strain[name] <= 0.05
 chosen = fits[0] if fits else min(layers, key=lambda name: max(3 * share[name], strain[name] / 0.05))
 axial = float(frequency[np.abs(struck["response"].values[:, 0, 0]).argmax()])
 zeta = float(modes["damping_ratio"][np.abs(modes["frequency"].values - axial).argmin()])
+tan_delta = float(rubber.loss_factor(2 * math.pi * axial))
 print(
-    f"Take {chosen}: {share[chosen]:.2f} of the bearing's stiffness at 1 kHz, {strain[chosen]:.1%} static strain.\n"
-    f"Ask the laboratory for the sample's axial mode: {axial:.0f} Hz with a damping ratio of {zeta:.3f}, near half of "
-    f"tan δ = {float(rubber.loss_factor(2 * math.pi * axial)):.3f} of the rubber there. If it comes out elsewhere, "
-    "the model of the rubber is wrong, not the machine."
+    f"Take {chosen}: {share[chosen]:.2f} of the bearing's stiffness at 1 kHz, {strain[chosen]:.1%} strain.\n"
+    f"Ask the laboratory for the sample's axial mode: {axial:.0f} Hz with a damping ratio of {zeta:.3f},\n"
+    f"near half of tan δ = {tan_delta:.3f} of the rubber there. If it comes out elsewhere, the model of\n"
+    "the rubber is wrong, not the machine."
 )

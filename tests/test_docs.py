@@ -28,7 +28,7 @@ def test_there_is_a_guide_for_every_room() -> None:
 def test_the_snippets_of_the_guide_run_and_print_what_stands_beside_them(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The python blocks of a page run in order, as one script; a text block is what the one before it prints."""
+    """The python blocks of a page run in order, as one script; a text block is what the one before prints."""
     import matplotlib.pyplot as plt
 
     monkeypatch.chdir(tmp_path)
@@ -52,12 +52,15 @@ def test_the_documentation_builds_without_a_warning(tmp_path: Path) -> None:
     for package in ("sphinx", "myst_nb", "furo"):
         pytest.importorskip(package, reason=f"{package} is not installed; pip install bearingdyn[docs]")
     # what the notebooks show is tested by test_notebooks; here they are only rendered
+    path = os.pathsep.join(folder for folder in sys.path if folder)
+    options = ["-W", "--keep-going", "-n", "-D", "nb_execution_mode=off", "-d", tmp_path / "doctrees"]
     build = subprocess.run(
-        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-b", "html", "-d", tmp_path / "doctrees",
-         "-D", "nb_execution_mode=off", ROOT / "docs", tmp_path / "html"],
-        capture_output=True, text=True, env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, filter(None, sys.path)))},
+        [sys.executable, "-m", "sphinx", *options, ROOT / "docs", tmp_path / "html"],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": path},
         check=False,
-    )  # fmt: skip
+    )
     assert build.returncode == 0, build.stderr[-4000:]
     index = (tmp_path / "html" / "index.html").read_text(encoding="utf-8")
     assert "master_curve(dma" in re.sub(r"<[^>]+>", "", index)  # the ten lines
