@@ -31,7 +31,7 @@ COMPILERS := lint $(if $(shell command -v clang),lint-clang)
 # The sanitizers' libraries must be in the process first, and the C++ library whose exceptions they watch with them.
 SANITIZERS = $(foreach library,libasan.so libubsan.so libstdc++.so.6,$(shell cc -print-file-name=$(library)))
 
-.PHONY: demo test ctest pytest asan bench lint verify clean always
+.PHONY: demo test ctest pytest asan bench lint verify docs clean always
 
 # Two pip runs on one environment do not mix, and pytest has the last word.
 .NOTPARALLEL:
@@ -73,12 +73,17 @@ lint: $(VENV)/package $(VENV)/lint $(COMPILERS:%=$(BUILD)/%/build.ninja)
 	set -e; for build in $(COMPILERS); do meson compile -C $(BUILD)/$$build; done
 
 # The slow tests, and VERIFICATION.md anew: case, source, expected, computed, error.
-verify: $(VENV)/package $(VENV)/test
+verify: $(VENV)/package $(VENV)/test $(VENV)/docs
 	$(PY) -m pytest -m slow
 	$(PY) tests/verification.py
 
+# The documentation, in build/docs; a warning is an error. The notebooks are run where they changed: a minute or two.
+docs: $(VENV)/package $(VENV)/docs
+	$(PY) -m sphinx -W --keep-going -n -q -d $(BUILD)/doctrees docs $(BUILD)/docs
+	@echo open $(BUILD)/docs/index.html
+
 clean:
-	rm -rf $(VENV) $(BUILD) out .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) $(BUILD) out docs/_static .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find python tests examples benchmarks notebooks -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 # The environment. Its build tools stand outside pip's isolated builds, so that rebuilding is incremental and
@@ -94,7 +99,7 @@ $(VENV)/package: $(SOURCES) $(BUILD)/sources.list $(VENV)/tools
 	$(PIP) install --no-build-isolation --config-settings=build-dir=$(BUILD)/package .
 	@touch $@
 
-$(VENV)/test $(VENV)/lint: $(VENV)/%: $(VENV)/tools
+$(VENV)/test $(VENV)/lint $(VENV)/docs: $(VENV)/%: $(VENV)/tools
 	$(call requirements,$*) >$(VENV)/requirements.txt
 	$(PIP) install --requirement $(VENV)/requirements.txt
 	@touch $@

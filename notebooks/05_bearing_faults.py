@@ -99,6 +99,7 @@ fall = 20 * np.log10(plain[0] / layered[0])
 keep = layered[0] > 0.01 and layered[1] > 10
 print(
     f"It is {race}, {plain[1]:.0f} times the median of the envelope's spectrum: the outer race is spalled.\n"
-    f"Through the layer the line is {fall:.0f} dB lower, {layered[0]:.2g} m/s², and {layered[1]:.0f} times the "
-    f"median.\nFit the layer and {'leave the sensor on the pedestal' if keep else 'put the sensor on the ring'}."
+    f"Through the layer the line is {fall:.0f} dB lower, {layered[0]:.2g} m/s²,\n"
+    f"and {layered[1]:.0f} times the median.\n"
+    f"Fit the layer, and the sensor {'stays on the pedestal' if keep else 'goes to the ring'}."
 )
