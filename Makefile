@@ -31,7 +31,7 @@ COMPILERS := lint $(if $(shell command -v clang),lint-clang)
 # The sanitizers' libraries must be in the process first, and the C++ library whose exceptions they watch with them.
 SANITIZERS = $(foreach library,libasan.so libubsan.so libstdc++.so.6,$(shell cc -print-file-name=$(library)))
 
-.PHONY: demo test ctest pytest asan bench lint verify docs clean always
+.PHONY: demo test ctest pytest asan bench lint verify clean always
 
 # Two pip runs on one environment do not mix, and pytest has the last word.
 .NOTPARALLEL:
@@ -78,6 +78,7 @@ verify: $(VENV)/package $(VENV)/test $(VENV)/docs
 	$(PY) tests/verification.py
 
 # The documentation, in build/docs; a warning is an error. The notebooks are run where they changed: a minute or two.
+.PHONY: docs
 docs: $(VENV)/package $(VENV)/docs
 	$(PY) -m sphinx -W --keep-going -n -q -d $(BUILD)/doctrees docs $(BUILD)/docs
 	@echo open $(BUILD)/docs/index.html

@@ -98,5 +98,5 @@ calmer = 20 * np.log10(velocity["layer, high loss"] / velocity["no layer"])
 print(
     f"Take the {chosen}: the housing is {quieter[chosen]:.0f} dB quieter from 1 to 5 kHz,\n"
     f"and its velocity at 5000 rpm falls by {-calmer:.0f} dB with the high-loss layer.\n"
-    f"The price: at 10 Hz the shaft gives {sag[chosen] / sag['no layer']:.1f} times as much. Check the air gap."
+    f"The price: at 10 Hz the shaft gives {sag[chosen] / sag['no layer']:.1f} times as much."
 )

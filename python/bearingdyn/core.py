@@ -68,6 +68,15 @@ class Scheme:
     """Newmark's scheme and the tolerance of the bearing forces in it (bd_scheme).
 
     speed: rad/s of the shaft, one number or (times in s, speeds), linear between and held outside.
+
+    dt: step, s.
+    beta, gamma: Newmark's numbers; ¼ and ½, the average acceleration, add no damping of their own.
+    tolerance: of the bearing forces, relative to the largest.
+    max_iterations: of Newton's iteration in a step.
+    audit: integrate energies and works.
+    isa: instruction set of the kernels, "best" or one of those the core was compiled for.
+
+    A march refuses what is no scheme with a ValueError. Reference: N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
     """
 
     dt: float

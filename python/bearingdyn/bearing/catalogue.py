@@ -182,6 +182,12 @@ def bearing(designation: str, *, clearance: float | None = None, **keywords: Any
     ------
     ValueError
         If the designation is not listed, the clearance is missing or out of place, or from BallBearing.
+
+    Examples
+    --------
+    >>> from bearingdyn.bearing.catalogue import bearing, entry
+    >>> bearing("6305", clearance=10e-6).Z, entry("6305").source
+    (7, 'ISO/TS 16281, worked cases')
     """
     return from_entry(entry(designation), clearance=clearance, **keywords)
 

@@ -25,6 +25,15 @@ def fault_lines(
         Of the loaded state, rad; None: nominal.
 
     Raises ValueError if harmonics is no positive whole number or speed is not finite.
+
+    Examples
+    --------
+    >>> import math
+    >>> from bearingdyn.bearing import fault_lines
+    >>> from bearingdyn.bearing.catalogue import bearing
+    >>> lines = fault_lines(bearing("6205", clearance=10e-6), 1797 * math.pi / 30)
+    >>> round(lines["BPFO"], 2), round(lines["BPFI"], 2)
+    (107.36, 162.19)
     """
     _whole("harmonics", harmonics)
     f = bearing.frequencies(number("speed", speed), contact_angle)

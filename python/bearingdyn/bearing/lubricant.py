@@ -38,6 +38,13 @@ class Walther:
     ------
     ValueError
         If a constant is not finite or B not positive.
+
+    Examples
+    --------
+    >>> from bearingdyn.bearing import Walther
+    >>> oil = Walther.iso_vg(32)
+    >>> round(oil.viscosity(70.0) * 1e6, 3)  # mm²/s
+    11.186
     """
 
     A: float

@@ -46,6 +46,17 @@ class Pair:
     ValueError
         Naming the field: a wrong type or arrangement, a distance or preload that is not positive or zero,
         both preloads at once, or a preload of a tandem.
+
+    Examples
+    --------
+    >>> import math
+    >>> import bearingdyn as bd
+    >>> from bearingdyn.bearing import Pair
+    >>> row = bd.BallBearing(Z=14, Dw=9e-3, Dpw=50e-3, fi=0.52, fo=0.53, contact_angle=math.radians(15))
+    >>> pair = Pair(row, "DB", distance=0.015, preload_force=200.0)
+    >>> k = pair.stiffness([0.0] * 6)
+    >>> bool(k[0, 0] > k[2, 2] > 0)  # radially stiffer than axially
+    True
     """
 
     row: BallBearing

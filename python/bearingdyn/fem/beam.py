@@ -25,6 +25,8 @@ class Section:
     """A length of shaft of constant circular section.
 
     length: m. d_outer, d_inner: outer and bore diameter, m; 0 <= d_inner < d_outer.
+
+    Raises ValueError for a length or diameter that is not positive, or a bore that leaves no wall.
     """
 
     length: float

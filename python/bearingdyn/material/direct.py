@@ -177,6 +177,8 @@ class PowerLaw:
         Bulk modulus, Pa, and density, kg/m³.
     law, temperature
         Shift law, and the temperature, °C, the modulus holds at, for :meth:`at`.
+
+    Raises ValueError for a value outside its range or not finite. Reference: paper §3.2.
     """
 
     modulus: float
@@ -240,6 +242,8 @@ class FractionalZener:
         Shift law, and the temperature, °C, tau holds at, for :meth:`at`.
 
     Reference: T. Pritz, J. Sound Vib. 195 (1996) 103.
+
+    Raises ValueError for a value outside its range or not finite.
     """
 
     G0: float

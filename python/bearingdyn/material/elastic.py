@@ -23,6 +23,13 @@ class Elastic:
     ------
     ValueError
         If a value is outside its range or not finite.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> rubber = bd.Elastic(E=3e6, nu=0.4995, density=1150.0)
+    >>> round(rubber.G / 1e6, 4), round(rubber.K / 1e9, 2)
+    (1.0003, 1.0)
     """
 
     E: float

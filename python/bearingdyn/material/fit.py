@@ -80,6 +80,14 @@ def fit_maxwell(
         If the band is not one, holds too few points, or a value is out of range.
 
     Reference: paper §3.2, eqs 18 and 19.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> curve = bd.master_curve(bd.read_dma(bd.sample_dma_path()), T_ref=20.0)
+    >>> rubber = bd.fit_maxwell(curve, n=5, band=(1.0, 5e3), K=2e9, density=1150.0)
+    >>> rubber.G.size, rubber.fit.storage_rms < 0.02
+    (5, True)
     """
     if n != "auto" and not (isinstance(n, int) and n >= 1):
         raise ValueError(f"n = {n!r}: the number of branches must be a positive integer, or 'auto'")

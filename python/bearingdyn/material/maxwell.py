@@ -65,6 +65,16 @@ class Maxwell(Retunable):
     ------
     ValueError
         If a value is outside its range or not finite, or G and tau differ in length.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> rubber = bd.Maxwell(G0=1e6, G=[1e6, 2e6], tau=[1e-3, 1e-4], K=2e9, density=1150.0)
+    >>> rubber.relaxation([0.0, 1.0]).round(-3).tolist()
+    [4000000.0, 1000000.0]
+    >>> G = rubber.complex_modulus(1e4)  # at 1/tau of the second branch half its strength, in phase and out
+    >>> print(f"{G.real / 1e6:.2f} {G.imag / 1e6:.2f} MPa")
+    2.99 1.10 MPa
     """
 
     G0: float

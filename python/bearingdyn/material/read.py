@@ -62,6 +62,16 @@ def read_dma(
     ValueError
         If the file is not such a table; the message names file, line, column, value and remedy. If a
         spreadsheet needs a package that is not installed.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> dma = bd.read_dma({"f_Hz": [1, 10, 1, 10], "T_C": [0, 0, 20, 20],
+    ...                    "Gp_MPa": [4, 5, 2, 3], "Gpp_MPa": [0.5, 0.6, 0.2, 0.3]},
+    ...                   columns={"frequency": "f_Hz", "temperature": "T_C", "storage": "Gp_MPa",
+    ...                            "loss": "Gpp_MPa"}, mode="shear")
+    >>> dma.storage.tolist(), dma.isotherm.tolist()
+    ([4000000.0, 5000000.0, 2000000.0, 3000000.0], [0, 0, 1, 1])
     """
     if temperature is not None and not -273.15 < temperature < 1e4:
         raise ValueError(f"temperature = {temperature!r} °C: must be a temperature in °C")

@@ -149,6 +149,11 @@ def master_curve(
     ------
     ValueError
         If there is only one isotherm, two have one temperature, or T_ref lies where the law cannot reach.
+
+    Returns a MasterCurve: reduced frequency, Hz, and moduli, Pa, (n,), sorted by reduced frequency.
+
+    Reference: paper §3.2; M. L. Williams, R. F. Landel, J. D. Ferry,
+    J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
     """
     if law not in ("wlf", "arrhenius", "joined", "free"):
         raise ValueError(f"law = {law!r}: must be 'wlf', 'arrhenius', 'joined' or 'free'")

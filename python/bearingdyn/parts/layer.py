@@ -29,6 +29,15 @@ class Layer:
     refinement: mesh density; the default gives stiffnesses within some 0.02 % for ratios G/K down to 1e-4.
 
     Raises ValueError for dimensions that are not positive and finite, or r_outer not above r_inner.
+
+    Reference: paper section 3.3.
+
+    >>> import bearingdyn as bd
+    >>> rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
+    >>> layer = bd.Layer(r_inner=0.026, r_outer=0.030, width=0.016, material=rubber)
+    >>> k = layer.stiffness()  # N/m, N, N m
+    >>> k.shape, f"{k[0, 0].real / 1e6:.2f} radially, {k[2, 2].real / 1e6:.2f} along the axis, N/µm"
+    ((12, 12), '6.91 radially, 0.66 along the axis, N/µm')
     """
 
     r_inner: float

@@ -20,6 +20,11 @@ class RigidBody:
         the inertia of an unequal body would vary with the angle.
 
     Raises ValueError for values that are not positive or that no body can have.
+
+    >>> import bearingdyn as bd
+    >>> ring = bd.RigidBody.ring(r_inner=0.0, r_outer=0.1, width=0.02)  # a steel disc
+    >>> round(ring.mass, 3), round(ring.inertia[2], 5)  # kg, m r²/2 in kg m²
+    (4.932, 0.02466)
     """
 
     mass: float

@@ -20,7 +20,10 @@ ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at
 
 @dataclass(frozen=True)
 class Disc:
-    """A rigid disc on a shaft, at z, m: mass, kg, diametral and polar moment of inertia Id and Ip, kg m²."""
+    """A rigid disc on a shaft, at z, m: mass, kg, diametral and polar moment of inertia Id and Ip, kg m².
+
+    Raises ValueError for a mass or moment that is not positive, or that no disc can have.
+    """
 
     z: float
     mass: float
@@ -66,6 +69,15 @@ class Shaft:
 
     Raises ValueError for a position off the shaft, a name used twice, two seats in one place, or values that
     are not positive and finite.
+
+    Reference: J. S. Przemieniecki, Theory of Matrix Structural Analysis (Timoshenko element); H. D. Nelson,
+    J. Mech. Design 102 (1980) 793 (gyroscopic terms).
+
+    >>> import bearingdyn as bd
+    >>> seats = {"left": 0.02, "right": 0.28}
+    >>> element = bd.Shaft([bd.Section(0.3, 0.03)], seats, points={"middle": 0.15}).superelement()
+    >>> sorted(element.interfaces), sorted(element.outputs)
+    (['left', 'right'], ['middle'])
     """
 
     sections: Sequence[Section]
