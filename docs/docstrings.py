@@ -12,7 +12,8 @@ from typing import Any
 
 FIELD = re.compile(r"^([A-Za-zθ_*][\w*]*(?:, [\w*]+)*): (\S.*)$")
 SECTION = re.compile(r"^-{3,}$")
-ARRAY = re.compile(r"ndarray\[tuple\[Any, \.\.\.\], dtype\[(\w+)\]\]")
+ARRAY = re.compile(r"[\w~.]*ndarray\[tuple\[[\w~.]*Any, \.\.\.\], [\w~.]*dtype\[[\w~.]*?(\w+)\]\]")
+PROSE = ("Reference", "Returns", "Raises", "Source")
 MARK = re.compile(r"([|*]|_(?!\w))")
 LITERAL = re.compile(r"(``.+?``|`[^`]+`)", re.DOTALL)
 
@@ -35,7 +36,7 @@ def shorten(app: Any, what: str, name: str, obj: Any, options: Any, signature: A
     """NumPy's types by the names users write (Sphinx's event autodoc-process-signature)."""
 
     def short(text: Any) -> Any:
-        return ARRAY.sub(r"NDArray[\1]", text) if isinstance(text, str) else text
+        return ARRAY.sub(r"NDArray[\1]", text).replace("<factory>", "...") if isinstance(text, str) else text
 
     return short(signature), short(returned)
 
@@ -57,7 +58,7 @@ def rendered(block: list[str], fields: bool) -> list[str]:
         return [*block, ""]
     items: list[tuple[str, str]] = []  # name or nothing, text
     for line in block:
-        field = FIELD.match(line) if fields else None
+        field = FIELD.match(line) if fields and not line.startswith(PROSE) else None
         if field or not items:
             items.append((field[1], field[2]) if field else ("", line.strip()))
         else:
