@@ -16,14 +16,13 @@ def read_op4(
     mass_path: str | Path | None = None,
     points: Points | None = None,
     *,
-    stiffness: str = "KGG",
-    mass: str = "MGG",
+    names: tuple[str, str] = ("KGG", "MGG"),
     coordinates: str | None = None,
     **check: Any,
 ) -> FEMatrices:
     """Read a stiffness and a mass matrix from one output4 file, or from two (mass_path).
 
-    stiffness, mass: names of the matrices in the file. coordinates: name of a (k, 3) matrix of the grids'
+    names: of stiffness and mass in the file. coordinates: name of a (k, 3) matrix of the grids'
         positions in it, if it has one; else points, (k, 3), in the order of the matrices' grids. KGG and MGG
         have six coordinates a grid, in the basic system when no grid has another.
     The rest: as in check_matrices.
@@ -50,7 +49,7 @@ def read_op4(
 
     first = content(path)
     other = first if mass_path is None else content(mass_path)
-    K, M = named(first, stiffness, path), named(other, mass, path if mass_path is None else mass_path)
+    K, M = named(first, names[0], path), named(other, names[1], path if mass_path is None else mass_path)
     if points is None and coordinates is not None:
         points = np.asarray(named(first, coordinates, path), dtype=np.float64)
     return check_matrices(K, M, points, **check)
