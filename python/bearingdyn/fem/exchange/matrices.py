@@ -100,6 +100,8 @@ def check_matrices(
     expected_mass: kg, to 5 %; None: not checked.
     sound: accepted range of √(bulk modulus/density), m/s, the mean over the body; widen it for foams.
 
+    K is factorised once for its pivots: some 8 s and 1.5 GB at 35 000 coordinates.
+
     Rotations with neither stiffness nor mass, as solids have them in files of six coordinates a node, are
     left out.
 
@@ -268,7 +270,7 @@ def _check_mass_matrix(model: FEMatrices) -> None:
     else:
         start = np.random.default_rng(0).standard_normal(at.size)
         least = float(
-            scipy.sparse.linalg.eigsh(scaled, 1, which="SA", tol=1e-3, v0=start, return_eigenvectors=False)[0]
+            scipy.sparse.linalg.eigsh(scaled, 1, which="SA", tol=0.03, v0=start, return_eigenvectors=False)[0]
         )
     if not least > -SYMMETRY:
         raise ValueError(
