@@ -116,12 +116,24 @@ def frequencies(path: Path) -> np.ndarray:
 # ---------------------------------------------------------------- the housing
 
 
+def connectivity(mesh: Any) -> np.ndarray:
+    """Nodes (elements, 20) of a mesh of bricks, in CalculiX's order."""
+    own = getattr(mesh, "elements", None)  # a SolidMesh has the same
+    if own is not None:
+        return np.asarray(own)
+    import skfem
+
+    element = skfem.ElementHexS2()
+    basis = skfem.Basis(mesh, element, intorder=4)
+    place = [int(np.argmin(np.linalg.norm(element.doflocs - 0.5 * at, axis=1))) for at in BRICK]
+    bricks = basis.element_dofs.T[:, place]
+    return bricks[:, MIRROR] if basis.mapping.detDF(basis.X, basis.tind).mean() < 0 else bricks
+
+
 class HousingCase:
     """The demo's pedestal as a mesh of bricks, for both programs."""
 
     def __init__(self, folder: Path, size: float | None = None) -> None:
-        import skfem
-
         thickest = motor.designs(motor.rubber()[0])[1].thickness
         part = motor.housing(2 * (motor.RING[1] + thickest))
         self.volume = (part.width * part.height - np.pi / 4 * part.bore_diameter**2) * part.length
@@ -130,12 +142,7 @@ class HousingCase:
         self.folder = folder
         mesh = block_with_bore(part.width, part.height, part.length, part.bore_diameter, part.axis, size)
         self.solid = assemble_solid(mesh)
-        element = skfem.ElementHexS2()
-        basis = skfem.Basis(mesh, element, intorder=4)
-        place = [int(np.argmin(np.linalg.norm(element.doflocs - 0.5 * at, axis=1))) for at in BRICK]
-        bricks = basis.element_dofs.T[:, place]
-        if basis.mapping.detDF(basis.X, basis.tind).mean() < 0:
-            bricks = bricks[:, MIRROR]
+        bricks = connectivity(mesh)
         p = self.points = self.solid.points
         self.base = np.abs(p[:, 1] + part.axis) < 1e-9
         self.bore = np.abs(np.hypot(p[:, 0], p[:, 1]) - 0.5 * part.bore_diameter) < 1e-9

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -27,21 +29,36 @@ from bearingdyn.fem import (
 from bearingdyn.material import STEEL
 from bearingdyn.parts import Housing, Imported, NodeSet, Shaft, at_radius
 
-skfem = pytest.importorskip("skfem")
+pytest.importorskip("skfem")
 
 DRAWING = {"width": 0.12, "height": 0.2, "length": 0.02, "bore_diameter": 0.062, "bore_height": 0.13}
 SIZE = 0.03
 
 
+BAR = 1e-5  # m², section
+
+
 @pytest.fixture(scope="module")
 def block() -> FEMatrices:
-    """A steel block 60 × 40 × 20 mm."""
-    mesh = skfem.MeshHex.init_tensor(*[np.linspace(0.0, s, 3) for s in (0.06, 0.04, 0.02)])
-    solid = assemble_solid(mesh)
-    return FEMatrices(solid.stiffness(STEEL), STEEL.density * solid.mass, solid.points)
+    """Twelve points of a block 60 × 40 × 20 mm, a steel bar between any two."""
+    points = np.array([(x, y, z) for x in (0.0, 0.03, 0.06) for y in (0.0, 0.04) for z in (0.0, 0.02)])
+    K, M = np.zeros((36, 36)), np.zeros((36, 36))
+    for i, j in itertools.combinations(range(12), 2):
+        at = [*range(3 * i, 3 * i + 3), *range(3 * j, 3 * j + 3)]
+        length = np.linalg.norm(points[j] - points[i])
+        along = (points[j] - points[i]) / length
+        pull = np.concatenate([-along, along])
+        K[np.ix_(at, at)] += STEEL.E * BAR / length * np.outer(pull, pull)
+        M[np.ix_(at, at)] += STEEL.density * BAR * length / 6 * np.kron([[2, 1], [1, 2]], np.eye(3))
+    return FEMatrices(scipy.sparse.csr_matrix(K), scipy.sparse.csr_matrix(M), points)
 
 
-MASS = 7850 * 0.06 * 0.04 * 0.02
+@pytest.fixture(scope="module")
+def mass(block: FEMatrices) -> float:
+    """Of its bars, kg."""
+    assert block.points is not None
+    pairs = itertools.combinations(block.points, 2)
+    return STEEL.density * BAR * sum(float(np.linalg.norm(q - p)) for p, q in pairs)
 
 
 def numbers(model: FEMatrices) -> np.ndarray:
@@ -86,7 +103,7 @@ def assert_same(found: FEMatrices, model: FEMatrices, order: np.ndarray | None =
 
 
 @pytest.mark.parametrize("both", [False, True])
-def test_abaqus_matrices_in_mm_and_tonnes_become_si_in_the_order_of_the_nodes(block, tmp_path, both):
+def test_abaqus_matrices_in_mm_and_tonnes_become_si_in_the_order_of_the_nodes(block, mass, tmp_path, both):
     node = numbers(block)
     # N/mm and t: both a thousandth of N/m and kg
     write_abaqus(tmp_path / "job_STIF1.mtx", 1e-3 * block.K, node, both=both)
@@ -99,7 +116,7 @@ def test_abaqus_matrices_in_mm_and_tonnes_become_si_in_the_order_of_the_nodes(bl
         tmp_path / "job_MASS1.mtx",
         tmp_path / "job.inp",
         units=MM_TONNE,
-        expected_mass=MASS,
+        expected_mass=mass,
     )
     assert_same(found, block, np.argsort(node))
     assert found.nodes is not None
@@ -113,18 +130,18 @@ def test_matrices_by_row_and_column_may_be_a_triangle_or_whole_and_fortran(block
     assert_same(read_matrices(tmp_path / "K.mtx", tmp_path / "M.mtx", block.points), block)
 
 
-def test_calculix_files_name_their_coordinates(block, tmp_path):
+def test_calculix_files_name_their_coordinates(block, mass, tmp_path):
     node = numbers(block)
     write_coordinate(tmp_path / "job.sti", block.K, upper=True)
     write_coordinate(tmp_path / "job.mas", block.M, upper=True)
     lines = [f"{n}.{direction}" for n in node for direction in (1, 2, 3)]
     (tmp_path / "job.dof").write_text("\n".join(lines) + "\n")
-    found = read_matrices(tmp_path / "job.sti", points=positions(block), expected_mass=MASS)
+    found = read_matrices(tmp_path / "job.sti", points=positions(block), expected_mass=mass)
     assert_same(found, block, np.argsort(node))
 
 
 @pytest.mark.parametrize("binary", [True, False])
-def test_output4_holds_six_coordinates_a_grid_and_solids_use_three(block, tmp_path, binary):
+def test_output4_holds_six_coordinates_a_grid_and_solids_use_three(block, mass, tmp_path, binary):
     op4 = pytest.importorskip("pyyeti.nastran.op4", reason="pyyeti is not installed")
     n = block.n // 3
     at = (6 * np.arange(n)[:, None] + np.arange(3)).ravel()
@@ -135,13 +152,20 @@ def test_output4_holds_six_coordinates_a_grid_and_solids_use_three(block, tmp_pa
         "XYZ": block.points,
     }
     op4.write(str(tmp_path / "job.op4"), content, binary=binary)
-    found = read_matrices(tmp_path / "job.op4", coordinates="XYZ", expected_mass=MASS)
+    found = read_matrices(tmp_path / "job.op4", coordinates="XYZ", expected_mass=mass)
     assert_same(found, block)
     with pytest.raises(ValueError, match=r"no matrix 'KAA'; it has .'KGG', 'MGG', 'XYZ'"):
         read_matrices(tmp_path / "job.op4", names=("KAA", "MAA"))
     (tmp_path / "text.op4").write_text("no matrices here")
     with pytest.raises(ValueError, match=r"text\.op4 cannot be read|has no matrix"):
         read_matrices(tmp_path / "text.op4")
+
+
+def test_without_pyyeti_the_error_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyyeti.nastran", None)
+    (tmp_path / "job.op4").write_bytes(b"")
+    with pytest.raises(ImportError, match=r"pip install bearingdyn\[op4\]"):
+        read_matrices(tmp_path / "job.op4")
 
 
 def test_a_beam_written_in_mm_keeps_its_rotations(tmp_path):
@@ -191,23 +215,24 @@ def test_an_indefinite_mass_is_named(block):
     M = block.M.toarray()
     off = M - np.diag(np.diag(M))
     with pytest.raises(ValueError, match=r"M is indefinite: .* eigenvalue -"):
-        check_matrices(block.K, np.diag(np.diag(M)) + 4.0 * off, block.points)
+        check_matrices(block.K, np.diag(np.diag(M)) + 40.0 * off, block.points)
 
 
-def test_wrong_units_are_named(block):
+def test_wrong_units_are_named(block, mass):
     K, M, p = block.K, block.M, block.points
     for args, more, message in (
         (
             (1e-3 * K, 1e-3 * M, p),
-            {"expected_mass": MASS},
-            "M totals 0.0003768 kg where 0.3768 kg .*MM_TONNE",
+            {"expected_mass": mass},
+            "M totals .* is expected: a thousandth: .*MM_TONNE",
         ),
-        ((1e3 * K, 1e3 * M, p), {"expected_mass": MASS}, "a thousand times that"),
-        ((2 * K, 2 * M, p), {"expected_mass": MASS}, "M totals .* other units"),
-        # positions in mm with SI matrices, in mm and t without saying so, and N/mm with kg
-        ((K, M, 1e3 * p), {}, "speed .* of 4.72e.06 m/s"),
+        ((1e3 * K, 1e3 * M, p), {"expected_mass": mass}, "a thousand times that"),
+        ((2 * K, 2 * M, p), {"expected_mass": mass}, "M totals .* other units"),
+        # bars swell with √(E/9ρ) = 1724 m/s. Positions in mm with SI matrices; mm and t without saying so;
+        # N/mm with kg; and grams
+        ((K, M, 1e3 * p), {}, "speed .* of 1.72e.06 m/s"),
         ((1e-3 * K, 1e-3 * M, 1e3 * p), {}, "speed .* m/s, where solids have .*MM_TONNE"),
-        ((1e-3 * K, M, p), {}, "speed .* of 149 m/s"),
+        ((1e-3 * K, M, p), {}, "speed .* of 54.5 m/s"),
         ((1e3 * K, 1e3 * M, p), {}, "denser than any solid"),
         ((K, M, p), {"expected_mass": -1.0}, "expected_mass is -1.0"),
         ((K, M), {"expected_mass": 1.0}, "cannot be compared without points"),
@@ -265,11 +290,11 @@ def test_files_that_do_not_fit_are_named(block, tmp_path):
         (lambda: read_matrices(f["zero"], f["a"]), "row or column 0; they count from 1"),
         (lambda: read_matrices(f["word"], f["a"]), "word.mtx cannot be read as an Abaqus matrix"),
         (lambda: read_matrices(f["a"], f["a"], {1: (0, 0, 0)}), "points has no node 7"),
-        (lambda: read_matrices(f["a"], f["a"], block.points[:4]), r"points has shape \(4, 3\), .* 81 nodes"),
+        (lambda: read_matrices(f["a"], f["a"], block.points[:4]), r"points has shape \(4, 3\), .* 12 nodes"),
         (lambda: read_matrices(tmp_path / "k.unv"), "ends in '.unv'; known are"),
         (lambda: read_matrices(tmp_path / "no.sti"), "no.sti is not a file"),
         (lambda: read_matrices(tmp_path / "alone.sti"), "alone.mas is not a file"),
-        (lambda: read_matrices(tmp_path / "few.sti"), "rows up to 243, while .* names 2"),
+        (lambda: read_matrices(tmp_path / "few.sti"), "rows up to 36, while .* names 2"),
         (lambda: read_matrices(tmp_path / "bad.sti"), "not node.direction"),
         (lambda: read_nodes(tmp_path / "x.inp"), r"has no \*NODE block"),
         (lambda: read_nodes(tmp_path / "y.inp"), "y.inp, line 2: '1, a, b' is no node"),
@@ -287,8 +312,8 @@ def test_labels_that_are_wrong_are_named(block):
             check_matrices(block.K, block.M, labels=wrong)
     with pytest.raises(ValueError, match=r"labels has shape \(6, 2\)"):
         check_matrices(block.K, block.M, labels=labels[:6])
-    with pytest.raises(ValueError, match="internal is 243"):
-        check_matrices(block.K, block.M, internal=243)
+    with pytest.raises(ValueError, match="internal is 36"):
+        check_matrices(block.K, block.M, internal=36)
 
 
 # ---------------------------------------------------------------- the part
