@@ -130,6 +130,7 @@ def test_bending_between_the_knots_is_that_of_the_full_model():
     np.testing.assert_allclose(found, expected, atol=1e-4 * np.abs(expected).max())  # as its docstring says
 
 
+@measured
 def test_near_a_lightly_damped_bending_mode_the_response_is_that_mode():
     # order 2 in plane, 91 % of its energy in steel: 1/(2 ζ) of its modal compliance at resonance
     mode = min(bending(MIDDLE), key=lambda m: m.frequency)
