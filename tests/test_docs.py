@@ -52,7 +52,7 @@ def test_the_documentation_builds_without_a_warning(tmp_path: Path) -> None:
     for package in ("sphinx", "myst_nb", "furo"):
         pytest.importorskip(package, reason=f"{package} is not installed; pip install bearingdyn[docs]")
     # what the notebooks show is tested by test_notebooks; here they are only rendered
-    path = os.pathsep.join(folder for folder in sys.path if folder)
+    path = os.pathsep.join(map(os.path.abspath, sys.path))
     options = ["-W", "--keep-going", "-n", "-D", "nb_execution_mode=off", "-d", tmp_path / "doctrees"]
     build = subprocess.run(
         [sys.executable, "-m", "sphinx", *options, ROOT / "docs", tmp_path / "html"],
