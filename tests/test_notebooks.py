@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import sys
 from pathlib import Path
 from typing import Any
@@ -145,6 +144,7 @@ def test_a_notebook_runs_in_jupyter_within_a_minute(path: Path) -> None:
         "nbclient", reason="nbclient is not installed; pip install bearingdyn[docs]"
     )
     pytest.importorskip("ipykernel", reason="ipykernel is not installed; pip install bearingdyn[docs]")
+    resource = pytest.importorskip("resource", reason="processor time is read where there is getrusage")
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     client = nbclient.NotebookClient(
         jupytext.read(path), timeout=300, kernel_name="python3", resources={"metadata": {"path": path.parent}}
