@@ -69,7 +69,7 @@ lint: $(VENV)/package $(VENV)/lint $(COMPILERS:%=$(BUILD)/%/build.ninja)
 	ruff format --check
 	clang-format --dry-run -Werror $(C_FILES)
 	mypy
-	stubtest bearingdyn._core
+	stubtest bearingdyn --mypy-config-file pyproject.toml --allowlist tests/stubtest.allow
 	set -e; for build in $(COMPILERS); do meson compile -C $(BUILD)/$$build; done
 
 # The slow tests, and VERIFICATION.md anew: case, source, expected, computed, error.

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
-import scipy.sparse
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.fem.eigen import rigid_body_residual, rigid_motion
