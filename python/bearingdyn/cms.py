@@ -14,7 +14,9 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
-import scipy
+import scipy.linalg
+import scipy.sparse
+import scipy.sparse.csgraph
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.fem.eigen import factorise, lowest_modes, rigid_body_residual, rigid_transfer

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
+import scipy.io
+import scipy.sparse
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.fem.eigen import rigid_body_residual, rigid_motion

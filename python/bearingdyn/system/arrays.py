@@ -80,6 +80,8 @@ class System:
     outputs: Mapping[str, Array]
     standstill: tuple[str, ...] = ()
     """Parts that turn with the shaft, but whose damping is written for the fixed frame."""
+    inputs: str = ""
+    """What the system was assembled from, as `bearingdyn.inputs` writes it."""
 
     @property
     def n(self) -> int:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.application import GROUND, Application
+from bearingdyn.inputs import text
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
 from bearingdyn.system.held import check_held
 
@@ -66,7 +67,10 @@ def assemble(app: Application) -> System:
     standstill = tuple(
         name for name, e in turning.items() if e.viscoelastic or (np.any(e.C) and not np.any(e.N))
     )
-    system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill)
+    noted = {name: held for name, held in vars(app).items() if name != "parts"}  # reduced from the sources
+    system = System(
+        M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill, text(noted)
+    )
     check_held(system, firm)
     return system
 
