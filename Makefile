@@ -63,6 +63,7 @@ bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/harmonic.py --json
 	$(PY) benchmarks/bearing.py --json
 	$(PY) benchmarks/memory.py --json
+	$(PY) benchmarks/study.py --json
 
 lint: $(VENV)/package $(VENV)/lint $(COMPILERS:%=$(BUILD)/%/build.ninja)
 	ruff check
