@@ -5,6 +5,7 @@ nonlinear equilibrium of the motor at 10 kN, and its response at 1000 frequencie
 housing stay, and each worker reduces them once: the bore is given, and a thinner layer has a thicker ring
 within. With --bore the bore changes too, and with it the housing, which each design then reduces anew.
 
+Printed: designs a minute by the clock, and CPU time a design, with two workers and in this process alone;
 starting the workers and the first reduction of what stays are left out, as a study of thousands sees them.
 """
 
