@@ -31,7 +31,7 @@ COMPILERS := lint $(if $(shell command -v clang),lint-clang)
 # The sanitizers' libraries must be in the process first, and the C++ library whose exceptions they watch with them.
 SANITIZERS = $(foreach library,libasan.so libubsan.so libstdc++.so.6,$(shell cc -print-file-name=$(library)))
 
-.PHONY: demo test ctest pytest asan bench lint verify clean always
+.PHONY: demo test ctest pytest asan coverage bench lint verify clean always
 
 # Two pip runs on one environment do not mix, and pytest has the last word.
 .NOTPARALLEL:
@@ -57,6 +57,18 @@ asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 	LD_PRELOAD="$(SANITIZERS)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 \
 	  PYTHONMALLOC=malloc PYTHONPATH=$(BUILD)/asan/site \
 	  $(PY) -m pytest --capture=sys -m "not slow"
+
+# Lines of Python and of C that the C tests and the quick Python tests run through, the least covered files last.
+# The Python tests use a copy of the package whose extension counts lines.
+coverage: $(BUILD)/coverage/build.ninja $(VENV)/package $(VENV)/test $(VENV)/coverage
+	find $(BUILD)/coverage -name '*.gcda' -delete
+	meson compile -C $(BUILD)/coverage
+	meson test -C $(BUILD)/coverage --print-errorlogs
+	meson install -C $(BUILD)/coverage --quiet
+	PYTHONPATH=$(BUILD)/coverage/site COVERAGE_FILE=$(BUILD)/coverage/python.data \
+	  $(PY) -m coverage run --source=bearingdyn -m pytest -m "not slow"
+	COVERAGE_FILE=$(BUILD)/coverage/python.data $(PY) -m coverage report --sort=-cover --skip-covered
+	$(PY) -m gcovr --root . --filter csrc/ --sort=uncovered-percent --print-summary $(BUILD)/coverage
 
 bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/transient.py --json
@@ -95,7 +107,7 @@ $(VENV)/package: $(SOURCES) $(BUILD)/sources.list $(VENV)/tools
 	$(PIP) install --no-build-isolation --config-settings=build-dir=$(BUILD)/package .
 	@touch $@
 
-$(VENV)/test $(VENV)/lint: $(VENV)/%: $(VENV)/tools
+$(VENV)/test $(VENV)/lint $(VENV)/coverage: $(VENV)/%: $(VENV)/tools
 	$(call requirements,$*) >$(VENV)/requirements.txt
 	$(PIP) install --requirement $(VENV)/requirements.txt
 	@touch $@
@@ -109,6 +121,10 @@ $(BUILD)/ctest/build.ninja: $(VENV)/tools $(BUILD)/tests.list
 $(BUILD)/asan/build.ninja: $(VENV)/tools $(BUILD)/tests.list
 	$(configure) -Dctests=true -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lundef=false \
 	  --prefix=$(CURDIR)/$(BUILD)/asan -Dpython.platlibdir=site -Dpython.purelibdir=site
+
+$(BUILD)/coverage/build.ninja: $(VENV)/tools $(BUILD)/tests.list
+	$(configure) -Dctests=true -Dbuildtype=debugoptimized -Db_coverage=true \
+	  --prefix=$(CURDIR)/$(BUILD)/coverage -Dpython.platlibdir=site -Dpython.purelibdir=site
 
 $(BUILD)/lint/build.ninja: $(VENV)/tools $(BUILD)/tests.list
 	$(configure) -Dctests=true -Dwerror=true
