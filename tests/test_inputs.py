@@ -71,6 +71,8 @@ DIFFERENT = [
     LARGE,
     LARGE + np.eye(1, 1000, 999)[0] * 1e-12,
     LARGE.astype(np.float32),
+    np.zeros(100),
+    np.zeros(100, dtype=np.int64),
     LARGE.reshape(10, 100),
     scipy.sparse.eye(100),
     scipy.sparse.eye(100) * 2,

@@ -48,6 +48,14 @@ def test_third_aim_is_a_colour_and_its_front_is_not_joined(table):
     assert any(other.get_ylabel() == "power" for other in ax.figure.axes)
 
 
+def test_front_is_ringed_only_where_the_case_is_drawn(table):
+    marked = study.pareto(table, minimise=["k", "peak"])
+    hidden = marked.assign(power=("case", [1.0, 2.0, np.nan, 4.0, 5.0, 6.0]))
+    ax = plot.trade_off(hidden, "k", "peak", "power")
+    np.testing.assert_array_equal(ax.get_lines()[0].get_xydata(), [(1, 5), (4, 1)])
+    assert "2 of 4" in ax.get_lines()[0].get_label()
+
+
 def test_wide_positive_columns_have_logarithmic_axes(table):
     ax = plot.trade_off(table, "k", "power")
     assert (ax.get_xscale(), ax.get_yscale()) == ("linear", "log")

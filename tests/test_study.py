@@ -8,6 +8,9 @@ import json
 import math
 import os
 import signal
+import subprocess
+import sys
+import time
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from pathlib import Path
 
@@ -159,6 +162,39 @@ def test_half_written_file_of_a_store_is_computed_again(tmp_path, caplog):
         (case,) = study.sweep(again, [{"x": 3.0}], pool, store=tmp_path)
     assert (again.calls, case.values) == (1, {"y": 9.0})
     assert "computed again" in caplog.text
+
+
+SCRIPT = """
+import sys, time
+from bearingdyn import study
+
+def square(case):
+    time.sleep(0.05)
+    return {"y": case["x"] ** 2}
+
+if __name__ == "__main__":
+    cases = study.sweep(square, study.grid(x=[float(i) for i in range(30)]), store=sys.argv[1])
+    print(sum(case.values["y"] for case in cases))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs a process that can be killed")
+def test_study_killed_outright_goes_on_where_it_stopped(tmp_path):
+    script, folder = tmp_path / "squares.py", tmp_path / "store"
+    script.write_text(SCRIPT)
+    command = [sys.executable, str(script), str(folder)]
+    with subprocess.Popen(command, start_new_session=True) as process:
+        while len(list(folder.glob("*.json"))) < 5:
+            assert process.poll() is None
+            time.sleep(0.01)
+        os.killpg(process.pid, signal.SIGKILL)  # its workers with it
+    before = {path: path.read_text() for path in folder.glob("*.json")}
+    assert 5 <= len(before) < 30
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert float(run.stdout) == sum(x**2 for x in range(30))
+    assert len(list(folder.glob("*.json"))) == 30
+    assert {path: path.read_text() for path in before} == before
 
 
 def test_infinite_and_missing_numbers_survive_the_store(tmp_path):
