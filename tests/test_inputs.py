@@ -110,3 +110,10 @@ def test_long_entries_are_told_by_their_digest_and_the_text_stays_an_attribute()
 def test_what_has_no_content_is_refused():
     with pytest.raises(ValueError, match="cannot be told by its content"):
         inputs.fingerprint({"x": object()})
+
+
+def test_what_has_no_content_stands_by_its_class_in_a_result():
+    """A part with an open file or the like can be computed with all the same."""
+    assert json.loads(inputs.text({"part": Held(object())})) == {
+        "part": {"class": "test_inputs.Held", "x": {"class": "builtins.object"}}
+    }

@@ -12,7 +12,7 @@ import inspect
 import json
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -23,14 +23,19 @@ WRITTEN_OUT = 64
 LONGEST = 60_000
 
 
-def describe(value: Any) -> Any:
+def describe(value: Any, *, strict: bool = True) -> Any:
     """A value as JSON's own types, the same for equal values in any process.
 
     Numbers, texts, dataclasses, arrays (sparse ones too), mappings, sequences, sets, functions by their
     names, and objects by their attributes.
 
-    Raises ValueError for what has no content to tell it by, such as an open file.
+    Raises ValueError for what has no content to tell it by, such as an open file; where not strict, its
+    class stands for it.
     """
+
+    def told(part: Any) -> Any:
+        return describe(part, strict=strict)
+
     if isinstance(value, np.generic):
         value = value.item()
     if value is None or isinstance(value, bool | int | str):
@@ -38,25 +43,25 @@ def describe(value: Any) -> Any:
     if isinstance(value, float):
         return value if math.isfinite(value) else {"float": str(value)}
     if isinstance(value, complex):
-        return {"complex": [describe(value.real), describe(value.imag)]}
+        return {"complex": [told(value.real), told(value.imag)]}
     if isinstance(value, bytes | bytearray):
         return {"bytes": hashlib.sha256(value).hexdigest()}
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if isinstance(value, Mapping):
-        return {str(key): describe(item) for key, item in value.items()}
+        return {str(key): told(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [describe(item) for item in value]
+        return [told(item) for item in value]
     if isinstance(value, set | frozenset):
-        return sorted((describe(item) for item in value), key=lambda item: json.dumps(item, sort_keys=True))
+        return sorted((told(item) for item in value), key=lambda item: json.dumps(item, sort_keys=True))
     if isinstance(value, np.ndarray):
-        return _array(value)
-    return _object(value)
+        return _array(value, told)
+    return _object(value, told, strict)
 
 
 def text(value: Any) -> str:
-    """The description as one line of JSON; entries of a mapping that are too long become their digests."""
-    described = describe(value)
+    """The description, not strict, as one line of JSON; entries of a mapping that are too long by digest."""
+    described = describe(value, strict=False)
     written = json.dumps(described, sort_keys=True)
     if len(written) > LONGEST and isinstance(described, dict):
         share = LONGEST // (2 * len(described))
@@ -76,9 +81,9 @@ def _digest(described: Any) -> str:
     return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:32]
 
 
-def _array(value: np.ndarray) -> Any:
+def _array(value: np.ndarray, told: Callable[[Any], Any]) -> Any:
     if value.dtype.hasobject or value.size <= WRITTEN_OUT:
-        return [describe(item) for item in value.tolist()] if value.ndim else describe(value.item())
+        return [told(item) for item in value.tolist()] if value.ndim else told(value.item())
     plain = np.ascontiguousarray(value)
     return {
         "shape": list(value.shape),
@@ -87,25 +92,27 @@ def _array(value: np.ndarray) -> Any:
     }
 
 
-def _object(value: Any) -> Any:
+def _object(value: Any, told: Callable[[Any], Any], strict: bool) -> Any:
     kind = type(value)
     name = f"{kind.__module__}.{kind.__qualname__}"
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        fields = {f.name: describe(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        fields = {f.name: told(getattr(value, f.name)) for f in dataclasses.fields(value)}
         return {"class": name, **fields}
     if isinstance(value, functools.partial):
-        return {"function": describe(value.func), "given": describe([value.args, value.keywords])}
+        return {"function": told(value.func), "given": told([value.args, value.keywords])}
     if inspect.ismethod(value):
-        return {"method": value.__qualname__, "of": describe(value.__self__)}
+        return {"method": value.__qualname__, "of": told(value.__self__)}
     if hasattr(value, "__qualname__"):
         return f"{value.__module__}.{value.__qualname__}"
     if hasattr(value, "tocoo"):
         coo = value.tocoo()
-        return {"class": name, "shape": list(coo.shape), "row": describe(coo.row), "col": describe(coo.col),
-                "data": describe(coo.data)}  # fmt: skip
+        return {"class": name, "shape": list(coo.shape), "row": told(coo.row), "col": told(coo.col),
+                "data": told(coo.data)}  # fmt: skip
     if not getattr(value, "__dict__", None):
+        if not strict:
+            return {"class": name}
         raise ValueError(
             f"{value!r} cannot be told by its content; use numbers, texts, arrays, dataclasses or objects "
             f"with attributes"
         )
-    return {"class": name, **{k: describe(v) for k, v in vars(value).items()}}
+    return {"class": name, **{k: told(v) for k, v in vars(value).items()}}
