@@ -58,7 +58,7 @@ asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 	  PYTHONMALLOC=malloc PYTHONPATH=$(BUILD)/asan/site \
 	  $(PY) -m pytest --capture=sys -m "not slow"
 
-# Lines of Python and of C that the C tests and the quick Python tests run through, the least covered files last.
+# Lines of Python and of C that the C tests and the quick Python tests run through, the least covered files first.
 # The Python tests use a copy of the package whose extension counts lines.
 coverage: $(BUILD)/coverage/build.ninja $(VENV)/package $(VENV)/test $(VENV)/coverage
 	find $(BUILD)/coverage -name '*.gcda' -delete
@@ -67,7 +67,8 @@ coverage: $(BUILD)/coverage/build.ninja $(VENV)/package $(VENV)/test $(VENV)/cov
 	meson install -C $(BUILD)/coverage --quiet
 	PYTHONPATH=$(BUILD)/coverage/site COVERAGE_FILE=$(BUILD)/coverage/python.data \
 	  $(PY) -m coverage run --source=bearingdyn -m pytest -m "not slow"
-	COVERAGE_FILE=$(BUILD)/coverage/python.data $(PY) -m coverage report --sort=-cover --skip-covered
+	cd $(BUILD)/coverage/site && \
+	  COVERAGE_FILE=../python.data $(CURDIR)/$(PY) -m coverage report --sort=cover --skip-covered
 	$(PY) -m gcovr --root . --filter csrc/ --sort=uncovered-percent --print-summary $(BUILD)/coverage
 
 bench: $(VENV)/package $(VENV)/test

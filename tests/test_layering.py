@@ -376,6 +376,8 @@ def extension() -> Elf:
     elf = Elf(Path(spec.origin))
     if any("asan" in library for library in elf.needed()):
         pytest.skip("built with the address sanitizer, which exports symbols of its own")
+    if any(symbol.name.startswith("__gcov") for symbol in elf.symbols(".dynsym")):
+        pytest.skip("built to count lines, which exports symbols of its own")
     return elf
 
 
