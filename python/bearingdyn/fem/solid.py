@@ -13,8 +13,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy
+import scipy.sparse
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from bearingdyn.material import Elastic
 
@@ -133,11 +135,11 @@ def _merged(
     offsets = np.cumsum([0] + [len(p) for p, _ in patches])
     points = np.vstack([p for p, _ in patches])
     quads = np.vstack([q + o for (_, q), o in zip(patches, offsets[:-1], strict=True)])
-    pairs = scipy.spatial.cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
     graph = scipy.sparse.coo_matrix(
         (np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points))
     )
-    count, label = scipy.sparse.csgraph.connected_components(graph, directed=False)
+    count, label = connected_components(graph, directed=False)
     unique = np.zeros((count, 2))
     unique[label] = points
     return unique, label[quads]

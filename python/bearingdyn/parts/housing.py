@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy
+import scipy.sparse
 
 from bearingdyn.cms import RigidInterface, Superelement, reduce_free_body
 from bearingdyn.fem.eigen import rigid_motion

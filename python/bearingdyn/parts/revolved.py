@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy
+import scipy.linalg
 from numpy.typing import NDArray
 
 from bearingdyn.cms import Superelement, Viscoelastic, modal_damping

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import scipy
+import scipy.linalg
 from numpy.typing import NDArray
 
 from bearingdyn import core
