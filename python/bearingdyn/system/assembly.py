@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.application import GROUND, Application
-from bearingdyn.inputs import text
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
 from bearingdyn.system.held import check_held
+from bearingdyn.system.origin import noted
 
 Array = NDArray[np.float64]
 
@@ -67,12 +67,9 @@ def assemble(app: Application) -> System:
     standstill = tuple(
         name for name, e in turning.items() if e.viscoelastic or (np.any(e.C) and not np.any(e.N))
     )
-    noted = {name: held for name, held in vars(app).items() if name != "parts"}  # reduced from the sources
-    system = System(
-        M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill, text(noted)
-    )
+    system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill)
     check_held(system, firm)
-    return system
+    return noted(system, app)
 
 
 def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
