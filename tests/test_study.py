@@ -11,7 +11,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -116,6 +116,41 @@ def test_death_of_a_worker_says_what_may_be_wrong():
     with pytest.raises(BrokenExecutor) as caught:
         study.sweep(dies, [{"x": 1.0}])
     assert "__main__" in caught.value.__notes__[0]
+
+
+class LosesEverySecond(Executor):
+    """An executor that reports a lost task as an error of its own, as a cluster does."""
+
+    def __init__(self):
+        self.count = 0
+
+    def submit(self, function, /, *args, **kwargs):
+        self.count += 1
+        future = Future()
+        if self.count % 2:
+            future.set_result(function(*args, **kwargs))
+        else:
+            future.set_exception(RuntimeError("the worker is gone"))
+        return future
+
+
+def test_case_that_the_executor_lost_fails_alone():
+    cases = study.sweep(Counter(), study.grid(x=[1.0, 2.0, 3.0]), LosesEverySecond())
+    assert [c.values.get("y") for c in cases] == [1.0, None, 9.0]
+    assert cases[1].error == "RuntimeError: the worker is gone"
+
+
+def test_cancelled_study_is_no_result(tmp_path):
+    class Cancels(LosesEverySecond):
+        def submit(self, function, /, *args, **kwargs):
+            future = super().submit(function, *args, **kwargs) if self.count == 0 else Future()
+            future.cancel()
+            future.set_running_or_notify_cancel() if future.cancelled() else None
+            return future
+
+    with pytest.raises(CancelledError):
+        study.sweep(Counter(), study.grid(x=[1.0, 2.0]), Cancels(), store=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 1  # what was finished is kept
 
 
 def test_interrupted_study_computes_only_what_is_missing(tmp_path):

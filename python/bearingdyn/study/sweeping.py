@@ -144,27 +144,33 @@ def _real(name: str, value: Any) -> float:
 def _run(
     pool: Executor, function: Study, todo: list[dict[str, Any]], ahead: list[int]
 ) -> Iterator[tuple[int, Case]]:
-    """Cases as they are finished."""
+    """Cases as they are finished; what ended the study is raised after all that were."""
     futures: dict[Future[tuple[dict[str, float], str | None]], int] = {}
+    ended: BrokenExecutor | CancelledError | None = None
     try:
-        with _worker_environment():  # a worker may be started with every submission
-            for index in ahead:
-                futures[pool.submit(_attempt, function, todo[index])] = index
+        try:
+            with _worker_environment():  # a worker may be started with every submission
+                for index in ahead:
+                    futures[pool.submit(_attempt, function, todo[index])] = index
+        except BrokenExecutor as broken:
+            ended = broken
         for future in as_completed(futures):
             index = futures[future]
             try:
                 values, error = future.result()
-            except BrokenExecutor as broken:
-                broken.add_note(
-                    "A worker process died: the function crashed it or used up the memory, or the script "
-                    'calls sweep outside `if __name__ == "__main__":`.'
-                )
-                raise
-            except CancelledError:
-                raise
+            except (BrokenExecutor, CancelledError) as broken:
+                ended = ended or broken
+                continue
             except Exception as lost:  # the executor's own, as dask's KilledWorker
                 values, error = {}, f"{type(lost).__name__}: {lost}"
             yield index, Case(todo[index], values, error)
+        if isinstance(ended, BrokenExecutor):
+            ended.add_note(
+                "A worker process died: the function crashed it or used up the memory, or the script "
+                'calls sweep outside `if __name__ == "__main__":`.'
+            )
+        if ended is not None:
+            raise ended
     finally:
         for future in futures:
             future.cancel()
