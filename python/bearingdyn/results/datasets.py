@@ -6,11 +6,11 @@ import hashlib
 import platform
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
+import scipy
 
 from bearingdyn.core import Report
 
@@ -21,17 +21,25 @@ Variable: TypeAlias = tuple[str | tuple[str, ...], Any, str, str]
 """dims, values, unit, meaning"""
 
 
-@cache
-def versions() -> Mapping[str, str]:
+def _own_version() -> str:
+    try:
+        return version("bearingdyn")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+# found once: it takes milliseconds where many packages are installed
+VERSION = _own_version()
+
+
+def versions() -> dict[str, str]:
     """Versions of the package and of what it computes with, by name; "not installed" where there is none."""
-    found = {"bearingdyn": "", "Python": platform.python_version(), "NumPy": "", "SciPy": ""}
-    for name in found:
-        if name != "Python":
-            try:
-                found[name] = version(name.lower())
-            except PackageNotFoundError:
-                found[name] = "not installed"
-    return found
+    return {
+        "bearingdyn": VERSION,
+        "Python": platform.python_version(),
+        "NumPy": np.__version__,
+        "SciPy": scipy.__version__,
+    }
 
 
 def stamp(time: datetime | None = None) -> str:
