@@ -31,7 +31,7 @@ COMPILERS := lint $(if $(shell command -v clang),lint-clang)
 # The sanitizers' libraries must be in the process first, and the C++ library whose exceptions they watch with them.
 SANITIZERS = $(foreach library,libasan.so libubsan.so libstdc++.so.6,$(shell cc -print-file-name=$(library)))
 
-.PHONY: demo test ctest pytest asan coverage bench lint verify clean always
+.PHONY: demo test ctest pytest asan coverage bench peers lint verify clean always
 
 # Two pip runs on one environment do not mix, and pytest has the last word.
 .NOTPARALLEL:
@@ -77,6 +77,11 @@ bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/bearing.py --json
 	$(PY) benchmarks/memory.py --json
 	$(PY) benchmarks/study.py --json
+
+# Other programs beside this one; each that is not installed is named and skipped.
+peers: $(VENV)/package $(VENV)/test
+	$(PY) benchmarks/peers_fem.py
+	$(PY) benchmarks/peers.py
 
 lint: $(VENV)/package $(VENV)/lint $(COMPILERS:%=$(BUILD)/%/build.ninja)
 	ruff check
