@@ -11,6 +11,7 @@ from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectr
 from bearingdyn.plot.shape import mode_shape
 from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
 from bearingdyn.plot.speed import campbell, waterfall
+from bearingdyn.plot.trade_off import trade_off
 
 __all__ = [
     "ball_loads",
@@ -30,6 +31,7 @@ __all__ = [
     "shifts",
     "spectrum",
     "spectrum_of",
+    "trade_off",
     "van_gurp_palmen",
     "waterfall",
 ]
