@@ -53,6 +53,16 @@ def frequency_response(
     Raises ValueError for an unknown channel or quantity, a negative frequency, bearings without equilibrium,
     a damped part that would turn;
     ArithmeticError where the dynamic stiffness is singular.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> app = bd.Application()
+    >>> app.add("mass", bd.RigidBody(mass=1.0, inertia=(1e-3, 1e-3, 1e-3)))
+    >>> app.ground("mass.centre", stiffness=[1e6] * 6, damping=[20.0] * 6)
+    >>> frf = bd.frequency_response(app, [0.0, 50.0], ["mass.centre.y"], ["mass.centre.y"])
+    >>> frf["response"].dims, [f"{abs(h):.3e}" for h in frf["response"].values.ravel()]  # m/N
+    (('frequency', 'output', 'input'), ['1.000e-06', '1.109e-06'])
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
     if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f >= 0).all()):

@@ -39,6 +39,13 @@ def modes(
     coordinate) complex, of the system's coordinates; motion of a place is rows(place) @ shape.
 
     Raises ValueError for bearings without an equilibrium, or a damped part that would turn at speed.
+
+    >>> import bearingdyn as bd
+    >>> app = bd.Application()
+    >>> app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
+    >>> app.ground("mass.centre", stiffness=[1e6] * 3 + [1e3] * 3)
+    >>> bd.modes(app)["frequency"].values.round(2).tolist()  # √(k/m)/2π, three times each
+    [112.54, 112.54, 112.54, 159.15, 159.15, 159.15]
     """
     system = _linear(source)
     system.check_speed(speed)

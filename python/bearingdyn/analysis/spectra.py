@@ -46,6 +46,11 @@ def orbit(result: xarray.Dataset, x: str, y: str) -> xarray.Dataset:
     """Two channels against each other, each with its mean (the static deflection) subtracted.
 
     Raises ValueError for an unknown channel.
+
+    result: as `transient` returns it.
+    x, y: names of recorded channels, m.
+
+    Returns a Dataset with x and y (time), m.
     """
     from bearingdyn.results import dataset
 

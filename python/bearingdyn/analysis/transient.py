@@ -87,6 +87,21 @@ def transient(
         On Ctrl-C; its `partial` likewise.
     OSError
         Where `stream` cannot be written; what was on the disk stays.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import bearingdyn as bd
+    >>> app = bd.Application()
+    >>> app.add("mass", bd.RigidBody(mass=1.0, inertia=(1e-3, 1e-3, 1e-3)))
+    >>> app.ground("mass.centre", stiffness=[1e6] * 6)
+    >>> run = bd.transient(bd.equilibrium(app), speed=0.0, dt=1e-5, steps=1000, record=["mass.centre.y"],
+    ...                    initial={"mass.centre": [0, 1e-6, 0, 0, 0, 0]})
+    >>> y = run["record"].sel(channel="mass.centre.y")
+    >>> bool(np.allclose(y, 1e-6 * np.cos(1000 * y["time"]), atol=1e-9))  # m; √(k/m) is 1000 rad/s
+    True
+
+    Reference: paper section 4.2.
     """
     if not (dt > 0 and math.isfinite(dt)):
         raise ValueError(f"dt is {dt}; the time step must be positive, in s")

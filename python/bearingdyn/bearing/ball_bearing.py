@@ -88,6 +88,15 @@ class BallBearing:
     ------
     ValueError
         Naming the field, its value and what would be right.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> hard = {"material": bd.Elastic(207e9, 0.3, 7850.0), "ball_material": bd.Elastic(207e9, 0.3, 7850.0)}
+    >>> ball = bd.BallBearing(Z=8, Dw=5.953e-3, Dpw=25e-3, fi=0.52, fo=0.53, clearance=10e-6, **hard)
+    >>> q = ball.displacement([0, 0, 180.0, 0, 0, 0])  # 180 N along the axis
+    >>> print(f"{q[2] * 1e6:.2f} µm from centred, {ball.stiffness(q)[0, 0] / 1e6:.2f} N/µm radially")
+    77.76 µm from centred, 95.33 N/µm radially
     """
 
     Z: int

@@ -26,6 +26,21 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
 
     The file is written under another name and moved into place, so that a failure leaves no half file.
     Raises ValueError if there is nothing to save, OSError where the place cannot be written.
+
+    A file opens elsewhere too: complex numbers lie there as a last axis of two, real and imaginary part.
+
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import bearingdyn as bd
+    >>> app = bd.Application()
+    >>> app.add("mass", bd.RigidBody(mass=1.0, inertia=(1e-3, 1e-3, 1e-3)))
+    >>> app.ground("mass.centre", stiffness=[1e6] * 6)
+    >>> found = bd.modes(app)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     bd.save(found, Path(folder) / "modes.nc")
+    ...     again = bd.load(Path(folder) / "modes.nc")
+    >>> again.equals(found)
+    True
     """
     target = Path(path)
     groups = dict(results) if isinstance(results, Mapping) and not hasattr(results, "dims") else {"": results}

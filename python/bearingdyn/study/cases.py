@@ -31,6 +31,10 @@ def grid(**axes: Iterable[Any]) -> list[dict[str, Any]]:
     """Every combination of the values of the axes, the last axis running fastest.
 
     Raises ValueError for an axis without values, or no axis at all.
+
+    >>> from bearingdyn import study
+    >>> study.grid(width=[0.012, 0.016], rubber=["soft", "hard"])[1]
+    {'width': 0.012, 'rubber': 'hard'}
     """
     if not axes:
         raise ValueError("grid needs at least one axis, such as grid(width=[0.012, 0.016])")
