@@ -41,7 +41,11 @@ ISAS = {"best": 0, "base": 1, "avx2": 2, "avx512": 3}
 
 
 class SolverError(RuntimeError):
-    """A march that could not go on: `report` says where, `partial` holds what was computed up to then."""
+    """A march that could not go on: `report` says where, `partial` holds what was computed up to then.
+
+    report: a Report, with step, t in s and residual relative to the largest bearing force.
+    partial: a Dataset as `transient` returns it.
+    """
 
     def __init__(self, message: str, report: Report, partial: object = None) -> None:
         super().__init__(message)
@@ -53,7 +57,10 @@ class SolverError(RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """A march ended by the user. `partial` holds what was computed up to then."""
+    """A march ended by the user. `partial` holds what was computed up to then.
+
+    partial: a Dataset as `transient` returns it; `resume=` goes on from there.
+    """
 
     def __init__(self, message: str, partial: object = None) -> None:
         super().__init__(message)

@@ -40,6 +40,8 @@ class Waviness:
         Which ball carries it, from 1; None: every ball, in phase.
 
     Raises ValueError naming the field, its value and what would be right.
+
+    Reference: J. A. Wensing, On the Dynamics of Ball Bearings, University of Twente, 1998.
     """
 
     body: Body

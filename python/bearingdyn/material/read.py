@@ -162,5 +162,8 @@ def _first_table(
 
 def sample_dma_path() -> Path:
     """Path of the sample table shipped with the package: made from a model its header states, not
-    measured."""
+    measured.
+
+    Returns the path of a CSV: frequency, Hz, temperature, °C, storage and loss modulus in shear, Pa.
+    """
     return Path(str(importlib.resources.files("bearingdyn.material") / "sample_dma.csv"))

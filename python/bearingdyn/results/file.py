@@ -61,6 +61,8 @@ def load(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
     """Read a Dataset written by `save`, or what a run file holds so far, wholly into memory.
 
     Raises ValueError if the file does not exist, is no netCDF-4 file, or lacks the group.
+
+    Returns the Dataset, its variables with units, complex numbers complex again.
     """
     import xarray
 
