@@ -11,7 +11,8 @@ import scipy.sparse
 
 from bearingdyn.cms import RigidInterface, Superelement, reduce_free_body
 from bearingdyn.fem.eigen import rigid_motion
-from bearingdyn.fem.solid import assemble_solid, block_with_bore
+from bearingdyn.fem.solid import assemble_solid
+from bearingdyn.fem.solid_meshers import block_with_bore
 from bearingdyn.material import STEEL, Elastic
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
