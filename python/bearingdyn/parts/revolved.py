@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from bearingdyn.cms import Superelement, Viscoelastic, modal_damping
+from bearingdyn.cms import Superelement, Viscoelastic, modal_damping, orthogonalise
 from bearingdyn.fem.eigen import factorise, lowest_modes, rigid_transfer
 from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
 from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
@@ -21,8 +21,6 @@ from bearingdyn.parts.section import Cylinder, EndFace, Face, Region, find_face,
 
 Float = NDArray[np.float64]
 Index = NDArray[np.intp]
-
-DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off
 
 # Coordinates (of x, y, z, θx, θy, θz) and signs of an interface's rigid shapes, for each copy of a
 # harmonic family. Order 1 turned a quarter wave carries y where it carried x, and −θx where it carried θy:
@@ -227,13 +225,7 @@ class Revolved:
             modes[inner] = phi / (2 * np.pi * frequency)
             extra.append(modes)
         internal = np.hstack(extra) if extra else np.zeros((h.n, 0))
-        if internal.shape[1]:
-            energy, mix = np.linalg.eigh(internal.T @ (K @ internal))
-            kept = energy > DISTINCT
-            internal = internal @ (mix[:, kept] / np.sqrt(energy[kept]))
-            inverse, turn = np.linalg.eigh(internal.T @ (M @ internal))
-            order = np.argsort(-inverse)
-            internal = internal @ (turn[:, order] / np.sqrt(inverse[order]))
+        _, internal = orthogonalise(internal, K, M)
         return np.hstack([static, internal]), static.shape[1]
 
     def superelement(self) -> Superelement:
