@@ -10,6 +10,7 @@ from bearingdyn.cms.damping import coupled_blocks, modal_damping
 from bearingdyn.cms.full import FullModel, RigidInterface
 from bearingdyn.cms.reduction import (
     Basis,
+    basis_of,
     craig_bampton,
     modulus_levels,
     orthogonalise,
@@ -26,6 +27,7 @@ __all__ = [
     "RigidInterface",
     "Superelement",
     "Viscoelastic",
+    "basis_of",
     "coupled_blocks",
     "craig_bampton",
     "modal_damping",

@@ -2,6 +2,7 @@
 
 from bearingdyn.fem.beam import Section
 from bearingdyn.fem.exchange import FEMatrices, check_matrices, read_matrix_market, read_npz, write_npz
+from bearingdyn.fem.mesh_file import read_mesh
 from bearingdyn.fem.solid import SolidMatrices, assemble_solid
 from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
 from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, crowded, ring_mesh
@@ -18,6 +19,7 @@ __all__ = [
     "check_matrices",
     "crowded",
     "read_matrix_market",
+    "read_mesh",
     "read_npz",
     "ring_mesh",
     "write_npz",

@@ -9,7 +9,6 @@ for its displacements cannot keep every point's volume, and Π takes part of div
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse
@@ -50,10 +49,10 @@ def assemble_solid(
 
     elements: indices of the region to assemble (default all); the nodes are numbered as for the whole mesh.
     incompressible: take from div u only what the element can keep as ν → ½: in 27-node bricks its part
-        linear in each element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987, ch. 4),
-        in 20-node bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra its
-        mean (P2/P0: free of locking, but of first order: take a fine mesh, or bricks). On a bonded strip with
-        ν = 0.49995 the 27-node brick is the best of them, the 20-node brick within some per cent.
+        linear in each element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987,
+        ch. 4), in 20-node bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra
+        its mean (P2/P0: free of locking, but of first order: take a fine mesh, or bricks). A bonded ring of
+        ν = 0.499 with 4×8×24 elements is within 0.2 % with 27-node bricks and 3 % with 20-node ones.
 
     Integration: 3×3×3 points in bricks, exact for straight-sided ones; order 4 in tetrahedra.
     """
@@ -92,7 +91,7 @@ def assemble_solid(
 
 
 def _element_matrices(kind: SolidElement, p: Float, incompressible: bool) -> tuple[Float, Float, Float]:
-    """Mass (m, k, k) of one component, volumetric and deviatoric stiffness (m, 3k, 3k) of elements p (m, k, 3)."""
+    """Mass (m, k, k) of a component, volumetric and deviatoric (m, 3k, 3k) of elements with nodes p (m, k, 3)."""
     X, w = points(kind)
     N = shapes(kind, X)[0]
     D, dV = _gradients(kind, p, X, w)

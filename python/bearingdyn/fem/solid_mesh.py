@@ -148,7 +148,7 @@ class SolidMesh:
                 f"{loose.size} nodes belong to no element, the first at {p[loose[0]].tolist()} m "
                 f"(node {loose[0]}, from 0); remove them (read_mesh: drop_unconnected=True)"
             )
-        m, k = e.shape
+        k = e.shape[1]
         first = np.repeat(e[:, 0], k - 1)
         graph = scipy.sparse.coo_matrix(
             (np.ones(first.size, dtype=bool), (first, e[:, 1:].ravel())), (len(p),) * 2
@@ -182,19 +182,25 @@ class SolidMesh:
                 "check the order of its nodes, or refine the mesh"
             )
         c = len(kind.corners)
+        first, twin = np.unique(np.sort(e[:, :c], axis=1), axis=0, return_index=True, return_inverse=True)[1:]
+        for k in np.flatnonzero(first[twin.ravel()] != np.arange(len(e)))[:1].tolist():
+            other = numbers[first[twin.ravel()[k]]]
+            raise ValueError(f"elements {other} and {numbers[k]} have the same corners; keep one of them")
         ends = p[e[:, np.array(kind.edges)]]  # (m, edges, 2, 3)
         off = np.linalg.norm(p[e[:, c : c + len(kind.edges)]] - ends.mean(axis=2), axis=2)
         far = off > MIDDLE * np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
         for k in np.flatnonzero(far.any(axis=1))[:1].tolist():
             raise ValueError(
-                f"element {numbers[k]} has a middle node far from the middle of its edge "
-                f"(node {c + int(np.argmax(far[k]))} of the element, from 0); its nodes must be in VTK's order"
+                f"element {numbers[k]} has a middle node far from the middle of its edge (its "
+                f"node {c + int(np.argmax(far[k]))}, from 0); nodes must be in VTK's order"
             )
 
     def _jacobians(self, X: Float, elements: Any = slice(None)) -> Float:
         """∂x_a/∂ξ_b at points X (q, 3): (m, q, 3, 3)."""
         gradient = shapes(self.kind, X)[1]
-        return np.asarray(np.einsum("mka,qkb->mqab", self.points[self.elements[elements]], gradient, optimize=True))
+        return np.asarray(
+            np.einsum("mka,qkb->mqab", self.points[self.elements[elements]], gradient, optimize=True)
+        )
 
     @property
     def kind(self) -> SolidElement:
