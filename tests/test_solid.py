@@ -22,7 +22,7 @@ from bearingdyn.fem.eigen import (
 from bearingdyn.fem.exchange import FEMatrices, check_matrices, read_matrix_market, read_npz, write_npz
 from bearingdyn.fem.solid import assemble_solid
 from bearingdyn.fem.solid_mesh import SolidMesh, second_order
-from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, ring_mesh
+from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh
 from bearingdyn.material import STEEL
 from bearingdyn.parts import Feet, Housing
 
@@ -33,7 +33,7 @@ SIZE = np.array([0.1, 0.2, 0.3])
 
 
 def crooked(mesh):
-    """The box with its inner corners shifted, so that no element is a box: straight edges, flat or twisted faces."""
+    """The box with its inner corners shifted, so that no element is a box; edges stay straight."""
     corners = mesh.points[: mesh.elements[:, : len(mesh.kind.corners)].max() + 1].copy()
     inner = np.all((corners > 1e-9) & (corners < SIZE - 1e-9), axis=1)
     corners[inner] += 0.012 * np.sin(40.0 * corners[inner][:, [1, 2, 0]] + 1.0)

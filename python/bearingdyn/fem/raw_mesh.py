@@ -113,9 +113,10 @@ def _regions(raw: RawMesh, chosen: Sequence[str] | None) -> dict[str, Index]:
     if parts and np.all(uses == 1):
         return parts
     whole = [name for name, at in known.items() if at.size == total]
-    if whole or not parts:
+    overlap = bool(np.any(uses > 1))
+    if not parts or (whole and not overlap):
         return {whole[0]: known[whole[0]]} if whole else {}
-    fault = "overlap" if np.any(uses > 1) else "leave elements out"
+    fault = "overlap" if overlap else "leave elements out"
     raise ValueError(
         f"the sets of elements {sorted(parts)} {fault}; name those that are regions with regions=(...), "
         "or pass regions=() for a single region"

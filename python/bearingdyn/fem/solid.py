@@ -91,7 +91,7 @@ def assemble_solid(
 
 
 def _element_matrices(kind: SolidElement, p: Float, incompressible: bool) -> tuple[Float, Float, Float]:
-    """Mass (m, k, k) of a component, volumetric and deviatoric (m, 3k, 3k) of elements with nodes p (m, k, 3)."""
+    """Mass (m, k, k) of a component, volumetric and deviatoric stiffness (m, 3k, 3k); p: (m, k, 3) nodes."""
     X, w = points(kind)
     N = shapes(kind, X)[0]
     D, dV = _gradients(kind, p, X, w)

@@ -170,17 +170,6 @@ class SolidMesh:
     def _check_shapes(self) -> None:
         kind, p, e, numbers = self.kind, self.points, self.elements, self.numbers
         assert numbers is not None
-        det = np.linalg.det(self._jacobians(points(kind)[0]))
-        for k in np.flatnonzero(~np.all(det > 0, axis=1))[:1].tolist():
-            if np.all(det[k] < 0):
-                raise ValueError(
-                    f"element {numbers[k]} has the nodes of a mirror image: corners 0, 1, 2 must turn "
-                    "anticlockwise seen from the other end; renumber its nodes"
-                )
-            raise ValueError(
-                f"element {numbers[k]} is turned inside out: its volume changes sign inside; "
-                "check the order of its nodes, or refine the mesh"
-            )
         c = len(kind.corners)
         first, twin = np.unique(np.sort(e[:, :c], axis=1), axis=0, return_index=True, return_inverse=True)[1:]
         for k in np.flatnonzero(first[twin.ravel()] != np.arange(len(e)))[:1].tolist():
@@ -193,6 +182,17 @@ class SolidMesh:
             raise ValueError(
                 f"element {numbers[k]} has a middle node far from the middle of its edge (its "
                 f"node {c + int(np.argmax(far[k]))}, from 0); nodes must be in VTK's order"
+            )
+        det = np.linalg.det(self._jacobians(points(kind)[0]))
+        for k in np.flatnonzero(~np.all(det > 0, axis=1))[:1].tolist():
+            if np.all(det[k] < 0):
+                raise ValueError(
+                    f"element {numbers[k]} has the nodes of a mirror image: corners 0, 1, 2 must turn "
+                    "anticlockwise seen from the other end; renumber its nodes"
+                )
+            raise ValueError(
+                f"element {numbers[k]} is turned inside out: its volume changes sign inside; "
+                "check the order of its nodes, or refine the mesh"
             )
 
     def _jacobians(self, X: Float, elements: Any = slice(None)) -> Float:
