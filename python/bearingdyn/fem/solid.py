@@ -51,8 +51,9 @@ def assemble_solid(
     incompressible: take from div u only what the element can keep as ν → ½: in 27-node bricks its part
         linear in each element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987,
         ch. 4), in 20-node bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra
-        its mean (P2/P0: free of locking, but of first order: take a fine mesh, or bricks). A bonded ring of
-        ν = 0.499 with 4×8×24 elements is within 0.2 % with 27-node bricks and 3 % with 20-node ones.
+        its mean (P2/P0: free of locking, but too soft, and of first order). A bonded ring of ν = 0.499 with
+        4×8×24 elements is within 0.2 % with 27-node bricks and 3 % with 20-node ones; a bonded strip with
+        two tetrahedra through its thickness is 7 % too soft, with six 3 %.
 
     Integration: 3×3×3 points in bricks, exact for straight-sided ones; order 4 in tetrahedra.
     """
