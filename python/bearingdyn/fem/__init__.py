@@ -5,7 +5,7 @@ from bearingdyn.fem.exchange import FEMatrices, check_matrices, read_matrix_mark
 from bearingdyn.fem.mesh_file import read_mesh
 from bearingdyn.fem.solid import SolidMatrices, assemble_solid
 from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
-from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, crowded, ring_mesh
+from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, crowded, o_ring_mesh, ring_mesh
 
 __all__ = [
     "FEMatrices",
@@ -18,6 +18,7 @@ __all__ = [
     "box_mesh",
     "check_matrices",
     "crowded",
+    "o_ring_mesh",
     "read_matrix_market",
     "read_mesh",
     "read_npz",

@@ -1,10 +1,11 @@
-"""Built-in meshes of bricks: a box, a ring or a segment of one, a block or flange with a bore and feet."""
+"""Built-in meshes of bricks: a box, a ring or a segment of one, an O-ring, a block with bore and feet."""
 
 from __future__ import annotations
 
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -93,29 +94,103 @@ def ring_mesh(
         raise ValueError(
             f"regions is {names} and across {steps}; {count} layers need a name of its own and a number each"
         )
-    start, end = (0.0, 2.0 * math.pi) if angle is None else angle
-    if not (start < end and (angle is None or end - start < 2.0 * math.pi - 1e-6)):
-        raise ValueError(f"angle is {angle}; it must be (from, to) in rad, less than a turn; None: the whole")
-    least = 6 if angle is None else 1
-    if not around >= least:
-        raise ValueError(f"around is {around}; it must be {least} or more")
+    start, end = _angles(angle, around)
     r = np.concatenate(
         [crowded(a, b, n)[:-1] for (a, b), n in zip(itertools.pairwise(radii), steps, strict=True)]
         + [np.array([radii[-1]])]
     )
     flat = box_mesh(r, np.linspace(start, end, around + 1), crowded(-0.5 * width, 0.5 * width, along))
     flat = _with_kind(flat, element)
-    rho, phi, z = flat.points.T
-    p = np.stack([rho * np.cos(phi), rho * np.sin(phi), z], axis=1)
     middle = flat.points[flat.elements[:, :8], 0].mean(axis=1)
     layer = np.searchsorted(radii, middle) - 1
     kept = {"x-": "inner", "x+": "outer", "z-": "z-", "z+": "z+", "y-": "start", "y+": "end"}
-    elements, surfaces = flat.elements, {kept[name]: at for name, at in flat.surfaces.items()}
-    if angle is None:
-        p, label = merged(p, 1e-9 * radii[-1])
+    surfaces = {kept[name]: at for name, at in flat.surfaces.items()}
+    layers = {name: np.flatnonzero(layer == k) for k, name in enumerate(names)}
+    return _revolved(replace(flat, regions=layers, surfaces=surfaces), closed=angle is None)
+
+
+def _revolved(flat: SolidMesh, closed: bool) -> SolidMesh:
+    """A mesh whose points are (r, φ, z) laid out in space; closed: its ends, a turn apart, become one."""
+    r, phi, z = flat.points.T
+    p, elements, surfaces = (
+        np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=1),
+        flat.elements,
+        flat.surfaces,
+    )
+    if closed:
+        p, label = merged(p, 1e-9 * float(r.max()))
         elements = label[elements]
         surfaces = {n: label[at] for n, at in surfaces.items() if n not in ("start", "end")}
-    return SolidMesh(p, elements, {n: np.flatnonzero(layer == k) for k, n in enumerate(names)}, surfaces)
+    return SolidMesh(p, elements, flat.regions, surfaces)
+
+
+def o_ring_mesh(
+    radius: float,
+    cord: float,
+    band: float,
+    angle: tuple[float, float] | None = None,
+    *,
+    across: int = 4,
+    around: int = 24,
+    element: str = "hex27",
+) -> SolidMesh:
+    """An O-ring about z, or a segment of it, at rest between a shaft and a bore.
+
+    radius: of the circle of the cord's centre, m. cord: its diameter, m. band: width, m, along z, of the two
+    strips by which it holds, the innermost and the outermost of its surface; 0.2 to 0.95 of the cord.
+    angle: (from, to), rad; None: the whole ring. across: elements across each band; around: over the angle.
+    Surfaces: "inner" and "outer", the bands; of a segment also "start" and "end".
+
+    Raises ValueError for measures out of range.
+    """
+    if not (cord > 0 and 0.5 * cord < radius < math.inf):
+        raise ValueError(f"cord is {cord} and radius {radius}; they must be positive, radius above cord/2, m")
+    if not 0.2 * cord <= band <= 0.95 * cord:
+        raise ValueError(
+            f"band is {band}; it must lie in 0.2 to 0.95 of the cord, {0.2 * cord} to {0.95 * cord} m"
+        )
+    if not across >= 2:
+        raise ValueError(f"across is {across}; it must be 2 or more")
+    start, end = _angles(angle, around)
+    a, half, core = 0.5 * cord, math.asin(band / cord), 0.45
+    # the section: a rectangle in the middle and four patches about it; lines crowd to the ends of the bands
+    sides = [crowded(-half, half, across), crowded(half, math.pi - half, across)]
+    sides += [arc + math.pi for arc in sides]
+    corner = core * a * np.exp(1j * np.array([-half, half, math.pi - half, math.pi + half, -half]))
+    t = np.linspace(0.0, 1.0, max(2, across // 2) + 1)[:, None]
+    share = crowded(0.0, 1.0, across)
+    patches = []
+    for k, arc in enumerate(sides):
+        inside = corner[k] + share * (corner[k + 1] - corner[k])
+        place = inside + t * (a * np.exp(1j * arc) - inside)
+        patches.append(_patch(place.real, place.imag))
+    x, y = np.meshgrid((2 * share[::-1] - 1) * corner[1].real, (2 * share - 1) * corner[1].imag)
+    patches.append(_patch(x, y))  # all clockwise, for (r, φ, z) is right-handed
+    plane, quads = _joined(patches, 1e-9 * cord)
+    p, elements, ends = second_order(*_extruded(plane, quads, np.linspace(start, end, around + 1)))
+    skin = np.hypot(p[:, 0], p[:, 1]) > a * (1 - 1e-9)
+    middle = len(p) - len(ends) + np.flatnonzero(skin[ends].all(axis=1))
+    p[middle, :2] *= (a / np.hypot(*p[middle, :2].T))[:, None]
+    skin[middle] = True
+    held = skin & (np.abs(p[:, 1]) < 0.5 * band * (1 + 1e-9))
+    surfaces = {
+        "inner": np.flatnonzero(held & (p[:, 0] < 0)),
+        "outer": np.flatnonzero(held & (p[:, 0] > 0)),
+        "start": np.flatnonzero(p[:, 2] == start),
+        "end": np.flatnonzero(p[:, 2] == end),
+    }
+    flat = SolidMesh(np.stack([radius + p[:, 0], p[:, 2], p[:, 1]], axis=1), elements, {}, surfaces)
+    return _revolved(_with_kind(flat, element), closed=angle is None)
+
+
+def _angles(angle: tuple[float, float] | None, around: int) -> tuple[float, float]:
+    start, end = (0.0, 2.0 * math.pi) if angle is None else angle
+    if not (start < end and (angle is None or end - start < 2.0 * math.pi - 1e-6)):
+        raise ValueError(f"angle is {angle}; it must be (from, to) in rad, less than a turn; None: the whole")
+    least = 6 if angle is None else 1
+    if not around >= least:
+        raise ValueError(f"around is {around}; it must be {least} or more")
+    return start, end
 
 
 def _lines(stops: list[float], size: float, least: int = 1) -> Float:
@@ -132,6 +207,20 @@ def _patch(x: Float, y: Float) -> tuple[Float, Index]:
     i = np.arange(x.size).reshape(x.shape)
     quads = np.stack([i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]], axis=-1).reshape(-1, 4)
     return np.stack([x.ravel(), y.ravel()], axis=-1), quads
+
+
+def _joined(patches: Sequence[tuple[Float, Index]], tolerance: float) -> tuple[Float, Index]:
+    """Patches as one; points within the tolerance become one."""
+    offsets = np.cumsum([0] + [len(p) for p, _ in patches])
+    plane, label = merged(np.vstack([p for p, _ in patches]), tolerance)
+    return plane, label[np.vstack([q + o for (_, q), o in zip(patches, offsets[:-1], strict=True)])]
+
+
+def _extruded(plane: Float, quads: Index, z: Float) -> tuple[Float, Index]:
+    """Points (k, 3) and bricks (m, 8) of a plane mesh at heights z."""
+    points = np.hstack([np.tile(plane, (len(z), 1)), np.repeat(z, len(plane))[:, None]])
+    lower = (quads[None] + len(plane) * np.arange(len(z) - 1)[:, None, None]).reshape(-1, 4)
+    return points, np.hstack([lower, lower + len(plane)])
 
 
 def block_with_bore(
@@ -179,14 +268,10 @@ def block_with_bore(
         out = _lines([half, half + flange[0]], element_size)
         foot = side[side <= shelf[0] + 1e-9 * height]
         patches += [_patch(*np.meshgrid(out, foot)), _patch(*np.meshgrid(-out[::-1], foot))]
-    offsets = np.cumsum([0] + [len(p) for p, _ in patches])
-    plane, label = merged(np.vstack([p for p, _ in patches]), 1e-6 * element_size)
-    quads = label[np.vstack([q + o for (_, q), o in zip(patches, offsets[:-1], strict=True)])]
+    plane, quads = _joined(patches, 1e-6 * element_size)
     z = _lines([-0.5 * length, 0.5 * length], element_size, 2)
 
-    corners = np.hstack([np.tile(plane, (len(z), 1)), np.repeat(z, len(plane))[:, None]])
-    lower = (quads[None] + len(plane) * np.arange(len(z) - 1)[:, None, None]).reshape(-1, 4)
-    p, elements, _ = second_order(corners, np.hstack([lower, lower + len(plane)]))
+    p, elements, _ = second_order(*_extruded(plane, quads, z))
     rho = np.hypot(p[:, 0], p[:, 1])
     bore = rho < r * (1.0 + 1e-9)  # nodes on the bore, and the middles of its chords
     p[bore, :2] *= (r / rho[bore])[:, None]
