@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from bearingdyn.fem.mesh_file import read_mesh
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_element import KINDS
 from bearingdyn.fem.solid_mesh import SolidMesh, second_order
 from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, ring_mesh
 from bearingdyn.material import STEEL
@@ -427,71 +425,3 @@ def test_files_that_are_no_mesh_are_refused(tmp_path):
     ):
         with pytest.raises(ValueError, match=message):
             read_mesh(tmp_path / "g.vtu", **change)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"points": np.zeros((20, 2))}, r"points has shape \(20, 2\)"),
-        ({"elements": [[0] * 12]}, r"elements has shape \(1, 12\); a row holds 20 or 27"),
-        ({"elements": [list(range(1, 21))]}, "element 0 names a node outside 0...19"),
-        ({"regions": {"a": []}}, r"regions\['a'\] is empty"),
-        ({"regions": {"a": [1]}}, r"regions\['a'\] names an element outside 0...0"),
-        ({"regions": {"a": [0], "b": [0]}}, r"element 0 is in the regions \['a', 'b'\]"),
-        ({"surfaces": {"s": []}}, r"surfaces\['s'\] is empty; it must name nodes"),
-        ({"surfaces": {"s": [20]}}, r"surfaces\['s'\] names a node outside 0...19"),
-    ],
-)
-def test_mesh_refuses(change, message):
-    box = box_mesh([0, 1], [0, 1], [0, 1])
-    with pytest.raises(ValueError, match=message):
-        SolidMesh(**({"points": box.points, "elements": box.elements} | change))
-
-
-def test_surfaces_and_regions_can_be_added_by_place_and_not_by_mistake():
-    mesh = box_mesh([0, 1, 2], [0, 1], [0, 1]).with_surface("low", lambda p: p[:, 2] < 0.1)
-    assert mesh.samples("low").area == pytest.approx(2.0)
-    assert mesh.with_region("left", lambda p: p[:, 0] < 1).volume("left") == pytest.approx(1.0)
-    for call, message in (
-        (lambda: mesh.with_surface("low", lambda p: p[:, 2] < 1), "has a surface 'low' already"),
-        (lambda: mesh.with_surface("none", lambda p: p[:, 2] < -1), "surface 'none' is empty"),
-        (lambda: mesh.with_region("body", lambda p: p[:, 2] < 1), "has a region 'body' already"),
-        (lambda: mesh.with_region("none", lambda p: p[:, 2] < 0), "region 'none' is empty"),
-        (lambda: mesh.surface("lid"), r"no surface 'lid'; it has \['low', 'x\+'"),
-        (lambda: mesh.with_surface("dot", lambda p: p.sum(axis=1) == 0).faces("dot"), "holds no whole face"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            call()
-
-
-def test_centres_added_to_bricks_leave_the_body_as_it_is():
-    mesh = block_with_bore(60, 90, 12, 30, 50, 15, flange=(12, 8))
-    full = mesh.with_centres()
-    assert full.kind is KINDS[27]
-    assert full.volume() == pytest.approx(mesh.volume(), rel=1e-13)
-    for name in mesh.surfaces:
-        assert full.samples(name).area == pytest.approx(mesh.samples(name).area, rel=1e-13)
-    # a field the 20-node brick holds has the same energy in both
-    at = np.arange(len(full.points))
-    old = assemble_solid(mesh).stiffness(STEEL)
-    u = (mesh.points @ np.array([[1.0, 0.3, 0.0], [0.0, 1.0, 0.2], [0.1, 0.0, 1.0]])).ravel()
-    v = (full.points @ np.array([[1.0, 0.3, 0.0], [0.0, 1.0, 0.2], [0.1, 0.0, 1.0]])).ravel()
-    assert at.size == len(full.points)
-    assert v @ assemble_solid(full).stiffness(STEEL) @ v == pytest.approx(u @ old @ u, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: box_mesh([0, 0], [0, 1], [0, 1]), r"x is \[0.0, 0.0\]; it must be two grid lines"),
-        (lambda: box_mesh([0, 1], [0, 1], [0, 1], "hex8"), "element is 'hex8'"),
-        (lambda: ring_mesh((2.0, 1.0), 1.0), r"radii is \(2.0, 1.0\)"),
-        (lambda: ring_mesh((1.0, 2.0), math.nan), "width is nan"),
-        (lambda: ring_mesh((1.0, 2.0), 1.0, (0.0, 7.0)), r"angle is \(0.0, 7.0\)"),
-        (lambda: ring_mesh((1.0, 2.0), 1.0, around=4), "around is 4"),
-        (lambda: ring_mesh((1.0, 2.0), 1.0, regions=("a", "b")), "1 layers need a name of its own"),
-    ],
-)
-def test_meshers_refuse(call, message):
-    with pytest.raises(ValueError, match=message):
-        call()

@@ -111,6 +111,10 @@ class SolidMesh:
         object.__setattr__(self, "points", p)
         object.__setattr__(self, "elements", e)
         object.__setattr__(self, "numbers", numbers)
+        if numbers.shape != (len(e),):
+            raise ValueError(
+                f"numbers has shape {numbers.shape}; it must be ({len(e)},), one for each element"
+            )
         if e.min() < 0 or e.max() >= len(p):
             k = int(np.flatnonzero((e < 0).any(axis=1) | (e >= len(p)).any(axis=1))[0])
             raise ValueError(f"element {numbers[k]} names a node outside 0...{len(p) - 1}")
@@ -177,12 +181,21 @@ class SolidMesh:
             raise ValueError(f"elements {other} and {numbers[k]} have the same corners; keep one of them")
         ends = p[e[:, np.array(kind.edges)]]  # (m, edges, 2, 3)
         off = np.linalg.norm(p[e[:, c : c + len(kind.edges)]] - ends.mean(axis=2), axis=2)
-        far = off > MIDDLE * np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
+        length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
+        far = off > MIDDLE * length
         for k in np.flatnonzero(far.any(axis=1))[:1].tolist():
             raise ValueError(
                 f"element {numbers[k]} has a middle node far from the middle of its edge (its "
                 f"node {c + int(np.argmax(far[k]))}, from 0); nodes must be in VTK's order"
             )
+        if kind.centres:
+            expected = shapes(HEX20, HEX27.places[20:])[0] @ p[e[:, :20]]
+            off = np.linalg.norm(p[e[:, 20:]] - expected, axis=2)
+            for k in np.flatnonzero((off > MIDDLE * length.max(axis=1)[:, None]).any(axis=1))[:1].tolist():
+                raise ValueError(
+                    f"element {numbers[k]} has the middle of a face or its centre out of place "
+                    f"(its node {20 + int(np.argmax(off[k]))}, from 0); nodes must be in VTK's order"
+                )
         det = np.linalg.det(self._jacobians(points(kind)[0]))
         for k in np.flatnonzero(~np.all(det > 0, axis=1))[:1].tolist():
             if np.all(det[k] < 0):
