@@ -7,9 +7,12 @@ fixed-interface modes (Craig & Bampton, AIAA Journal 6 (1968) 1313-1319) and of 
 """
 
 from bearingdyn.cms.damping import coupled_blocks, modal_damping
+from bearingdyn.cms.dynamics import Dynamics, Transfer
+from bearingdyn.cms.estimate import ReductionError, reduction_error
 from bearingdyn.cms.full import FullModel, RigidInterface
 from bearingdyn.cms.reduction import (
     Basis,
+    basis_of,
     craig_bampton,
     modulus_levels,
     orthogonalise,
@@ -22,10 +25,14 @@ from bearingdyn.cms.superelement import ComplexModulus, Superelement, Viscoelast
 __all__ = [
     "Basis",
     "ComplexModulus",
+    "Dynamics",
     "FullModel",
+    "ReductionError",
     "RigidInterface",
     "Superelement",
+    "Transfer",
     "Viscoelastic",
+    "basis_of",
     "coupled_blocks",
     "craig_bampton",
     "modal_damping",
@@ -34,4 +41,5 @@ __all__ = [
     "project",
     "reduce",
     "reduce_free_body",
+    "reduction_error",
 ]

@@ -8,9 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import scipy.linalg
-import scipy.sparse
-import scipy.sparse.csgraph
+import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.cms.damping import modal_damping

@@ -9,14 +9,23 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy.linalg
+import scipy
 from numpy.typing import NDArray
 
-from bearingdyn.cms import Superelement, Viscoelastic, modal_damping, orthogonalise
+from bearingdyn.cms import (
+    Basis,
+    FullModel,
+    Superelement,
+    Viscoelastic,
+    modal_damping,
+    modulus_levels,
+    orthogonalise,
+)
 from bearingdyn.fem.eigen import factorise, lowest_modes, rigid_transfer
 from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
 from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
 from bearingdyn.material import Elastic
+from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.section import Cylinder, EndFace, Face, Region, find_face, shape_moduli
 
 Float = NDArray[np.float64]
@@ -228,6 +237,26 @@ class Revolved:
         _, internal = orthogonalise(internal, K, M)
         return np.hstack([static, internal]), static.shape[1]
 
+    def _families(self) -> list[tuple[Harmonic, Float, int, Any]]:
+        """Each family with its shapes, the number of constraint shapes among them, and its copies."""
+        levels = shape_moduli(self.regions, self.moduli)
+        return [
+            (h, *self._shapes(h, levels), copies)
+            for h, copies in ((self._harmonic(n, components), copies) for n, components, copies in FAMILIES)
+        ]
+
+    def full_model(self) -> FullModel:
+        """The unreduced equations of orders 0 and 1 (those that rigid interfaces excite), sparse."""
+        families = [(self._harmonic(order, components), copies) for order, components, copies in FAMILIES]
+        return full_model(families, self.regions, self._faces, self.outputs)
+
+    def basis(self) -> Basis:
+        """The shapes `superelement` takes, in the coordinates of `full_model`."""
+        model = self.full_model()
+        materials = [part.material for part in model.viscoelastic]
+        level = modulus_levels(materials, self.moduli)[0]
+        return full_basis(model, self._families(), level)
+
     def superelement(self) -> Superelement:
         """Reduced matrices with rigid interfaces, projections of the full model's (paper (21)-(23)).
 
@@ -241,11 +270,7 @@ class Revolved:
         """
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
-        levels = shape_moduli(self.regions, self.moduli)
-        families = []
-        for order, components, copies in FAMILIES:
-            h = self._harmonic(order, components)
-            families.append((h, *self._shapes(h, levels), copies))
+        families = self._families()
         n = sum(len(copies) * Psi.shape[1] for _, Psi, _, copies in families)
         rubbers: list[Any] = []
         owner = np.full(len(self.regions), -1)
