@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.cms.basis import Basis, orthogonalise
 from bearingdyn.cms.dynamics import Complex, Dynamics, Transfer
 from bearingdyn.cms.full import FullModel
-from bearingdyn.cms.reduction import Basis, orthogonalise, project
+from bearingdyn.cms.reduction import project
 from bearingdyn.cms.superelement import Float, Index, Superelement
 
 CHANGE = 0.1  # of the estimated error by the last full solve: below it, no further one is made
