@@ -11,6 +11,7 @@ from bearingdyn.cms.damping import coupled_blocks, modal_damping
 from bearingdyn.cms.dynamics import Dynamics, Transfer
 from bearingdyn.cms.estimate import ReductionError, reduction_error
 from bearingdyn.cms.full import FullModel, RigidInterface
+from bearingdyn.cms.march import March, march
 from bearingdyn.cms.reduction import project, reduce, reduce_free_body
 from bearingdyn.cms.superelement import ComplexModulus, Superelement, Viscoelastic
 
@@ -19,6 +20,7 @@ __all__ = [
     "ComplexModulus",
     "Dynamics",
     "FullModel",
+    "March",
     "ReductionError",
     "RigidInterface",
     "Superelement",
@@ -28,6 +30,7 @@ __all__ = [
     "coupled_blocks",
     "craig_bampton",
     "inertia_shapes",
+    "march",
     "modal_damping",
     "modulus_levels",
     "orthogonalise",

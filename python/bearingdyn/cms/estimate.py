@@ -14,7 +14,8 @@ from bearingdyn.cms.basis import Basis, orthogonalise
 from bearingdyn.cms.dynamics import Complex, Dynamics, Transfer
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.reduction import project
-from bearingdyn.cms.superelement import Float, Index, Superelement
+from bearingdyn.cms.superelement import Float, Index
+from bearingdyn.fem.eigen import rigid_transfer
 
 CHANGE = 0.1  # of the estimated error by the last full solve: below it, no further one is made
 
@@ -193,7 +194,7 @@ class _Case:
 
     def reduced(self, basis: Basis, omega: Float) -> list[Transfer]:
         """Transfers of the model projected on a basis."""
-        small = as_model(project(self.model, basis))
+        small = FullModel.of(project(self.model, basis))
         damper = None
         if self.damper is not None:
             B, c = self.damper
@@ -232,25 +233,8 @@ class _Case:
         return Basis(Psi, basis.K, frequency)
 
 
-def as_model(element: Superelement) -> FullModel:
-    """A superelement seen as a full model of its own coordinates, at standstill (G and N left out)."""
-    from bearingdyn.cms.full import RigidInterface
-
-    return FullModel(
-        element.M,
-        element.K,
-        {name: RigidInterface(at, np.eye(6), np.zeros(3)) for name, at in element.interfaces.items()},
-        element.outputs,
-        element.viscoelastic,
-        C=element.C,
-        grounded=True,
-    )
-
-
 def _radius_of_gyration(model: FullModel, basis: Basis) -> float:
     """√(trace of the inertia tensor / 2m) about the centre of mass, m, from the constraint modes."""
-    from bearingdyn.fem.eigen import rigid_transfer
-
     faces = list(model.interfaces.values())
     R = rigid_transfer([f.position for f in faces])
     rigid = basis.Psi[:, : len(R)] @ R
