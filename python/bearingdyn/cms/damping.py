@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg
-import scipy.sparse
-import scipy.sparse.csgraph
+import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.cms.superelement import Float, Index

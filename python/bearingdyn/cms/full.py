@@ -8,7 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.cms.superelement import Float, Index, Viscoelastic, check_symmetry, frozen, frozen_sparse
+from bearingdyn.cms.superelement import (
+    Float,
+    Index,
+    Superelement,
+    Viscoelastic,
+    check_symmetry,
+    frozen,
+    frozen_sparse,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +103,19 @@ class FullModel:
         for i, part in enumerate(self.viscoelastic):
             if part.H.shape != (n, n):
                 raise ValueError(f"viscoelastic[{i}].H has shape {part.H.shape}; it must be ({n}, {n})")
+
+    @classmethod
+    def of(cls, element: Superelement) -> FullModel:
+        """A superelement seen as a full model of its own coordinates, at standstill (G and N left out)."""
+        return cls(
+            element.M,
+            element.K,
+            {name: RigidInterface(at, np.eye(6), np.zeros(3)) for name, at in element.interfaces.items()},
+            element.outputs,
+            element.viscoelastic,
+            C=element.C,
+            grounded=True,
+        )
 
     @property
     def n(self) -> int:
