@@ -2,16 +2,26 @@
 
 from bearingdyn.fem.beam import Section
 from bearingdyn.fem.exchange import FEMatrices, check_matrices, read_matrix_market, read_npz, write_npz
-from bearingdyn.fem.solid import SolidMatrices, assemble_solid, block_with_bore
+from bearingdyn.fem.mesh_file import read_mesh
+from bearingdyn.fem.solid import SolidMatrices, assemble_solid
+from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
+from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, crowded, o_ring_mesh, ring_mesh
 
 __all__ = [
     "FEMatrices",
     "Section",
     "SolidMatrices",
+    "SolidMesh",
+    "SurfaceSamples",
     "assemble_solid",
     "block_with_bore",
+    "box_mesh",
     "check_matrices",
+    "crowded",
+    "o_ring_mesh",
     "read_matrix_market",
+    "read_mesh",
     "read_npz",
+    "ring_mesh",
     "write_npz",
 ]
