@@ -11,7 +11,7 @@ from bearingdyn.cms.damping import coupled_blocks, modal_damping
 from bearingdyn.cms.dynamics import Dynamics, Transfer
 from bearingdyn.cms.estimate import ReductionError, reduction_error
 from bearingdyn.cms.full import FullModel, RigidInterface
-from bearingdyn.cms.march import March, march
+from bearingdyn.cms.history import March, march
 from bearingdyn.cms.reduction import project, reduce, reduce_free_body
 from bearingdyn.cms.superelement import ComplexModulus, Superelement, Viscoelastic
 

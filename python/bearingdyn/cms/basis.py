@@ -269,7 +269,7 @@ def basis_of(
             # Rigid motion of all interfaces has the same shape at every modulus: the first six add nothing.
             extra.append(((static - Psi) / np.sqrt(np.diag(K_c)))[:, 0 if model.grounded else 6 :])
         extra.append(points / np.sqrt(np.sum(points * (K @ points), axis=0)))
-        extra += inertia_shapes(at.solve, K, model.M, shapes, at.inner, inertia)
+        extra += inertia_shapes(at.solve, K, model.M, static, at.inner, inertia)
     frequency, modes = held.modes(f_max, n_modes)
     internal = np.zeros((model.n, frequency.size))
     internal[held.inner] = modes

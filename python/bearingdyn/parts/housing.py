@@ -46,7 +46,6 @@ class Housing:
     f_max: fixed-interface modes are kept up to this, Hz.
     points: name -> (x, y, z), m, from the bore's axis at mid-length: further outputs, at the nearest node.
     element_size: longest wanted side of an element, m (default: some 300 elements).
-    inertia: rounds of cms.inertia_shapes; one brings the response to 0.5 % up to a quarter of f_max.
 
     Interfaces: "bore" (reference on the axis at mid-length) and "feet" (reference below it, on the base),
     both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n).
@@ -65,7 +64,6 @@ class Housing:
     f_max: float = 20e3
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     element_size: float | None = None
-    inertia: int = 0
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "length", "bore_diameter", "f_max"):
@@ -120,7 +118,7 @@ class Housing:
 
     @cached_property
     def body(self) -> Solid:
-        """The housing as a solid, with the surfaces "bore", "base", "feet", "top", "z-" and "z+"."""
+        """The housing as a solid; its mesh names the surfaces (fem.block_with_bore)."""
         volume = (self.width * self.height - 0.25 * math.pi * self.bore_diameter**2) * self.length
         feet = self.feet
         flanged = feet is not None and feet.height > 0
@@ -145,5 +143,5 @@ class Housing:
             {"top": (0.0, self.height - self.axis, 0.0), **self.points},
             damping=self.damping,
             held="feet",
-            inertia=self.inertia,
+            attach=("top", *self.points),
         )

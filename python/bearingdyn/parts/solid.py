@@ -93,8 +93,8 @@ class Solid:
     moduli: real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: chosen
         from each material's range (cms.modulus_levels).
     attach: outputs at which loads act, whose static shapes then join the basis.
-    inertia: rounds of cms.inertia_shapes of the static shapes at each modulus; one serves a layer better than
-        many fixed-interface modes.
+    inertia: rounds of cms.inertia_shapes of the static shapes at each modulus: one serves better than many
+        fixed-interface modes; with moduli=(G,), 0 is the paper's basis.
 
     Viscoelastic regions, and elastic ones with ν of 0.45 or more, have the cure against locking that their
     element allows: see fem.assemble_solid. Of 20-node bricks in rubber, `mesh.with_centres()` makes 27-node
@@ -114,15 +114,15 @@ class Solid:
     held: str | None = None
     moduli: tuple[float, ...] | None = None
     attach: tuple[str, ...] = ()
-    inertia: int = 0
+    inertia: int = 1
 
     def __post_init__(self) -> None:
         if not 0 <= self.f_max < math.inf:
             raise ValueError(f"f_max is {self.f_max}; it must be a frequency in Hz, 0 for no modes")
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
         if not self.inertia >= 0:
             raise ValueError(f"inertia is {self.inertia}; it must be a number of rounds, 0 or more")
+        if not 0 <= self.damping < 1:
+            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
         if self.moduli is not None:
             object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
             if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
