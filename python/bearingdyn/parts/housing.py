@@ -51,6 +51,8 @@ class Housing:
     both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n).
 
     Raises ValueError for a bore that leaves no wall, a point outside, or values not positive and finite.
+
+    Reference: paper section 4, which gives no dimensions.
     """
 
     width: float

@@ -35,6 +35,8 @@ class Region:
     """A ring of rectangular section and one material; r, z: (from, to), m.
 
     graded: crowd the mesh towards its sides; None: do so if the material is viscoelastic.
+
+    Raises ValueError for a section that is none, or a material that is neither elastic nor has G*(ω).
     """
 
     r: tuple[float, float]
@@ -65,7 +67,10 @@ class Region:
 
 @dataclass(frozen=True)
 class Cylinder:
-    """Cylindrical face of radius r, m, over z = (from, to); None: all of the body at that radius."""
+    """Cylindrical face of radius r, m, over z = (from, to); None: all of the body at that radius.
+
+    The body it belongs to raises ValueError, naming the interface, where it has no such face.
+    """
 
     r: float
     z: tuple[float, float] | None = None
@@ -73,7 +78,10 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class EndFace:
-    """Flat face at z, m, over r = (from, to); None: all of the body at that z."""
+    """Flat face at z, m, over r = (from, to); None: all of the body at that z.
+
+    The body it belongs to raises ValueError, naming the interface, where it has no such face.
+    """
 
     z: float
     r: tuple[float, float] | None = None
