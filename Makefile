@@ -104,7 +104,7 @@ docs: $(VENV)/package $(VENV)/docs
 
 clean:
 	rm -rf $(VENV) $(BUILD) out docs/_static .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
-	find python tests examples benchmarks notebooks -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+	find python tests examples benchmarks notebooks docs -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 # The environment. Its build tools stand outside pip's isolated builds, so that rebuilding is incremental and
 # the C tests use the same Meson, Ninja and NumPy as the package.
