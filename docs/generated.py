@@ -17,6 +17,9 @@ STATIC = HERE / "_static"
 
 def make() -> None:
     """Write _static/architecture.svg, _static/first_hour.png and what the script printed."""
+    import matplotlib
+
+    matplotlib.use("Agg")
     STATIC.mkdir(exist_ok=True)
     architecture.draw(STATIC / "architecture.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
