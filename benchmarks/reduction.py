@@ -33,7 +33,7 @@ MODES = 20
 
 
 def block(thousands: int) -> cms.FullModel:
-    """A block of 0.1 × 0.1 × 0.2 m, rigid at both ends, of about as many thousand coordinates as asked for."""
+    """A block of 0.1 × 0.1 × 0.2 m, rigid at both ends, of about so many thousand coordinates."""
     wanted = 1000.0 * thousands / 3.0  # nodes: m (n+1)(4n+2) + (n+1)(3n+1) for n × n × m elements
     n = max(2, round((wanted / 8.4) ** (1 / 3)))
     m = max(2, round((wanted - (3 * n + 1) * (n + 1)) / ((4 * n + 2) * (n + 1))))

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.superelement import Float, Index
-from bearingdyn.fem.eigen import Factors
-from bearingdyn.fem.ordering import elimination_order
+from bearingdyn.fem.eigen import Factors, order_of
 
 Complex = NDArray[np.complex128]
 
@@ -93,7 +92,7 @@ class Dynamics:
     def _sparse_solver(self, Z: Any) -> Any:
         """Solve without pivoting and refine once; where that fails (Z may be indefinite), pivot."""
         if self._order is None:
-            self._order = elimination_order(Z)
+            self._order = order_of(Z)
         factors = Factors(Z, self._order)
 
         def solve(b: Any) -> Any:

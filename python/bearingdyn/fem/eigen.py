@@ -14,7 +14,7 @@ from bearingdyn.fem.ordering import elimination_order
 Float = NDArray[np.float64]
 
 DENSE_LIMIT = 400  # below this size LAPACK's dense eigensolver is quicker than a factorisation and Lanczos
-DISSECT = 8000  # above this size nested dissection saves more than it costs
+DISSECT = 15_000  # above this size nested dissection of a solid fills less than minimum degree
 PANEL = 20  # columns SuperLU updates at once; 8, its default, is a quarter slower on large solids
 
 
@@ -79,8 +79,15 @@ class Factors:
 def factorise(A: Any) -> Any:
     """Factors of a sparse symmetric positive definite matrix; ``.solve(b)`` as scipy's splu gives it."""
     A = scipy.sparse.csc_matrix(A)
-    if A.shape[0] > DISSECT:
-        return Factors(A, elimination_order(A))
+    return Factors(A, elimination_order(A)) if A.shape[0] > DISSECT else _by_minimum_degree(A)
+
+
+def order_of(A: Any) -> NDArray[np.intp]:
+    """Order of elimination (n,) for many matrices of one pattern, found once; see Factors."""
+    return elimination_order(A) if A.shape[0] > DISSECT else np.argsort(_by_minimum_degree(A).perm_c)
+
+
+def _by_minimum_degree(A: Any) -> Any:
     return scipy.sparse.linalg.splu(
         A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )
