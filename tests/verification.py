@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import bearings, contacts, materials, motion, solids, structures
+from verified import bearings, contacts, materials, motion, reduction, solids, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -31,6 +31,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Damping-layer sample": structures.sample,
     "Sandwich cantilever": solids.sandwich,
     "Solids of elements": solids.bonded,
+    "Reduced parts": reduction.reduction,
     "Free shaft and ring": structures.free_bodies,
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
