@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import bearings, contacts, materials, motion, peers, shaker, solids, structures
+from verified import bearings, contacts, materials, motion, peers, reduction, shaker, solids, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -32,6 +32,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Sandwich cantilever": solids.sandwich,
     "Solids of elements": solids.bonded,
     "Housing in CalculiX": peers.calculix,
+    "Reduced parts": reduction.reduction,
     "Free shaft and ring": structures.free_bodies,
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
