@@ -19,6 +19,7 @@ import scipy.sparse
 import scipy.sparse.csgraph
 from numpy.typing import ArrayLike, NDArray
 
+from bearingdyn.bearing.series import RacewaySeries
 from bearingdyn.fem.eigen import factorise, lowest_modes, rigid_body_residual, rigid_transfer
 
 Float = NDArray[np.float64]
@@ -75,6 +76,26 @@ class Viscoelastic:
 
 
 @dataclass(frozen=True, eq=False)
+class Raceway:
+    """A race of a flexible ring: its groove-centre displacement as Fourier coefficients in the azimuth.
+
+    series: which coefficients; arm: radius, m, at which tilts become axial motion.
+    rows: (len(series), n), the coefficients by the superelement's coordinates; a load of balls g acts as
+        rowsᵀ g.
+    """
+
+    series: RacewaySeries
+    arm: float
+    rows: Float
+
+    def __post_init__(self) -> None:
+        n = np.shape(self.rows)[-1] if np.ndim(self.rows) else 0
+        object.__setattr__(self, "rows", _frozen("rows", self.rows, (len(self.series), n)))
+        if not 0 < self.arm < math.inf:
+            raise ValueError(f"arm is {self.arm}; it must be a positive radius in m")
+
+
+@dataclass(frozen=True, eq=False)
 class Superelement:
     """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
@@ -89,6 +110,7 @@ class Superelement:
 
     N: (n, n) skew, N s/m: the circulatory force Ω N x on the left-hand side, there when the damping C belongs
         to material that turns with the shaft; zero by default.
+    raceways: name -> Raceway, where a bearing's balls may run on a flexible ring.
 
     Raises ValueError for a wrong shape, a matrix with non-finite entries or without its symmetry, an index
     out of range or used twice, or a name used twice.
@@ -102,6 +124,7 @@ class Superelement:
     outputs: Mapping[str, Float] = field(default_factory=dict)
     viscoelastic: tuple[Viscoelastic, ...] = ()
     N: Float | None = None
+    raceways: Mapping[str, Raceway] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) else 0
@@ -147,6 +170,12 @@ class Superelement:
         for i, part in enumerate(self.viscoelastic):
             if part.H.shape != (n, n):
                 raise ValueError(f"viscoelastic[{i}].H has shape {part.H.shape}; it must be ({n}, {n})")
+
+        for name, raceway in self.raceways.items():
+            if name in interfaces or name in outputs:
+                raise ValueError(f"raceways has {name!r}, the name of an interface or output; choose another")
+            if raceway.rows.shape[1] != n:
+                raise ValueError(f"raceways[{name!r}].rows has {raceway.rows.shape[1]} columns, not {n}")
 
     @property
     def n(self) -> int:
