@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.bearing import BallBearing
-from bearingdyn.cms import Superelement
+from bearingdyn.cms import Raceway, Superelement
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ class Support:
 
 @dataclass(frozen=True)
 class HungBearing:
-    """A bearing between two interfaces; outer may be "ground"."""
+    """A bearing between two interfaces; outer may be a raceway of a flexible ring, or "ground"."""
 
     name: str
     bearing: BallBearing
@@ -157,25 +157,43 @@ class Application:
         )
 
     def free(self, interface: str) -> None:
-        """Declare that an interface is left unjoined on purpose."""
-        self._interface(interface)
+        """Declare that an interface is left unjoined on purpose, or a raceway without balls."""
+        if self.raceway(interface) is None:
+            self._interface(interface)
         self.free_interfaces.add(interface)
 
     def bearing(self, name: str, bearing: BallBearing, *, inner: str, outer: str) -> None:
         """Hang a bearing between the interface of its inner ring and that of its outer ring or "ground".
 
-        Raises ValueError if a name is unknown or taken.
+        outer may be the raceway of a flexible ring, "ring.raceway", made for this bearing's arm.
+
+        Raises ValueError if a name is unknown or taken, or the raceway has another arm.
         """
         if not name or "." in name:
             raise ValueError(f"bearing name {name!r} must be a word without dots")
         if name in self.bearings or name in self.parts:
             raise ValueError(f"bearing {name!r}: the name is taken; give each part and bearing its own name")
         self._interface(inner)
-        if outer != GROUND:
+        raceway = self.raceway(outer)
+        if raceway is not None and not math.isclose(raceway.arm, bearing.arm, rel_tol=1e-9):
+            raise ValueError(
+                f"bearing {name!r} has its arm at {bearing.arm:.9g} m and {outer} at {raceway.arm:.9g} m; "
+                "make the ring with arm=bearing.arm"
+            )
+        if outer != GROUND and raceway is None:
             self._interface(outer)
+        if raceway is not None and any(b.outer == outer for b in self.bearings.values()):
+            raise ValueError(
+                f"bearing {name!r}: {outer} carries a bearing already; give each its own raceway"
+            )
         if inner == outer:
             raise ValueError(f"bearing {name!r} has both rings at {inner}; name two interfaces")
         self.bearings[name] = HungBearing(name, bearing, inner, outer)
+
+    def raceway(self, name: str) -> Raceway | None:
+        """The raceway of that name, "ring.raceway"; None where the name is no raceway."""
+        part, _, rest = name.partition(".")
+        return self.parts[part].raceways.get(rest) if part in self.parts else None
 
     def load(
         self,
@@ -283,6 +301,12 @@ class Application:
         used = {i for c in self.connections for i in (c.a, c.b)} | set(self.supports)
         used |= {i for b in self.bearings.values() for i in (b.inner, b.outer)} | self.free_interfaces
         for part, element in self.parts.items():
+            for raceway in element.raceways:
+                if f"{part}.{raceway}" not in used:
+                    raise ValueError(
+                        f"raceway {part}.{raceway} carries no balls; name it as the outer of a bearing, or "
+                        f'declare app.free("{part}.{raceway}")'
+                    )
             for interface in element.interfaces:
                 if f"{part}.{interface}" not in used:
                     raise ValueError(
@@ -309,6 +333,10 @@ class Application:
     def _interface(self, name: str) -> None:
         part, rest = self._split(name)
         known: Sequence[str] = sorted(self.parts[part].interfaces)
+        if rest in self.parts[part].raceways:
+            raise ValueError(
+                f"{name} is a raceway, not a rigid interface; it serves as the outer of a bearing"
+            )
         if rest not in known:
             raise ValueError(f"{part!r} has no interface {rest!r}; it has {list(known)}")
 

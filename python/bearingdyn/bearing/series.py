@@ -71,3 +71,6 @@ class RacewaySeries:
 
 RIGID = RacewaySeries(((0, 1, 0), (0, 1, 1), (1, 0, 0), (1, 1, 0), (1, 1, 1)))
 """The five coefficients of a rigid ring."""
+
+NET = ((0, 1, 0), (0, 1, 1), (1, 0, 0))
+"""Terms on which the force of the balls is their resultant along x, y and z."""

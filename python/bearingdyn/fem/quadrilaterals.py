@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 import scipy.sparse.csgraph
-import scipy.spatial
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.fem.revolution_mesh import SAME, Float, Index, RevolutionMesh, shape_functions
@@ -119,7 +118,9 @@ def _check_joined(r: Float, z: Float, nine: Index, size: float) -> None:
             f"cells falls into {pieces} pieces that share no node, one at r = {r[other]:g}, z = {z[other]:g} "
             "m; merge nodes that coincide, or make a part of each piece"
         )
-    twins = scipy.spatial.cKDTree(np.stack([r, z], axis=-1)).query_pairs(SAME * size, output_type="ndarray")
+    from scipy.spatial import cKDTree  # late: it loads much, and few bring meshes
+
+    twins = cKDTree(np.stack([r, z], axis=-1)).query_pairs(SAME * size, output_type="ndarray")
     if len(twins):
         a, b = (int(k) for k in twins[0])
         where = f"at r = {r[a]:g}, z = {z[a]:g} m"

@@ -106,7 +106,8 @@ class Boundaries:
 
     def place(self, h: Harmonic, copy: int) -> tuple[Index, Float]:
         """Coordinates and signs of the columns of `held` and then of the rows of `averages`, in a copy."""
-        index, sign = [], []
+        index: list[int] = []
+        sign: list[float] = []
         if (h.order, h.components) in RIGID_SHAPES:
             coordinates, signs = RIGID_SHAPES[h.order, h.components][copy]
             for name in self.faces:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.application import GROUND, Application
+from bearingdyn.bearing.series import RIGID
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
 from bearingdyn.system.held import check_held
 from bearingdyn.system.origin import noted
@@ -60,8 +61,14 @@ def assemble(app: Application) -> System:
 
     bearings = []
     for hung in app.bearings.values():
-        relative = outputs[hung.inner] - (outputs[hung.outer] if hung.outer != GROUND else 0.0)
-        bearings.append(BearingTerm(hung.name, hung.bearing, hung.bearing.coefficients() @ relative))
+        raceway = app.raceway(hung.outer)
+        series = RIGID if raceway is None else raceway.series
+        B = hung.bearing.coefficients(series) @ outputs[hung.inner]
+        if raceway is not None:
+            B = B - raceway.rows @ select[hung.outer.partition(".")[0]]
+        elif hung.outer != GROUND:
+            B = B - hung.bearing.coefficients() @ outputs[hung.outer]
+        bearings.append(BearingTerm(hung.name, hung.bearing, B, series))
 
     turning = {name: app.parts[name] for name in app.parts if name in app.turning_parts()}
     standstill = tuple(
