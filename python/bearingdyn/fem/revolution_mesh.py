@@ -170,6 +170,21 @@ def _grid(
     return np.concatenate([*pieces, [cuts[-1]]])
 
 
+def _moved(lines: Float, fixed: Sequence[float], wanted: Iterable[float]) -> Float:
+    """Grid lines with the nearest of them moved to each wanted place; a fixed one gets a new neighbour."""
+    held = {float(v) for v in fixed}
+    for v in wanted:
+        k = int(np.argmin(np.abs(lines - v)))
+        if not lines[0] < v < lines[-1] or abs(lines[k] - v) <= SAME * (lines[-1] - lines[0]):
+            continue
+        if float(lines[k]) in held:
+            lines = np.sort(np.append(lines, v))
+        else:
+            lines[k] = v
+        held.add(float(v))
+    return lines
+
+
 EDGE = 0.02  # first step at a graded side over the thickness; chosen by the reference cases of theory.md §3.7
 
 
@@ -178,10 +193,12 @@ def revolution_mesh(
     refinement: float = 1.0,
     r_cuts: Iterable[float] = (),
     z_cuts: Iterable[float] = (),
+    z_near: Iterable[float] = (),
 ) -> RevolutionMesh:
     """Mesh a union of rectangles; grid lines run along all their sides, and along r_cuts and z_cuts, m.
 
     refinement: 1 is the default density; steps shrink with it, and faster where the mesh is graded.
+    z_near: the line nearest to each of these is moved there; nothing is graded towards it.
 
     Raises ValueError for rectangles that overlap, or a refinement outside 0.25...8.
     """
@@ -200,7 +217,7 @@ def revolution_mesh(
     r_lines = _merge([*r_ends, *(v for v in r_cuts if min(r_ends) < v < max(r_ends))], size)
     z_lines = _merge([*z_ends, *(v for v in z_cuts if min(z_ends) < v < max(z_ends))], size)
     R = _grid(r_lines, [(*q.r, q.graded) for q in rectangles], thin, refinement)
-    Z = _grid(z_lines, [(*q.z, q.graded) for q in rectangles], thin, refinement)
+    Z = _moved(_grid(z_lines, [(*q.z, q.graded) for q in rectangles], thin, refinement), z_lines, z_near)
 
     r_mid, z_mid = 0.5 * (R[1:] + R[:-1]), 0.5 * (Z[1:] + Z[:-1])
     owner = np.full((r_mid.size, z_mid.size), -1, dtype=np.intp)

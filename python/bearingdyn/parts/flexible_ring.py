@@ -28,9 +28,9 @@ class FlexibleRing:
     r_inner: bore at the shoulders, or at the bottom of the groove if no groove_radius is given; r_outer,
         width: m. The plane of the balls is at mid-width.
     arm: radius, m, at which tilts become axial motion: that of the bearing to come, BallBearing.arm.
-    order: highest Fourier order in the azimuth. Bending falls off as order⁻⁴, and 8 is enough for 7 to 10
-        balls. The dent around each ball falls off as 1/order only: its sum grows slowly without end, and it
-        is in Hertz's contact already, so that far higher orders than the number of balls do no good.
+    order: highest Fourier order in the azimuth; one more than the number of balls holds all they bend
+        alike. Bending falls off as order⁻⁴. The dent around each ball falls off as 1/order only: its sum
+        grows slowly without end, and Hertz's contact has it already, so that far higher orders do no good.
     groove: axial width of the face that carries the balls, m; None: half of the ring's.
     groove_radius: radius of the groove's section, m (fo·Dw): the section then has the groove cut into it;
         None: a plain rectangle.
@@ -46,7 +46,7 @@ class FlexibleRing:
     r_outer: float
     width: float
     arm: float
-    order: int = 8
+    order: int = 10
     groove: float | None = None
     groove_radius: float | None = None
     layer: Layer | None = None
@@ -134,7 +134,7 @@ class FlexibleRing:
     def _grooved(self, rectangles: list[Rectangle], track: float) -> RevolutionMesh:
         """The mesh of the rectangles, the ring's lines bent so that the innermost follows the groove."""
         radius = self.groove_radius or 0.0
-        mesh = revolution_mesh(rectangles, self.refinement, z_cuts=np.linspace(-track, track, 9))
+        mesh = revolution_mesh(rectangles, self.refinement, z_near=np.linspace(-track, track, 9))
         z = np.clip(mesh.z, -track, track)
         bottom = np.sqrt(radius**2 - z**2) - math.sqrt(radius**2 - track**2)
         share = (self.r_outer - mesh.r) / (self.r_outer - self.r_inner)

@@ -133,10 +133,13 @@ class Revolved:
         if self.section is not None:
             return self.section
         rectangles = [q.rectangle for q in self.regions if isinstance(q, Region)]
-        surfaces = [*self.interfaces.values(), *(g.surface for g in self.grooves.values())]
-        r_cuts = [r for f in surfaces if isinstance(f, EndFace) and f.r for r in f.r]
-        z_cuts = [z for f in surfaces if isinstance(f, Cylinder) and f.z for z in f.z]
-        return revolution_mesh(rectangles, self.refinement, r_cuts, z_cuts)
+        tracks = [g.surface for g in self.grooves.values()]
+        r_cuts = [
+            r for f in (*self.interfaces.values(), *tracks) if isinstance(f, EndFace) and f.r for r in f.r
+        ]
+        z_cuts = [z for f in self.interfaces.values() if isinstance(f, Cylinder) and f.z for z in f.z]
+        z_near = [z for f in tracks if isinstance(f, Cylinder) and f.z for z in f.z]
+        return revolution_mesh(rectangles, self.refinement, r_cuts, z_cuts, z_near)
 
     @cached_property
     def _boundaries(self) -> Boundaries:
