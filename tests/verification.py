@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import bearings, contacts, materials, motion, peers, shaker, structures
+from verified import bearings, contacts, materials, motion, peers, rings, shaker, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -32,6 +32,9 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Sandwich cantilever": structures.sandwich,
     "Housing in CalculiX": peers.calculix,
     "Free shaft and ring": structures.free_bodies,
+    "Rings under opposed loads": rings.pinched_rings,
+    "Flexible ring, stiff and free": rings.stiff_rings,
+    "Distorted mesh": rings.distorted_mesh,
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
     "Rings on a shaker": shaker.transmissibility,
