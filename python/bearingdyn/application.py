@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing import BallBearing, LooseFit
 from bearingdyn.cms import Raceway, Superelement
 
 Array = NDArray[np.float64]
@@ -61,6 +61,16 @@ class HungBearing:
     outer: str
 
 
+@dataclass(frozen=True)
+class HungFit:
+    """A flexible ring's outside, a raceway, loose in a bore: an interface or "ground"."""
+
+    name: str
+    fit: LooseFit
+    ring: str
+    bore: str
+
+
 @dataclass(frozen=True, eq=False)
 class Load:
     """A force and moment at an interface or point, in the manner its kind says.
@@ -105,6 +115,7 @@ class Application:
         self.connections: list[Connection] = []
         self.supports: dict[str, Support] = {}
         self.bearings: dict[str, HungBearing] = {}
+        self.fits: dict[str, HungFit] = {}
         self.loads: list[Load] = []
         self.free_interfaces: set[str] = set()
 
@@ -115,7 +126,7 @@ class Application:
         """
         if not name or "." in name or name == GROUND:
             raise ValueError(f'part name {name!r} must be a word without dots and not "{GROUND}"')
-        if name in self.parts or name in self.bearings:
+        if name in self.parts or name in self.bearings or name in self.fits:
             raise ValueError(f"part {name!r} is there already; give each part and bearing its own name")
         self.parts[name] = part.superelement()
         self.sources[name] = part
@@ -169,10 +180,7 @@ class Application:
 
         Raises ValueError if a name is unknown or taken, or the raceway has another arm.
         """
-        if not name or "." in name:
-            raise ValueError(f"bearing name {name!r} must be a word without dots")
-        if name in self.bearings or name in self.parts:
-            raise ValueError(f"bearing {name!r}: the name is taken; give each part and bearing its own name")
+        self._new("bearing", name)
         self._interface(inner)
         raceway = self.raceway(outer)
         if raceway is not None and not math.isclose(raceway.arm, bearing.arm, rel_tol=1e-9):
@@ -189,6 +197,32 @@ class Application:
         if inner == outer:
             raise ValueError(f"bearing {name!r} has both rings at {inner}; name two interfaces")
         self.bearings[name] = HungBearing(name, bearing, inner, outer)
+
+    def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
+        """Set a flexible ring's outside, "ring.outside", loosely in the bore of an interface or "ground".
+
+        Raises ValueError if a name is unknown or taken, or the ring's outside is no raceway.
+        """
+        self._new("fit", name)
+        if self.raceway(ring) is None:
+            raise ValueError(
+                f'fit {name!r}: {ring!r} is no flexible face; make the ring with outside="flexible" and '
+                f'name its "outside"'
+            )
+        if ring in self._raceways_used():
+            raise ValueError(f"fit {name!r}: {ring} is in use already; give each its own")
+        if bore != GROUND:
+            self._interface(bore)
+        self.fits[name] = HungFit(name, fit, ring, bore)
+
+    def _new(self, kind: str, name: str) -> None:
+        if not name or "." in name:
+            raise ValueError(f"{kind} name {name!r} must be a word without dots")
+        if name in self.bearings or name in self.parts or name in self.fits:
+            raise ValueError(f"{kind} {name!r}: the name is taken; give each part and bearing its own name")
+
+    def _raceways_used(self) -> set[str]:
+        return {b.outer for b in self.bearings.values()} | {f.ring for f in self.fits.values()}
 
     def raceway(self, name: str) -> Raceway | None:
         """The raceway of that name, "ring.raceway"; None where the name is no raceway."""
@@ -277,6 +311,8 @@ class Application:
         lines += [f"  {name} free" for name in sorted(self.free_interfaces)]
         lines.append("bearings")
         lines += [f"  {b.name}: {b.inner} in {b.outer}, {b.bearing.Z} balls" for b in self.bearings.values()]
+        for f in self.fits.values():
+            lines.append(f"  {f.name}: {f.ring} loose in {f.bore}, {f.fit.clearance * 1e6:g} µm")
         lines.append("loads")
         lines += [f"  {load.where}: {load.kind} {np.round(load.vector, 6).tolist()}" for load in self.loads]
         return "\n".join(lines)
@@ -300,6 +336,7 @@ class Application:
             raise ValueError("the application has no parts; add some with app.add(name, part)")
         used = {i for c in self.connections for i in (c.a, c.b)} | set(self.supports)
         used |= {i for b in self.bearings.values() for i in (b.inner, b.outer)} | self.free_interfaces
+        used |= {i for f in self.fits.values() for i in (f.ring, f.bore)}
         for part, element in self.parts.items():
             for raceway in element.raceways:
                 if f"{part}.{raceway}" not in used:

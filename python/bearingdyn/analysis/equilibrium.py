@@ -45,12 +45,12 @@ class BearingState:
     @property
     def force(self) -> Array:
         """Force (3,) of the inner ring on the balls, x, y, z, N."""
-        return self.g[[self.series.index(*term) for term in NET]]
+        return np.array([self.g[self.series.index(*t)] if t in self.series.terms else 0.0 for t in NET])
 
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A static state: x (n,) of the system, and every bearing by name.
+    """A static state: x (n,) of the system, and every bearing and loose fit by name.
 
     Layers carry their relaxed modulus G0. The free spin of shafts about z is left at zero.
     """
@@ -108,9 +108,7 @@ def equilibrium(app: Application | System, angle: float = 0.0) -> Equilibrium:
     if not math.isfinite(angle):
         raise ValueError(f"angle is {angle}; the cage angle must be finite, in rad")
     # the angle stays with the system, so that what starts from here finds the balls where they are
-    turned = tuple(
-        replace(t, bearing=replace(t.bearing, angle0=t.bearing.angle0 + angle)) for t in system.bearings
-    )
+    turned = tuple(replace(t, bearing=t.bearing.turned(angle)) for t in system.bearings)
     system = replace(system, bearings=turned)
     modal, T = system.modal()
     # motions that nothing holds (the spin of shafts) are held here: no load drives them

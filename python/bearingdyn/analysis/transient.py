@@ -217,9 +217,10 @@ def _channel(system: System, name: str) -> tuple[Channel, str]:
             return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
         if ball and 1 <= int(ball[1]) <= system.bearings[which].bearing.Z:
             return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
-        if rest in ("force.x", "force.y", "force.z"):
-            term = NET["xyz".index(rest[-1])]
-            return (core.CHANNEL_KINDS["force"], None, which, system.bearings[which].series.index(*term)), "N"
+        series = system.bearings[which].series
+        term = NET["xyz".index(rest[-1])] if rest in ("force.x", "force.y", "force.z") else None
+        if term in series.terms:
+            return (core.CHANNEL_KINDS["force"], None, which, series.index(*term)), "N"
         raise ValueError(
             f"channel {name!r}: bearing {head!r} offers loaded, ball1 … "
             f"ball{system.bearings[which].bearing.Z}, force.x, force.y and force.z"

@@ -217,6 +217,10 @@ class BallBearing:
         loaded = abs(number("contact_angle", contact_angle, "must be a finite angle in rad"))
         return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(speed)
 
+    def turned(self, angle: float) -> BallBearing:
+        """The bearing with its cage turned by `angle`, rad."""
+        return replace(self, angle0=self.angle0 + angle)
+
     def kernel(self, series: RacewaySeries = RIGID) -> BearingKernel:
         """The bearing as the contact kernel takes it, with the relative raceway coefficients of `series`."""
         if series == RIGID:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS
-from bearingdyn.bearing import BallBearing, BearingKernel
+from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
 from bearingdyn.bearing.series import RIGID, RacewaySeries
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.material import Maxwell
@@ -47,10 +47,10 @@ class LayerTerm:
 
 @dataclass(frozen=True, eq=False)
 class BearingTerm:
-    """One bearing: B (n_coefs, n) gives its relative raceway coefficients, inner minus outer, of a series."""
+    """One bearing or loose fit: B (n_coefs, n) gives its relative coefficients, inner minus outer."""
 
     name: str
-    bearing: BallBearing
+    bearing: BallBearing | LooseFit
     B: Array
     series: RacewaySeries = RIGID
 

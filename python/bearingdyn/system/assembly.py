@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.application import GROUND, Application
+from bearingdyn.application import GROUND, Application, HungFit
 from bearingdyn.bearing.series import RIGID
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
 from bearingdyn.system.held import check_held
@@ -70,6 +70,12 @@ def assemble(app: Application) -> System:
             B = B - hung.bearing.coefficients() @ outputs[hung.outer]
         bearings.append(BearingTerm(hung.name, hung.bearing, B, series))
 
+    for seat in app.fits.values():
+        contacts, springs = _loose(app, seat, select, outputs)
+        bearings.append(contacts)
+        K += springs
+        firm += springs
+
     turning = {name: app.parts[name] for name in app.parts if name in app.turning_parts()}
     standstill = tuple(
         name for name, e in turning.items() if e.viscoelastic or (np.any(e.C) and not np.any(e.N))
@@ -77,6 +83,21 @@ def assemble(app: Application) -> System:
     system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill)
     check_held(system, firm)
     return noted(system, app)
+
+
+def _loose(
+    app: Application, seat: HungFit, select: Mapping[str, Array], outputs: Mapping[str, Array]
+) -> tuple[BearingTerm, Array]:
+    """A loose fit as contacts on the radial coefficients, ring less bore, and the springs of its hold."""
+    raceway = app.raceway(seat.ring)
+    assert raceway is not None  # the application checked
+    relative = raceway.rows @ select[seat.ring.partition(".")[0]]
+    if seat.bore != GROUND:
+        relative = relative - raceway.series.rigid(raceway.arm) @ outputs[seat.bore]
+    radial, series, held = seat.fit.split(raceway.series)
+    seat.fit.kernel(series)  # too few stations are refused here
+    springs = seat.fit.hold * relative[held].T @ relative[held]
+    return BearingTerm(seat.name, seat.fit, relative[radial], series), springs
 
 
 def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
