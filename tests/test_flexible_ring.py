@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg
+import xarray
 
 import bearingdyn as bd
 from bearingdyn.bearing import LooseFit
