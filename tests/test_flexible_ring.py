@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg
+import scipy.sparse.linalg
 import xarray
 
 import bearingdyn as bd
@@ -116,6 +117,49 @@ def test_the_stiff_ring_moves_as_one_body() -> None:
             RIGID.rigid(0.02), bd.BallBearing.coefficients(replace(B6305, arm=0.02))
         )
         assert track.arm == B6305.arm
+
+
+def test_a_cut_groove_takes_its_mass_out() -> None:
+    ring = replace(RING, r_inner=25.6 * MM, groove=9.2 * MM, groove_radius=6.1 * MM)
+    R, half, a = 6.1 * MM, 4.6 * MM, 25.6 * MM
+    d = math.sqrt(R**2 - half**2)
+    # ∫π[(a + s)² − a²]dz, s = √(R² − z²) − d: the segment, and ∫s² dz
+    segment = R**2 * math.asin(half / R) - half * d
+    square = 2 * (R**2 * half - half**3 / 3) - 2 * d * (segment + 2 * half * d) + 2 * half * d**2
+    cut = math.pi * (2 * a * segment + square)
+    whole = math.pi * ((31 * MM) ** 2 - a**2) * 17 * MM
+    # parabolas for arcs: fourth order, some 1e-5 of the cut
+    assert ring.body.mass == pytest.approx(STEEL.density * (whole - cut), rel=1e-5)
+    assert ring.depth == pytest.approx(R - d)
+
+
+@pytest.mark.parametrize("frequency", [300.0, 2e3, 5e3])
+def test_the_reduced_ring_in_rubber_answers_as_the_whole_one(frequency: float) -> None:
+    """Receptance on the raceway, the outside held, against the whole model order by order."""
+    omega = 2 * np.pi * frequency
+    ring = replace(CUSHIONED, order=4, f_max=15e3)
+    element, body = ring.superelement(), ring.body
+    D = element.stiffness(omega) - omega**2 * element.M
+    inner = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
+    raceway = element.raceways["raceway"]
+    rows = raceway.rows[:, inner]
+    reduced = rows @ np.linalg.solve(D[np.ix_(inner, inner)], rows.T.astype(complex))
+    assert np.abs(D - D.T).max() < 1e-9 * np.abs(D).max()
+    G = complex(RUBBER.complex_modulus(omega))
+    for n in range(5):
+        h = body._harmonic(n, (0, 2) if n == 0 else (0, 1, 2))
+        K = h.stiffness([STEEL.K, RUBBER.K], [STEEL.G, G])
+        at, _ = body._boundaries.held(h)
+        free = np.setdiff1d(h.free, at)
+        L = body._boundaries.averages(h)[:, free]
+        A = (K - omega**2 * h.mass_matrix([STEEL.density, RUBBER.density]))[free][:, free]
+        whole = L @ scipy.sparse.linalg.spsolve(A.tocsc(), L.T.astype(complex))
+        for sine in (0, 1) if n else (0,):
+            own = [raceway.series.index(axial, n, sine) for axial in (0, 1)]
+            # the issue's 1 %, in the norm of the outputs
+            assert np.linalg.norm(reduced[np.ix_(own, own)] - whole) < 0.01 * np.linalg.norm(whole)
+            others = np.setdiff1d(np.arange(len(raceway.series)), own)  # orders do not mix
+            assert np.abs(reduced[np.ix_(own, others)]).max() < 1e-9 * np.abs(whole).max()
 
 
 @pytest.mark.parametrize("G", [2e6, 3.7e6, 7e6])

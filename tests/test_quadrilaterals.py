@@ -81,6 +81,22 @@ def test_patch_of_uniform_strain_is_in_equilibrium_on_distorted_elements(
         assert u @ (K @ u) == pytest.approx(volume * (bulk * trace**2 + 2 * ee), rel=1e-10)
 
 
+def test_dilatation_linear_in_r_and_z_is_kept_whole_by_the_pressure_of_distorted_elements() -> None:
+    """U = r z, ε_kk = 2 z and U = 0, W = r z, ε_kk = r: biquadratic in ξ, η, for sides are straight.
+
+    Pressures linear in ξ and η would lose part of it, and their convergence.
+    """
+    h = assemble(DISTORTED, 0, (0, 2))
+    K = h.stiffness([1.0], [0.0])
+    r, z = DISTORTED.r, DISTORTED.z
+    for U, W, exact in (
+        (r * z, 0 * r, 4 * math.pi * (4 - 0.25) / 3),  # ∫(2z)² dV
+        (0 * r, r * z, 2 * math.pi * (16 - 0.5**4) / 4),  # ∫r² dV
+    ):
+        u = np.stack([U, W], axis=1).ravel()
+        assert u @ (K @ u) == pytest.approx(exact, rel=1e-12)  # Gauss's rule is exact, round-off
+
+
 @pytest.mark.parametrize("mesh", [DISTORTED, curved(DISTORTED)], ids=["straight", "curved"])
 def test_rigid_motion_costs_nothing_on_distorted_elements(mesh: RevolutionMesh) -> None:
     for n, components in ((0, (0, 2)), (0, (1,)), (1, (0, 1, 2))):
