@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -169,6 +170,23 @@ def test_the_same_elements_give_the_same_numbers_by_either_way() -> None:
         np.testing.assert_allclose(other.outputs["p"], one.outputs["p"], rtol=0, atol=1e-9)
         assert body.mass == pytest.approx(rectangles.mass, rel=1e-12)
         np.testing.assert_allclose(body.modes(2, 2).frequency, rectangles.modes(2, 2).frequency, rtol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["quad", "quad8", "quad9"])
+def test_a_mesh_file_becomes_a_section(kind: str, tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    count = {"quad": 4, "quad8": 8, "quad9": 9}[kind]
+    order = NINE[:count]
+    used, index = np.unique(DISTORTED.elements[:, order], return_inverse=True)
+    flat = np.stack([DISTORTED.r, DISTORTED.z, 0 * DISTORTED.r], axis=-1)[used]
+    cells = index.reshape(-1, count)
+    region = (np.arange(len(cells)) % 2).astype(np.int32)
+    path = tmp_path / "section.vtu"
+    meshio.Mesh(flat, [(kind, cells)], cell_data={"region": [region]}).write(path)
+    read = meshio.read(path)
+    mesh = quadrilaterals(read.points, read.cells_dict[kind], read.cell_data["region"][0])
+    body = Revolved((Patch(STEEL), Patch(STEEL)), section=mesh)
+    assert body.mass == pytest.approx(STEEL.density * math.pi * (4 - 0.25), rel=1e-12)
 
 
 def test_a_cone_and_a_set_of_nodes_are_faces() -> None:

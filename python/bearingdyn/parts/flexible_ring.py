@@ -36,8 +36,9 @@ class FlexibleRing:
         None: a plain rectangle.
     layer: rubber, its r_inner equal to r_outer here; its material, moduli and refinement are taken.
     outside: "rigid" or "flexible", where there is no layer.
-    damping: ratio ζ of the ring's free elastic modes. f_max: modes up to this frequency, Hz, join the
-        static shapes; 0: none. refinement: mesh density.
+    damping: ratio ζ of the ring's free elastic modes. refinement: mesh density.
+    f_max: modes up to this frequency, Hz, join the static shapes; 0: none. In rubber static shapes alone are
+        some 6 % off at 5 kHz; with three times the highest frequency of interest 0.2 % are left.
 
     Raises ValueError for dimensions out of order, a groove that does not fit, or a layer that does not touch.
     """
