@@ -20,8 +20,8 @@ class LooseFit:
 
     The gap is closed at stations around the circumference, each a stiff spring F = κ δ^{3/2} that only
     pushes; the contact kernel of the balls computes it, the stations standing still. Friction and shoulders,
-    which keep the ring from sliding along the bore and tilting in it, are linear springs. In a march a seat so
-    hard that opens and closes costs tenths of a millisecond a step.
+    which keep the ring from sliding along the bore and tilting in it, are linear springs. In a march, a hard
+    seat that opens and closes costs tenths of a millisecond a step.
 
     Parameters
     ----------

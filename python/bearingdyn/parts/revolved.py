@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy.sparse
 from numpy.typing import NDArray
 
 from bearingdyn.cms import Raceway, Superelement, Viscoelastic, modal_damping
-from bearingdyn.fem.eigen import factorise, lowest_modes
+from bearingdyn.fem.eigen import lowest_modes
 from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
 from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
 from bearingdyn.material import Elastic
 from bearingdyn.parts.boundaries import Boundaries, find_boundaries
+from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.section import Cylinder, EndFace, Groove, Patch, Region, Surface, shape_moduli
 
 Float = NDArray[np.float64]
-
-DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off
-ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it is rigid motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,36 +160,8 @@ class Revolved:
     def _density(self) -> list[float]:
         return [q.material.density for q in self.regions]
 
-    def _constraint_shapes(
-        self, h: Harmonic, shear: Sequence[complex], grooves: bool = True
-    ) -> tuple[Any, Any]:
-        """Static shapes (n, columns) of unit boundary motions at given moduli, and their stiffness.
-
-        Boundary motions are those of the interfaces and, unless they are left free, of the grooves: the
-        shape of least energy that has the groove's averages, which is what loads on the groove make.
-        """
-        K = h.stiffness(self._bulk, shear)
-        at, R = self._boundaries.held(h)
-        inner = np.setdiff1d(h.free, at)
-        L = self._boundaries.averages(h)[: None if grooves else 0, inner]
-        faces = R.shape[1]
-        u = np.zeros((h.n, faces + len(L)), dtype=K.dtype)
-        u[at, :faces] = R
-        if inner.size:
-            A = K[inner][:, inner]
-            if not at.size:
-                # Springs on the averages hold a free body; given averages, they change no shape.
-                hold = abs(A).max() / (L**2).sum(axis=1).min()
-                A = A + hold * scipy.sparse.csr_matrix(L.T) @ scipy.sparse.csr_matrix(L)
-            lu = factorise(A)
-            if faces:
-                u[inner, :faces] = -lu.solve(np.asarray(K[inner][:, at] @ R, dtype=K.dtype))
-            if len(L):
-                X = lu.solve(np.asarray(L.T, dtype=K.dtype, order="F"))
-                X = X @ np.linalg.inv(L @ X)
-                u[inner, :faces] -= X @ (L @ u[inner, :faces])
-                u[inner, faces:] = X
-        return u, u.T @ (K @ u)
+    def _shape_maker(self) -> ShapeMaker:
+        return ShapeMaker(self._boundaries, self._bulk, self._density, self.f_max, self.mesh.size)
 
     def stiffness(self, omega: float = 0.0) -> NDArray[np.complex128]:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
@@ -217,7 +186,7 @@ class Revolved:
         S = np.zeros((rigid.n, rigid.n), dtype=np.complex128)
         for order, components, copies in rigid.families():
             h = self._harmonic(order, components)
-            _, k = self._constraint_shapes(h, shear, grooves=False)
+            _, k = self._shape_maker().constraint_shapes(h, shear, grooves=False)
             for copy in range(copies):
                 index, sign = rigid.place(h, copy)
                 S[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (k + k.T)
@@ -227,54 +196,6 @@ class Revolved:
         """Projector (n, n) that takes rigid motion out: what round-off leaves of its stiffness."""
         Q = np.linalg.qr(self._boundaries.rigid_motion(n))[0]
         return np.asarray(np.eye(n) - Q @ Q.T)
-
-    def _shapes(self, h: Harmonic, levels: Sequence[Sequence[float]]) -> tuple[Float, int]:
-        """Basis (n, columns) of a family: constraint shapes, then internal ones; and the number of the first.
-
-        Internal are the differences of constraint shapes between moduli, which vanish on the boundaries,
-        and the modes with the interfaces held and the grooves free, less their motion there. They are made
-        modes of each other, of unit modal mass, and those
-        without energy of their own are dropped (torsion has none: it changes no volume, so its shape does
-        not depend on the modulus).
-        """
-        static, k = self._constraint_shapes(h, levels[0])
-        K, M = h.stiffness(self._bulk, levels[0]), h.mass_matrix(self._density)
-        scale = np.sum(np.abs(static) * (abs(K) @ np.abs(static)), axis=0)
-        moving = np.diag(k) > ROUND_OFF * scale
-        # Rigid motion of all boundaries has the same shape at every modulus: those of the first add nothing.
-        moving[: self._boundaries.held(h)[1].shape[1] // max(len(self.interfaces), 1)] = False
-        unit = 1.0 / np.sqrt(np.diag(k)[moving])
-        extra = [(self._constraint_shapes(h, level)[0] - static)[:, moving] * unit for level in levels[1:]]
-        if self.f_max > 0:
-            extra.append(self._modes_beyond(h, K, M, levels[0], static))
-        internal = np.hstack(extra) if extra else np.zeros((h.n, 0))
-        if internal.shape[1]:
-            energy, mix = np.linalg.eigh(internal.T @ (K @ internal))
-            kept = energy > DISTINCT
-            internal = internal @ (mix[:, kept] / np.sqrt(energy[kept]))
-            inverse, turn = np.linalg.eigh(internal.T @ (M @ internal))
-            order = np.argsort(-inverse)
-            internal = internal @ (turn[:, order] / np.sqrt(inverse[order]))
-        return np.hstack([static, internal]), static.shape[1]
-
-    def _modes_beyond(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float], static: Float) -> Float:
-        """Modes (n, m) with interfaces held and grooves free, less the constraint shapes they move by."""
-        at, R = self._boundaries.held(h)
-        inner = np.setdiff1d(h.free, at)
-        shift = 0.0 if at.size else self._slow(shear) ** 2
-        limit = math.sqrt(self.f_max**2 + shift / (2 * math.pi) ** 2)
-        K_i, M_i = K[inner][:, inner], M[inner][:, inner]
-        frequency, phi = lowest_modes(K_i + shift * M_i, M_i, f_max=limit)
-        squares = (2 * math.pi * frequency) ** 2 - shift
-        elastic = squares > 1e-6 * shift
-        modes = np.zeros((h.n, int(elastic.sum())))
-        modes[inner] = phi[:, elastic] / np.sqrt(squares[elastic])
-        return modes - static[:, R.shape[1] :] @ (self._boundaries.averages(h) @ modes)
-
-    def _slow(self, shear: Sequence[float]) -> float:
-        """A tenth of the slowest shear wave's rate, 1/s: as a shift it holds a free body and keeps digits."""
-        speeds = [math.sqrt(G / rho) for G, rho in zip(shear, self._density, strict=True)]
-        return 0.1 * min(speeds) / self.mesh.size
 
     def superelement(self) -> Superelement:
         """Reduced matrices with rigid interfaces, projections of the full model's (paper (21)-(23)).
@@ -293,7 +214,7 @@ class Revolved:
         families = []
         for order, components, copies in self._boundaries.families():
             h = self._harmonic(order, components)
-            families.append((h, *self._shapes(h, levels), copies))
+            families.append((h, *self._shape_maker().basis(h, levels), copies))
         n = self._boundaries.n
         n += sum(copies * (Psi.shape[1] - fixed) for _, Psi, fixed, copies in families)
         rubbers: list[Any] = []
@@ -369,7 +290,7 @@ class Revolved:
         for name in names:
             if name not in self.interfaces:
                 raise ValueError(f"fixed has {name!r}; the interfaces are {sorted(self.interfaces)}")
-        rate = self._slow(shear)
+        rate = self._shape_maker().slow_rate(shear)
         found: list[tuple[float, Float]] = []
         for components in (AXIAL, TORSION) if order == 0 else ((0, 1, 2),):
             h = self._harmonic(order, components)
