@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.sparse
-import scipy.sparse.csgraph
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.fem.revolution_mesh import SAME, Float, Index, RevolutionMesh, shape_functions
@@ -108,18 +107,19 @@ def _smallest_jacobian(r: Float, z: Float, nine: Index) -> Float:
 
 
 def _check_joined(r: Float, z: Float, nine: Index, size: float) -> None:
+    from scipy.sparse.csgraph import connected_components  # late: both load much, and few bring meshes
+    from scipy.spatial import cKDTree
+
     n = r.size
     ones = np.ones(nine.size)
     belongs: Any = scipy.sparse.csr_matrix((ones, (np.repeat(np.arange(len(nine)), 9), nine.ravel())))
-    pieces, label = scipy.sparse.csgraph.connected_components(belongs.T @ belongs, directed=False)
+    pieces, label = connected_components(belongs.T @ belongs, directed=False)
     if pieces > 1:
         other = int(np.flatnonzero(label != label[0])[0])
         raise ValueError(
             f"cells falls into {pieces} pieces that share no node, one at r = {r[other]:g}, z = {z[other]:g} "
             "m; merge nodes that coincide, or make a part of each piece"
         )
-    from scipy.spatial import cKDTree  # late: it loads much, and few bring meshes
-
     twins = cKDTree(np.stack([r, z], axis=-1)).query_pairs(SAME * size, output_type="ndarray")
     if len(twins):
         a, b = (int(k) for k in twins[0])
