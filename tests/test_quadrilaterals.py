@@ -16,7 +16,7 @@ from bearingdyn.parts import (
     EndFace,
     Layer,
     Line,
-    NodeSet,
+    MeshNodes,
     Patch,
     Region,
     Revolved,
@@ -207,7 +207,7 @@ def test_a_cone_and_a_set_of_nodes_are_faces() -> None:
     faces = {
         "line": Line((10 * MM, 0.0), (16 * MM, 30 * MM)),
         "rule": Where(lambda r, z: np.abs(r - 10 * MM - 0.2 * z) < 1e-9),
-        "numbers": NodeSet(tuple(along)),
+        "numbers": MeshNodes(tuple(along)),
     }
     elements = []
     for face in faces.values():
@@ -284,9 +284,9 @@ def test_a_bad_mesh_is_named() -> None:
         EndFace(0.0, (0.5, 2.0)),
         Line((1.0, 0.0), (2.0, 1.0)),
         Where(lambda r, z: r > 5.0),
-        NodeSet(()),
-        NodeSet((0, 8)),
-        NodeSet((77,)),
+        MeshNodes(()),
+        MeshNodes((0, 8)),
+        MeshNodes((77,)),
     ):
         with pytest.raises(ValueError, match="bore"):
             Revolved(body, {"bore": face}, section=mesh)

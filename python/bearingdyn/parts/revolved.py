@@ -42,7 +42,7 @@ class Revolved:
     """A body of revolution about z, not turning, of one or more regions bonded where they touch.
 
     regions: rings of rectangular section; or, with a mesh in `section`, a Patch for each of its regions.
-    interfaces: name -> Cylinder, EndFace, Line, Where or NodeSet, each moving as a rigid body with six
+    interfaces: name -> Cylinder, EndFace, Line, Where or MeshNodes, each moving as a rigid body with six
         coordinates (x, y, z, θx, θy, θz) about the point of the axis in the middle of the face.
     outputs: name -> point (r, z, φ), m, m, rad; its rows (3, n) give x, y, z, in the orders that are
         carried: 0 and 1, and those of the grooves.

@@ -113,7 +113,7 @@ class Where:
 
 
 @dataclass(frozen=True)
-class NodeSet:
+class MeshNodes:
     """Face of the nodes with these numbers, of the points of the mesh that was brought."""
 
     nodes: tuple[int, ...]
@@ -122,7 +122,7 @@ class NodeSet:
         object.__setattr__(self, "nodes", tuple(int(k) for k in self.nodes))
 
 
-Surface: TypeAlias = Cylinder | EndFace | Line | Where | NodeSet
+Surface: TypeAlias = Cylinder | EndFace | Line | Where | MeshNodes
 
 
 @dataclass(frozen=True)
@@ -185,7 +185,7 @@ def _select(mesh: RevolutionMesh, name: str, surface: Surface) -> tuple[Index, f
     if isinstance(surface, Where):
         r, z = mesh.r[mesh.outline], mesh.z[mesh.outline]
         return mesh.outline[np.broadcast_to(np.asarray(surface.inside(r, z), dtype=bool), r.shape)], None
-    if isinstance(surface, NodeSet):
+    if isinstance(surface, MeshNodes):
         nodes = np.unique(np.array(surface.nodes, dtype=np.intp))
         if nodes.size and not (0 <= nodes[0] and nodes[-1] < mesh.r.size):
             raise ValueError(f"{name} names nodes outside 0...{mesh.r.size - 1}")
