@@ -18,6 +18,9 @@ QUICK = [
     "Balls with inertia",
     "Paired bearings",
     "Press fits",
+    "Rings under opposed loads",
+    "Flexible ring, stiff and free",
+    "Distorted mesh",
     "Rigid rotor",
     "Sandwich cantilever",
 ]

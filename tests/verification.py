@@ -10,7 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import bearings, contacts, materials, motion, peers, reduction, shaker, solids, structures
+from verified import (
+    bearings,
+    contacts,
+    materials,
+    motion,
+    peers,
+    reduction,
+    rings,
+    shaker,
+    solids,
+    structures,
+)
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -34,6 +45,9 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Housing in CalculiX": peers.calculix,
     "Reduced parts": reduction.reduction,
     "Free shaft and ring": structures.free_bodies,
+    "Rings under opposed loads": rings.pinched_rings,
+    "Flexible ring, stiff and free": rings.stiff_rings,
+    "Distorted mesh": rings.distorted_mesh,
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
     "Rings on a shaker": shaker.transmissibility,

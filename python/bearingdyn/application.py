@@ -13,8 +13,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.bearing import BallBearing
-from bearingdyn.cms import Superelement
+from bearingdyn.bearing import BallBearing, LooseFit
+from bearingdyn.cms import Raceway, Superelement
 
 Array = NDArray[np.float64]
 
@@ -53,12 +53,22 @@ class Support:
 
 @dataclass(frozen=True)
 class HungBearing:
-    """A bearing between two interfaces; outer may be "ground"."""
+    """A bearing between two interfaces; outer may be a raceway of a flexible ring, or "ground"."""
 
     name: str
     bearing: BallBearing
     inner: str
     outer: str
+
+
+@dataclass(frozen=True)
+class HungFit:
+    """A flexible ring's outside, a raceway, loose in a bore: an interface or "ground"."""
+
+    name: str
+    fit: LooseFit
+    ring: str
+    bore: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +115,7 @@ class Application:
         self.connections: list[Connection] = []
         self.supports: dict[str, Support] = {}
         self.bearings: dict[str, HungBearing] = {}
+        self.fits: dict[str, HungFit] = {}
         self.loads: list[Load] = []
         self.free_interfaces: set[str] = set()
 
@@ -115,7 +126,7 @@ class Application:
         """
         if not name or "." in name or name == GROUND:
             raise ValueError(f'part name {name!r} must be a word without dots and not "{GROUND}"')
-        if name in self.parts or name in self.bearings:
+        if name in self.parts or name in self.bearings or name in self.fits:
             raise ValueError(f"part {name!r} is there already; give each part and bearing its own name")
         self.parts[name] = part.superelement()
         self.sources[name] = part
@@ -157,25 +168,66 @@ class Application:
         )
 
     def free(self, interface: str) -> None:
-        """Declare that an interface is left unjoined on purpose."""
-        self._interface(interface)
+        """Declare that an interface is left unjoined on purpose, or a raceway without balls."""
+        if self.raceway(interface) is None:
+            self._interface(interface)
         self.free_interfaces.add(interface)
 
     def bearing(self, name: str, bearing: BallBearing, *, inner: str, outer: str) -> None:
         """Hang a bearing between the interface of its inner ring and that of its outer ring or "ground".
 
-        Raises ValueError if a name is unknown or taken.
+        outer may be the raceway of a flexible ring, "ring.raceway", made for this bearing's arm.
+
+        Raises ValueError if a name is unknown or taken, or the raceway has another arm.
         """
-        if not name or "." in name:
-            raise ValueError(f"bearing name {name!r} must be a word without dots")
-        if name in self.bearings or name in self.parts:
-            raise ValueError(f"bearing {name!r}: the name is taken; give each part and bearing its own name")
+        self._new("bearing", name)
         self._interface(inner)
-        if outer != GROUND:
+        raceway = self.raceway(outer)
+        if raceway is not None and not math.isclose(raceway.arm, bearing.arm, rel_tol=1e-9):
+            raise ValueError(
+                f"bearing {name!r} has its arm at {bearing.arm:.9g} m and {outer} at {raceway.arm:.9g} m; "
+                "make the ring with arm=bearing.arm"
+            )
+        if outer != GROUND and raceway is None:
             self._interface(outer)
+        if raceway is not None and any(b.outer == outer for b in self.bearings.values()):
+            raise ValueError(
+                f"bearing {name!r}: {outer} carries a bearing already; give each its own raceway"
+            )
         if inner == outer:
             raise ValueError(f"bearing {name!r} has both rings at {inner}; name two interfaces")
         self.bearings[name] = HungBearing(name, bearing, inner, outer)
+
+    def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
+        """Set a flexible ring's outside, "ring.outside", loosely in the bore of an interface or "ground".
+
+        Raises ValueError if a name is unknown or taken, or the ring's outside is no raceway.
+        """
+        self._new("fit", name)
+        if self.raceway(ring) is None:
+            raise ValueError(
+                f'fit {name!r}: {ring!r} is no flexible face; make the ring with outside="flexible" and '
+                f'name its "outside"'
+            )
+        if ring in self._raceways_used():
+            raise ValueError(f"fit {name!r}: {ring} is in use already; give each its own")
+        if bore != GROUND:
+            self._interface(bore)
+        self.fits[name] = HungFit(name, fit, ring, bore)
+
+    def _new(self, kind: str, name: str) -> None:
+        if not name or "." in name:
+            raise ValueError(f"{kind} name {name!r} must be a word without dots")
+        if name in self.bearings or name in self.parts or name in self.fits:
+            raise ValueError(f"{kind} {name!r}: the name is taken; give each part and bearing its own name")
+
+    def _raceways_used(self) -> set[str]:
+        return {b.outer for b in self.bearings.values()} | {f.ring for f in self.fits.values()}
+
+    def raceway(self, name: str) -> Raceway | None:
+        """The raceway of that name, "ring.raceway"; None where the name is no raceway."""
+        part, _, rest = name.partition(".")
+        return self.parts[part].raceways.get(rest) if part in self.parts else None
 
     def load(
         self,
@@ -259,6 +311,8 @@ class Application:
         lines += [f"  {name} free" for name in sorted(self.free_interfaces)]
         lines.append("bearings")
         lines += [f"  {b.name}: {b.inner} in {b.outer}, {b.bearing.Z} balls" for b in self.bearings.values()]
+        for f in self.fits.values():
+            lines.append(f"  {f.name}: {f.ring} loose in {f.bore}, {f.fit.clearance * 1e6:g} µm")
         lines.append("loads")
         lines += [f"  {load.where}: {load.kind} {np.round(load.vector, 6).tolist()}" for load in self.loads]
         return "\n".join(lines)
@@ -282,7 +336,14 @@ class Application:
             raise ValueError("the application has no parts; add some with app.add(name, part)")
         used = {i for c in self.connections for i in (c.a, c.b)} | set(self.supports)
         used |= {i for b in self.bearings.values() for i in (b.inner, b.outer)} | self.free_interfaces
+        used |= {i for f in self.fits.values() for i in (f.ring, f.bore)}
         for part, element in self.parts.items():
+            for raceway in element.raceways:
+                if f"{part}.{raceway}" not in used:
+                    raise ValueError(
+                        f"raceway {part}.{raceway} carries no balls; name it as the outer of a bearing, or "
+                        f'declare app.free("{part}.{raceway}")'
+                    )
             for interface in element.interfaces:
                 if f"{part}.{interface}" not in used:
                     raise ValueError(
@@ -309,6 +370,10 @@ class Application:
     def _interface(self, name: str) -> None:
         part, rest = self._split(name)
         known: Sequence[str] = sorted(self.parts[part].interfaces)
+        if rest in self.parts[part].raceways:
+            raise ValueError(
+                f"{name} is a raceway, not a rigid interface; it serves as the outer of a bearing"
+            )
         if rest not in known:
             raise ValueError(f"{part!r} has no interface {rest!r}; it has {list(known)}")
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from bearingdyn import core
 from bearingdyn.application import Application
 from bearingdyn.bearing.minimum import minimum
+from bearingdyn.bearing.series import NET, RIGID, RacewaySeries
 from bearingdyn.system import LoadTerm, System, assemble
 
 Array = NDArray[np.float64]
@@ -24,8 +25,8 @@ HOLD = 1e6
 class BearingState:
     """A bearing in the static state, linearised at rest.
 
-    z (5,) relative raceway coefficients, m; g (5,) force on them, N; K, C (5, 5) tangents, N/m and N s/m;
-    loads (Z,) of the balls, N.
+    z (n,) relative raceway coefficients, m; g (n,) force on them, N; K, C (n, n) tangents, N/m and N s/m;
+    loads (Z,) of the balls, N. series: which coefficients; five between rigid rings.
     """
 
     z: Array
@@ -33,16 +34,23 @@ class BearingState:
     K: Array
     C: Array
     loads: Array
+    series: RacewaySeries = RIGID
 
     @property
     def radial_stiffness(self) -> float:
-        """Mean of the two radial diagonal tangents, N/m."""
-        return float(self.K[0, 0] + self.K[1, 1]) / 2
+        """Mean of the two radial diagonal tangents, N/m; of the balls alone, whatever the rings do."""
+        x, y = (self.series.index(0, 1, sine) for sine in (0, 1))
+        return float(self.K[x, x] + self.K[y, y]) / 2
+
+    @property
+    def force(self) -> Array:
+        """Force (3,) of the inner ring on the balls, x, y, z, N."""
+        return np.array([self.g[self.series.index(*t)] if t in self.series.terms else 0.0 for t in NET])
 
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A static state: x (n,) of the system, and every bearing by name.
+    """A static state: x (n,) of the system, and every bearing and loose fit by name.
 
     Layers carry their relaxed modulus G0. The free spin of shafts about z is left at zero.
     """
@@ -100,9 +108,7 @@ def equilibrium(app: Application | System, angle: float = 0.0) -> Equilibrium:
     if not math.isfinite(angle):
         raise ValueError(f"angle is {angle}; the cage angle must be finite, in rad")
     # the angle stays with the system, so that what starts from here finds the balls where they are
-    turned = tuple(
-        replace(t, bearing=replace(t.bearing, angle0=t.bearing.angle0 + angle)) for t in system.bearings
-    )
+    turned = tuple(replace(t, bearing=t.bearing.turned(angle)) for t in system.bearings)
     system = replace(system, bearings=turned)
     modal, T = system.modal()
     # motions that nothing holds (the spin of shafts) are held here: no load drives them
@@ -110,7 +116,7 @@ def equilibrium(app: Application | System, angle: float = 0.0) -> Equilibrium:
     structure = modal.stiffness() + HOLD * (free @ free.T)
     load = modal.static_load()
     B = modal.B
-    kernels = [t.bearing.kernel() for t in modal.bearings]
+    kernels = [t.kernel() for t in modal.bearings]
     sizes = np.cumsum([0, *(len(k.order) for k in kernels)])
     still = [np.zeros(len(k.order)) for k in kernels]
 
@@ -137,7 +143,7 @@ def equilibrium(app: Application | System, angle: float = 0.0) -> Equilibrium:
 
     states = {}
     for term, p, a, b in zip(modal.bearings, press(B @ q), sizes, sizes[1:], strict=False):
-        states[term.name] = BearingState((B @ q)[a:b], *p)
+        states[term.name] = BearingState((B @ q)[a:b], *p, series=term.series)
     return Equilibrium(system, T @ q, states)
 
 

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.running import digest, run
+from bearingdyn.bearing.series import NET
 from bearingdyn.results import march_dataset
 from bearingdyn.system import QUANTITIES, System, is_rotation
 
@@ -216,8 +217,10 @@ def _channel(system: System, name: str) -> tuple[Channel, str]:
             return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
         if ball and 1 <= int(ball[1]) <= system.bearings[which].bearing.Z:
             return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
-        if rest in ("force.x", "force.y", "force.z"):
-            return (core.CHANNEL_KINDS["force"], None, which, "xyz".index(rest[-1])), "N"
+        series = system.bearings[which].series
+        term = NET["xyz".index(rest[-1])] if rest in ("force.x", "force.y", "force.z") else None
+        if term in series.terms:
+            return (core.CHANNEL_KINDS["force"], None, which, series.index(*term)), "N"
         raise ValueError(
             f"channel {name!r}: bearing {head!r} offers loaded, ball1 … "
             f"ball{system.bearings[which].bearing.Z}, force.x, force.y and force.z"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -9,6 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.bearing.series import RacewaySeries
 
 Float = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -79,6 +82,26 @@ class Viscoelastic:
 
 
 @dataclass(frozen=True, eq=False)
+class Raceway:
+    """A race of a flexible ring: its groove-centre displacement as Fourier coefficients in the azimuth.
+
+    series: which coefficients; arm: radius, m, at which tilts become axial motion.
+    rows: (len(series), n), the coefficients by the superelement's coordinates; a load of balls g acts as
+        rowsᵀ g.
+    """
+
+    series: RacewaySeries
+    arm: float
+    rows: Float
+
+    def __post_init__(self) -> None:
+        n = np.shape(self.rows)[-1] if np.ndim(self.rows) else 0
+        object.__setattr__(self, "rows", frozen("rows", self.rows, (len(self.series), n)))
+        if not 0 < self.arm < math.inf:
+            raise ValueError(f"arm is {self.arm}; it must be a positive radius in m")
+
+
+@dataclass(frozen=True, eq=False)
 class Superelement:
     """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
@@ -93,6 +116,7 @@ class Superelement:
 
     N: (n, n) skew, N s/m: the circulatory force Ω N x on the left-hand side, there when the damping C belongs
         to material that turns with the shaft; zero by default.
+    raceways: name -> Raceway, where a bearing's balls may run on a flexible ring.
 
     Raises ValueError for a wrong shape, a matrix with non-finite entries or without its symmetry, an index
     out of range or used twice, or a name used twice.
@@ -106,6 +130,7 @@ class Superelement:
     outputs: Mapping[str, Float] = field(default_factory=dict)
     viscoelastic: tuple[Viscoelastic, ...] = ()
     N: Float | None = None
+    raceways: Mapping[str, Raceway] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) else 0
@@ -151,6 +176,12 @@ class Superelement:
         for i, part in enumerate(self.viscoelastic):
             if part.H.shape != (n, n):
                 raise ValueError(f"viscoelastic[{i}].H has shape {part.H.shape}; it must be ({n}, {n})")
+
+        for name, raceway in self.raceways.items():
+            if name in interfaces or name in outputs:
+                raise ValueError(f"raceways has {name!r}, the name of an interface or output; choose another")
+            if raceway.rows.shape[1] != n:
+                raise ValueError(f"raceways[{name!r}].rows has {raceway.rows.shape[1]} columns, not {n}")
 
     @property
     def n(self) -> int:

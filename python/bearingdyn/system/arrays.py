@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS
-from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
+from bearingdyn.bearing.series import RIGID, RacewaySeries
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.material import Maxwell
 
@@ -46,11 +47,16 @@ class LayerTerm:
 
 @dataclass(frozen=True, eq=False)
 class BearingTerm:
-    """One bearing: B (n_coefs, n) gives its relative raceway coefficients, inner minus outer."""
+    """One bearing or loose fit: B (n_coefs, n) gives its relative coefficients, inner minus outer."""
 
     name: str
-    bearing: BallBearing
+    bearing: BallBearing | LooseFit
     B: Array
+    series: RacewaySeries = RIGID
+
+    def kernel(self) -> BearingKernel:
+        """The bearing as the contact kernel takes it."""
+        return self.bearing.kernel(self.series)
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,7 +220,7 @@ class System:
             K,
             self.N,
             layers,
-            [(core.kernel_tuple(t.bearing.kernel()), t.B) for t in self.bearings],
+            [(core.kernel_tuple(t.kernel()), t.B) for t in self.bearings],
             [(core.LOAD_KINDS[t.kind], t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels,
         )

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.application import GROUND, Application
+from bearingdyn.application import GROUND, Application, HungFit
+from bearingdyn.bearing.series import RIGID
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
 from bearingdyn.system.held import check_held
 from bearingdyn.system.origin import noted
@@ -60,8 +61,20 @@ def assemble(app: Application) -> System:
 
     bearings = []
     for hung in app.bearings.values():
-        relative = outputs[hung.inner] - (outputs[hung.outer] if hung.outer != GROUND else 0.0)
-        bearings.append(BearingTerm(hung.name, hung.bearing, hung.bearing.coefficients() @ relative))
+        raceway = app.raceway(hung.outer)
+        series = RIGID if raceway is None else raceway.series
+        B = hung.bearing.coefficients(series) @ outputs[hung.inner]
+        if raceway is not None:
+            B = B - raceway.rows @ select[hung.outer.partition(".")[0]]
+        elif hung.outer != GROUND:
+            B = B - hung.bearing.coefficients() @ outputs[hung.outer]
+        bearings.append(BearingTerm(hung.name, hung.bearing, B, series))
+
+    for seat in app.fits.values():
+        contacts, springs = _loose(app, seat, select, outputs)
+        bearings.append(contacts)
+        K += springs
+        firm += springs
 
     turning = {name: app.parts[name] for name in app.parts if name in app.turning_parts()}
     standstill = tuple(
@@ -70,6 +83,21 @@ def assemble(app: Application) -> System:
     system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill)
     check_held(system, firm)
     return noted(system, app)
+
+
+def _loose(
+    app: Application, seat: HungFit, select: Mapping[str, Array], outputs: Mapping[str, Array]
+) -> tuple[BearingTerm, Array]:
+    """A loose fit as contacts on the radial coefficients, ring less bore, and the springs of its hold."""
+    raceway = app.raceway(seat.ring)
+    assert raceway is not None  # the application checked
+    relative = raceway.rows @ select[seat.ring.partition(".")[0]]
+    if seat.bore != GROUND:
+        relative = relative - raceway.series.rigid(raceway.arm) @ outputs[seat.bore]
+    radial, series, held = seat.fit.split(raceway.series)
+    seat.fit.kernel(series)  # too few stations are refused here
+    springs = seat.fit.hold * relative[held].T @ relative[held]
+    return BearingTerm(seat.name, seat.fit, relative[radial], series), springs
 
 
 def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
