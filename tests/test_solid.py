@@ -143,6 +143,16 @@ def test_mesher_fills_the_drawing(flange, strip, extra, bore_height):
     assert one @ solid.mass @ one == pytest.approx(volume, rel=1e-5)  # the arcs, as above
     rho = np.hypot(*solid.points[:, :2].T)
     assert rho.min() > 0.03 * (1 - 1e-12)
+    # the boundary, each face once: bore, base and outside; front and back are as large as the section
+    areas = {name: mesh.samples(name).area for name in mesh.surfaces}
+    whole = mesh.with_surface("all", lambda p: np.ones(len(p), dtype=bool)).samples("all").area
+    assert areas["bore"] + areas["base"] + areas["outside"] == pytest.approx(whole, rel=1e-12)
+    assert areas["front"] == pytest.approx(areas["back"], rel=1e-12)
+    assert areas["front"] == pytest.approx(volume / 0.02, rel=1e-5)
+    wide = flange[0] * 2 if flange else 0.0
+    assert areas["base"] == pytest.approx((0.12 + wide) * 0.02)
+    feet = wide if flange else 2 * strip if strip else 0.12
+    assert areas["feet"] == pytest.approx(feet * 0.02)
 
 
 def test_slender_block_of_bricks_vibrates_as_a_beam():

@@ -19,6 +19,7 @@ QUICK = [
     "Paired bearings",
     "Press fits",
     "Rigid rotor",
+    "Sandwich cantilever",
 ]
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import bearings, contacts, materials, motion, reduction, solids, structures
+from verified import bearings, contacts, materials, motion, peers, reduction, shaker, solids, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -32,9 +32,11 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Sandwich cantilever": solids.sandwich,
     "Solids of elements": solids.bonded,
     "Reduced parts": reduction.reduction,
+    "Housing in CalculiX": peers.calculix,
     "Free shaft and ring": structures.free_bodies,
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
+    "Rings on a shaker": shaker.transmissibility,
 }
 
 

@@ -87,7 +87,7 @@ def frequency_response(
             )
     response *= ((1j * omega) ** powers[quantity])[:, None, None]
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     return dataset(
         {
@@ -98,7 +98,7 @@ def frequency_response(
                 f"complex {quantity}, zero-to-peak, per unit force",
             ),
         },
-        {"analysis": "frequency response", "speed": speed, "quantity": quantity},
+        {"analysis": "frequency response", "speed": speed, "quantity": quantity, **inputs_of(system.inputs)},
         {"frequency": (f, "Hz"), "output": (list(outputs), ""), "input": (list(inputs), "")},
     )
 

@@ -21,7 +21,7 @@ from bearingdyn.material import Elastic
 Float = NDArray[np.float64]
 Index = NDArray[np.intp]
 
-CHUNK = 512  # elements whose matrices are in memory at a time, 30 MB a matrix of 27-node bricks
+CHUNK = 1024  # elements whose matrices are in memory at a time, 54 MB a matrix of 27-node bricks
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +83,11 @@ def assemble_solid(
         data = np.ascontiguousarray(values.transpose(2, 0, 1))
         return scipy.sparse.bsr_matrix((data, column, indptr), shape=(3 * n, 3 * n)).tocsr()
 
+    masses = block_matrix(mass * np.eye(3)[:, :, None])
+    masses.eliminate_zeros()
     return SolidMatrices(
         points=mesh.points,
-        mass=block_matrix(mass * np.eye(3)[:, :, None]),
+        mass=masses,
         volumetric=block_matrix(blocks[0]),
         deviatoric=block_matrix(blocks[1]),
     )

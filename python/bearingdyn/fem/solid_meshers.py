@@ -240,8 +240,9 @@ def block_with_bore(
     bore_height: of the axis above the base. element_size: longest wanted side, m.
     flange: (width, height) of two flanges on the sides at the base. strip: a grid line runs this far in from
     either side, along the base. The bore is round: its nodes lie on the circle and its edges are quadratic.
-    Surfaces: "bore", "base", "top", "z-", "z+", and "feet": the undersides of the flanges, the strips, or
-    the base. The measures are taken to be consistent (parts.Housing checks them).
+    Surfaces: "bore", "base", "top", "front" (at +z), "back"; "feet", the undersides of the flanges, the
+    strips, or the base; "outside", all but the bore and the base. The measures are taken to be consistent
+    (parts.Housing checks them).
     """
     r, half, base, top = 0.5 * bore_diameter, 0.5 * width, -bore_height, height - bore_height
     low = base if bore_height - top < element_size else -top  # a box about the bore, the pedestal below it
@@ -283,7 +284,10 @@ def block_with_bore(
         "base": np.flatnonzero(on_base),
         "feet": np.flatnonzero(on_base & (np.abs(p[:, 0]) > foot_from - near)),
         "top": np.flatnonzero(np.abs(p[:, 1] - top) < near),
-        "z-": np.flatnonzero(np.abs(p[:, 2] + 0.5 * length) < near),
-        "z+": np.flatnonzero(np.abs(p[:, 2] - 0.5 * length) < near),
+        "front": np.flatnonzero(np.abs(p[:, 2] - 0.5 * length) < near),
+        "back": np.flatnonzero(np.abs(p[:, 2] + 0.5 * length) < near),
     }
+    skin = SolidMesh(p, elements).boundary
+    other = ~(bore[skin].all(axis=1) | on_base[skin].all(axis=1))
+    surfaces["outside"] = np.unique(skin[other])
     return _with_kind(SolidMesh(p, elements, surfaces=surfaces), element)

@@ -118,7 +118,7 @@ class Housing:
 
     @cached_property
     def body(self) -> Solid:
-        """The housing as a solid, with the surfaces "bore", "base", "feet", "top", "z-" and "z+"."""
+        """The housing as a solid; its mesh names the surfaces (fem.block_with_bore)."""
         volume = (self.width * self.height - 0.25 * math.pi * self.bore_diameter**2) * self.length
         feet = self.feet
         flanged = feet is not None and feet.height > 0

@@ -93,10 +93,12 @@ class Solid:
     moduli: real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: chosen
         from each material's range (cms.modulus_levels).
     attach: outputs at which loads act, whose static shapes then join the basis.
-    inertia: rounds of cms.inertia_shapes of the static shapes; with moduli=(G,), 0 is the paper's basis.
+    inertia: rounds of cms.inertia_shapes of the static shapes at each modulus: one serves better than many
+        fixed-interface modes; with moduli=(G,), 0 is the paper's basis.
 
     Viscoelastic regions, and elastic ones with ν of 0.45 or more, have the cure against locking that their
-    element allows: see fem.assemble_solid.
+    element allows: see fem.assemble_solid. Of 20-node bricks in rubber, `mesh.with_centres()` makes 27-node
+    ones, which are some five times as accurate there.
 
     Raises ValueError for names that are not the mesh's, a region without material, interfaces that share a
     node or lie on a line, a point away from the body, and values outside their range.
@@ -262,7 +264,10 @@ class Solid:
         )
 
     def basis(self) -> Basis:
-        """The shapes `superelement` takes, in the coordinates of `full_model`."""
+        """The shapes `superelement` takes, in the coordinates of `full_model`.
+
+        Raises ValueError if moduli cannot be chosen for a material.
+        """
         return self._basis
 
     def superelement(self) -> Superelement:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -69,6 +69,8 @@ class LoadTerm:
 class System:
     """Matrices (n, n), terms, and rows (3 or 6, n) of every interface and point by name."""
 
+    inputs: str = field(default="", kw_only=True)
+    """What the system was assembled from, as `bearingdyn.inputs` writes it."""
     M: Array
     C: Array
     K: Array

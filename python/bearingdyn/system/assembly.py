@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from bearingdyn.application import GROUND, Application
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
 from bearingdyn.system.held import check_held
+from bearingdyn.system.origin import noted
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,7 @@ def assemble(app: Application) -> System:
     )
     system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill)
     check_held(system, firm)
-    return system
+    return noted(system, app)
 
 
 def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
