@@ -44,8 +44,6 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Solids of elements": solids.bonded,
     "Housing in CalculiX": peers.calculix,
     "Reduced parts": reduction.reduction,
-    "Reduced parts": reduction.reduction,
-    "Housing in CalculiX": peers.calculix,
     "Free shaft and ring": structures.free_bodies,
     "Rings under opposed loads": rings.pinched_rings,
     "Flexible ring, stiff and free": rings.stiff_rings,
