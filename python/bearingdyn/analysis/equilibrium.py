@@ -110,7 +110,7 @@ def equilibrium(app: Application | System, angle: float = 0.0) -> Equilibrium:
     structure = modal.stiffness() + HOLD * (free @ free.T)
     load = modal.static_load()
     B = modal.B
-    kernels = [t.bearing.kernel() for t in modal.bearings]
+    kernels = [t.kernel() for t in modal.bearings]
     sizes = np.cumsum([0, *(len(k.order) for k in kernels)])
     still = [np.zeros(len(k.order)) for k in kernels]
 

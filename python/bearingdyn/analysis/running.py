@@ -112,7 +112,7 @@ def digest(system: System, scheme: core.Scheme, state: Array) -> str:
 
     take(system.M, system.C, system.K, system.G, system.N, state)
     take([(t.L, t.material.G0, t.material.G, t.material.tau, t.material.eta0) for t in system.layers])
-    take([(core.kernel_tuple(t.bearing.kernel()), t.B) for t in system.bearings])
+    take([(core.kernel_tuple(t.kernel()), t.B) for t in system.bearings])
     take([(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in system.loads])
     take(scheme.dt, scheme.beta, scheme.gamma, scheme.tolerance, scheme.max_iterations, scheme.audit)
     take(*scheme.profile)

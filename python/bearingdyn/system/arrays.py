@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS
 from bearingdyn.bearing import BallBearing
-from bearingdyn.cms import coupled_blocks
+from bearingdyn.bearing.kernel import BearingKernel
+from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.material import Maxwell
 
 Array = NDArray[np.float64]
@@ -46,11 +47,47 @@ class LayerTerm:
 
 @dataclass(frozen=True, eq=False)
 class BearingTerm:
-    """One bearing: B (n_coefs, n) gives its relative raceway coefficients, inner minus outer."""
+    """One bearing: B (n_coefs, n) gives its relative raceway coefficients, inner minus outer.
+
+    offset: m along z that the inner ring sits beyond the motion B x.
+    """
 
     name: str
     bearing: BallBearing
     B: Array
+    offset: float = 0.0
+
+    def kernel(self) -> BearingKernel:
+        """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves."""
+        kernel = self.bearing.kernel()
+        if self.offset == 0.0:
+            return kernel
+        # e0 = x0² + y0² − A² moves by offset (2 x0 + offset), without cancellation
+        shift = self.offset * (2.0 * kernel.x0 + self.offset)
+        return replace(kernel, x0=kernel.x0 + self.offset, e0=kernel.e0 + shift)
+
+
+@dataclass(frozen=True, eq=False)
+class PartTerm:
+    """One part: its own coordinates are place @ x, place (m, n).
+
+    inertia (m, 3): M R, the force that unit accelerations along x, y, z ask of it, kg.
+    """
+
+    name: str
+    element: Superelement
+    place: Array
+    inertia: Array
+
+
+@dataclass(frozen=True, eq=False)
+class SpringTerm:
+    """Six springs and dampers, N/m and N s/m, on the motion across @ x, across (6, n)."""
+
+    name: str
+    across: Array
+    stiffness: Array
+    damping: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +117,12 @@ class System:
     outputs: Mapping[str, Array]
     standstill: tuple[str, ...] = ()
     """Parts that turn with the shaft, but whose damping is written for the fixed frame."""
+    inertia: Array | None = None
+    """(n, 3) kg: −inertia @ ü is the force of a ground that moves with ü; NaN where a part holds itself."""
+    parts: tuple[PartTerm, ...] = ()
+    springs: tuple[SpringTerm, ...] = ()
+    turning: tuple[str, ...] = ()
+    """Parts that turn with the shaft."""
 
     @property
     def n(self) -> int:
@@ -105,9 +148,9 @@ class System:
 
         Raises ValueError when the place or component does not exist.
         """
-        place, _, component = channel.rpartition(".")
+        place = channel.rpartition(".")[0]
         rows = self.rows(place)
-        component = ALIASES.get(component, component)
+        component = component_of(channel)
         if component not in COMPONENTS[: rows.shape[0]]:
             raise ValueError(
                 f"{channel!r}: {place} has {list(COMPONENTS[: rows.shape[0]])}, not {component!r}"
@@ -164,6 +207,9 @@ class System:
             bearings=tuple(replace(t, B=t.B @ T) for t in self.bearings),
             loads=tuple(replace(t, p_cos=T.T @ t.p_cos, p_sin=T.T @ t.p_sin) for t in self.loads),
             outputs={name: rows @ T for name, rows in self.outputs.items()},
+            inertia=None if self.inertia is None else T.T @ self.inertia,
+            parts=tuple(replace(t, place=t.place @ T) for t in self.parts),
+            springs=tuple(replace(t, across=t.across @ T) for t in self.springs),
         )
 
     def blocks(self) -> list[NDArray[np.intp]]:
@@ -212,7 +258,7 @@ class System:
             K,
             self.N,
             layers,
-            [(core.kernel_tuple(t.bearing.kernel()), t.B) for t in self.bearings],
+            [(core.kernel_tuple(t.kernel()), t.B) for t in self.bearings],
             [(core.LOAD_KINDS[t.kind], t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels,
         )
@@ -245,10 +291,15 @@ def natural(K: Array, M: Array) -> tuple[Array, Array]:
     return squares, shapes
 
 
+def component_of(channel: str) -> str:
+    """Component of a channel "place.component": rx, ry, rz are θx, θy, θz."""
+    component = channel.rpartition(".")[2]
+    return ALIASES.get(component, component)
+
+
 def is_rotation(channel: str) -> bool:
     """Whether a channel "place.component" is a rotation."""
-    component = channel.rpartition(".")[2]
-    return ALIASES.get(component, component) in COMPONENTS[3:]
+    return component_of(channel) in COMPONENTS[3:]
 
 
 def static_modulus(layer: LayerTerm, modulus: str) -> float:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.application import GROUND, Application
-from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
+from bearingdyn.application import GRAVITY, GROUND, Application
+from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System
 from bearingdyn.system.held import check_held
 
 Array = NDArray[np.float64]
@@ -22,7 +22,7 @@ def assemble(app: Application) -> System:
     """An application as arrays.
 
     Raises ValueError for an interface left loose, a body that nothing holds (named, with its direction), a
-    dead load on a layer without relaxed modulus.
+    dead load on a layer without relaxed modulus, gravity or base motion on a part that holds itself.
     """
     app.check_joints()
     index, n = _coordinates(app)
@@ -36,12 +36,18 @@ def assemble(app: Application) -> System:
         select[part][moving, place[moving]] = 1.0
 
     M, C, K, G, N, firm = (np.zeros((n, n)) for _ in range(6))
+    inertia = np.zeros((n, 3))
     layers: list[LayerTerm] = []
+    terms: list[PartTerm] = []
     outputs: dict[str, Array] = {}
     for part, element in app.parts.items():
         own = (element.M, element.C, element.K, element.G, element.N)
         for total, A in zip((M, C, K, G, N), own, strict=True):
             total += select[part].T @ np.asarray(A) @ select[part]
+        R = app.rigid_shapes(part)
+        pull = np.full((element.n, 3), np.nan) if R is None else np.asarray(element.M @ R[:, :3])
+        inertia += select[part].T @ pull
+        terms.append(PartTerm(part, element, select[part], pull))
         for term in element.viscoelastic:
             layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
@@ -51,22 +57,45 @@ def assemble(app: Application) -> System:
         for name in (*element.interfaces, *element.outputs):
             outputs[f"{part}.{name}"] = element.rows(name) @ select[part]
 
-    for support in app.supports.values():
-        rows = outputs[support.interface]
-        for total, values in ((K, support.stiffness), (firm, support.stiffness), (C, support.damping)):
-            if values is not None:
-                total += rows.T @ (values[:, None] * rows)
+    springs: list[SpringTerm] = []
+    loads = _loads(app, outputs, inertia)
+    for name, relative, stiffness, damping, offset in _springs(app, outputs):
+        spring = SpringTerm(name, relative, stiffness, damping)
+        for total in (K, firm):
+            total += relative.T @ (stiffness[:, None] * relative)
+        C += relative.T @ (damping[:, None] * relative)
+        springs.append(spring)
+        if offset.any():
+            pressed = (stiffness * offset) @ relative
+            loads += (LoadTerm("constant", 0.0, pressed, np.zeros(n), np.zeros(0), np.zeros(0)),)
 
     bearings = []
     for hung in app.bearings.values():
         relative = outputs[hung.inner] - (outputs[hung.outer] if hung.outer != GROUND else 0.0)
-        bearings.append(BearingTerm(hung.name, hung.bearing, hung.bearing.coefficients() @ relative))
+        bearings.append(
+            BearingTerm(hung.name, hung.bearing, hung.bearing.coefficients() @ relative, hung.offset)
+        )
 
     turning = {name: app.parts[name] for name in app.parts if name in app.turning_parts()}
     standstill = tuple(
         name for name, e in turning.items() if e.viscoelastic or (np.any(e.C) and not np.any(e.N))
     )
-    system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill)
+    system = System(
+        M,
+        C,
+        K,
+        G,
+        N,
+        tuple(layers),
+        tuple(bearings),
+        loads,
+        outputs,
+        standstill,
+        inertia,
+        tuple(terms),
+        tuple(springs),
+        tuple(turning),
+    )
     check_held(system, firm)
     return system
 
@@ -110,12 +139,36 @@ def _factor(H: Array) -> Array:
     return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
 
 
-def _loads(app: Application, outputs: Mapping[str, Array]) -> tuple[LoadTerm, ...]:
+def _springs(
+    app: Application, outputs: Mapping[str, Array]
+) -> Iterator[tuple[str, Array, Array, Array, Array]]:
+    """Springs to the ground and between interfaces: name, rows (6, n) of the motion across, k, c, offset."""
+    zero = np.zeros(6)
+    for s in app.supports.values():
+        if not s.rigid:
+            k, c, offset = (zero if v is None else v for v in (s.stiffness, s.damping, s.offset))
+            yield f"{s.interface}–ground", outputs[s.interface], k, c, offset
+    for b in app.springs:
+        across = outputs[b.a] - (outputs[b.b] if b.b != GROUND else 0.0)
+        yield f"{b.a}–{b.b}", across, b.stiffness, b.damping, b.offset
+
+
+def _loads(app: Application, outputs: Mapping[str, Array], inertia: Array) -> tuple[LoadTerm, ...]:
     terms = []
     nothing = np.zeros(0)
     for load in app.loads:
-        rows = outputs[load.where]
-        force = load.vector[: rows.shape[0]] @ rows
+        if load.where in (GROUND, GRAVITY):
+            held = [part for part in app.parts if app.rigid_shapes(part) is None]
+            if held:
+                raise ValueError(
+                    f"part {held[0]!r} has no rigid motion of its own (no interface, or a stiffness that "
+                    f"holds it); gravity and base motion need parts that are free by themselves"
+                )
+            # a falling frame: parts in gravity g feel what they feel when the ground moves with −g
+            rows, force = inertia.T, inertia @ (load.vector if load.where == GRAVITY else -load.vector)
+        else:
+            rows = outputs[load.where]
+            force = load.vector[: rows.shape[0]] @ rows
         zero = np.zeros_like(force)
         c, s = math.cos(load.phase), math.sin(load.phase)
         if load.kind == "harmonic":

@@ -1,0 +1,97 @@
+"""The notes of an application, and what can be read from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bearingdyn.application.notes import Bush, Connection, HungBearing, Load, Part, Support
+from bearingdyn.application.rigid import rigid_shapes
+from bearingdyn.cms import Superelement
+
+Array = NDArray[np.float64]
+
+
+class Plan:
+    """Parts, joints, bearings and loads as they were noted, by name."""
+
+    def __init__(self) -> None:
+        self.parts: dict[str, Superelement] = {}
+        self.sources: dict[str, Part] = {}
+        self.connections: list[Connection] = []
+        self.supports: dict[str, Support] = {}
+        self.bearings: dict[str, HungBearing] = {}
+        self.loads: list[Load] = []
+        self.free_interfaces: set[str] = set()
+        self.springs: list[Bush] = []
+        self.temperatures: dict[str, float] = {}
+        self._rigid: dict[str, Array | None] = {}
+
+    def names(self) -> list[str]:
+        """All interfaces and points, "part.name"."""
+        return [f"{p}.{n}" for p, e in self.parts.items() for n in (*e.interfaces, *e.outputs)]
+
+    def turning_parts(self) -> set[str]:
+        """Parts that turn with the shaft: those with gyroscopic forces, and what is connected to them."""
+        turning = {name for name, element in self.parts.items() if np.any(element.G)}
+        pairs = [{c.a.partition(".")[0], c.b.partition(".")[0]} for c in self.connections]
+        while True:
+            joined = {name for pair in pairs if pair & turning for name in pair}
+            if joined <= turning:
+                return turning
+            turning |= joined
+
+    def check_joints(self) -> None:
+        """Every interface must be used or declared free.
+
+        Raises ValueError naming the interface and what to do with it.
+        """
+        if not self.parts:
+            raise ValueError("the application has no parts; add some with app.add(name, part)")
+        used = {i for c in self.connections for i in (c.a, c.b)} | set(self.supports)
+        used |= {i for s in self.springs for i in (s.a, s.b)}
+        used |= {i for b in self.bearings.values() for i in (b.inner, b.outer)} | self.free_interfaces
+        for part, element in self.parts.items():
+            for interface in element.interfaces:
+                if f"{part}.{interface}" not in used:
+                    raise ValueError(
+                        f"interface {part}.{interface} is not connected; connect it, ground it, hang a "
+                        f'bearing on it, or declare app.free("{part}.{interface}")'
+                    )
+
+    def mass(self, part: str) -> float | None:
+        """Mass by the rigid translation along y of a part with interfaces, kg; None without interfaces."""
+        element = self.parts[part]
+        if not element.interfaces:
+            return None
+        y = np.zeros(element.n)
+        for index in element.interfaces.values():
+            y[index[1]] = 1.0
+        return float(y @ element.M @ y)
+
+    def rigid_shapes(self, part: str) -> Array | None:
+        """Coordinates (n, 6) of a part that moves as a rigid body with its first interface.
+
+        None for a part without interfaces, or one whose own stiffness resists a rigid motion.
+        """
+        if part not in self._rigid:
+            self._rigid[part] = rigid_shapes(self.parts[part])
+        return self._rigid[part]
+
+    def _split(self, name: str) -> tuple[str, str]:
+        part, dot, rest = name.partition(".")
+        if not dot or part not in self.parts:
+            raise ValueError(f"{name!r} names no part of the application; there are {sorted(self.parts)}")
+        return part, rest
+
+    def _interface(self, name: str) -> None:
+        part, rest = self._split(name)
+        known: Sequence[str] = sorted(self.parts[part].interfaces)
+        if rest not in known:
+            raise ValueError(f"{part!r} has no interface {rest!r}; it has {list(known)}")
+
+    def _rows(self, name: str) -> Array:
+        part, rest = self._split(name)
+        return self.parts[part].rows(rest)
