@@ -171,7 +171,7 @@ def test_march_and_harmonic_response_agree_on_a_moving_ground():
 
 
 def test_force_on_the_ground_closes_the_balance():
-    """The force on the ground is that of spring and damper, and on a moving ground the inertia of the mass."""
+    """The force on the ground is that of spring and damper; on a moving ground, the inertia of the mass."""
     m, c, k = 2.0, 40.0, 5e5
     f = np.array([0.0, 30.0, 200.0])
     w = 2 * math.pi * f

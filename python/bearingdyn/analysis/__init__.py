@@ -1,9 +1,10 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
-from bearingdyn.analysis.equilibrium import BearingState, Equilibrium, equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.harmonic import frequency_response
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.spectra import orbit, spectrum
+from bearingdyn.analysis.statics import BearingState
 from bearingdyn.analysis.transient import transient, transients
 
 __all__ = [

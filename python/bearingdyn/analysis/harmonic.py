@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import core
-from bearingdyn.analysis.equilibrium import HOLD, Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
+from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
 from bearingdyn.system import System, assemble

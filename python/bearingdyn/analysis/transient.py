@@ -97,6 +97,11 @@ def transient(
         raise ValueError("a stream goes on by itself; give resume or stream, not both")
     if resume is not None and initial:
         raise ValueError("resume goes on from its own state and initial sets another; give one of the two")
+    if isinstance(source, Equilibrium) and source.modulus != "relaxed":
+        raise ValueError(
+            f"the equilibrium has its layers at their {source.modulus} modulus; a march starts with relaxed "
+            f'ones: take equilibrium(app, modulus="relaxed")'
+        )
     system = source.system if isinstance(source, Equilibrium) else source
     fastest = _checked_speed(speed)
     system.check_speed(fastest)

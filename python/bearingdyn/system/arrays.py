@@ -217,17 +217,22 @@ class System:
         touched = [np.abs(layer.L).sum(axis=1) for layer in self.layers]
         return coupled_blocks(self.M, self.C, self.K, self.G, self.N, *(np.outer(t, t) for t in touched))
 
-    def modal(self) -> tuple[System, Array]:
-        """The system in modes of its relaxed stiffness and mass, block by block, and T with x = T q.
-
-        M is then exactly the identity and the relaxed stiffness exactly diagonal, which a long march wants.
-        """
-        K = self.stiffness()
+    def basis(self, modulus: str = "relaxed") -> tuple[Array, Array]:
+        """ω² (n,) and modes T (n, n), x = T q, of the structure without its bearings, block by block."""
+        K = self.stiffness(modulus)
         T = np.zeros((self.n, self.n))
         squares = np.zeros(self.n)
         for block in self.blocks():
             inside = np.ix_(block, block)
             squares[block], T[inside] = natural(K[inside], self.M[inside])
+        return squares, T
+
+    def modal(self) -> tuple[System, Array]:
+        """The system in modes of its relaxed stiffness and mass, block by block, and T with x = T q.
+
+        M is then exactly the identity and the relaxed stiffness exactly diagonal, which a long march wants.
+        """
+        squares, T = self.basis()
         modal = self.transformed(T)
         relaxed = np.zeros((self.n, self.n))
         for layer in modal.layers:
