@@ -64,9 +64,9 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
         )
     damped, speed = bool(found.attrs["damped"]), float(found.attrs["speed"])
     stores = list(_stores(source, system, shape.T, value, damped, speed, str(found.attrs["modulus"])))
-    kinetic, stored, lost = (
-        np.array([getattr(s, k) for s in stores]).T for k in ("kinetic", "stored", "lost")
-    )
+    kinetic = np.array([s.kinetic for s in stores]).T
+    stored = np.array([s.stored for s in stores]).T
+    lost = np.array([s.lost for s in stores]).T
     energy = kinetic.sum(axis=1) + stored.sum(axis=1)
 
     def share(of: Array) -> Array:
@@ -131,10 +131,10 @@ def _stores(
             loses * size * (spring.damping @ np.abs(u) ** 2),
         )
     if isinstance(source, Equilibrium):
-        for term in system.bearings:
-            state, u = source.bearings[term.name], term.B @ phi
+        for hung in system.bearings:
+            state, u = source.bearings[hung.name], hung.B @ phi
             yield Store(
-                term.name, none, quadratic(state.K, u).real, loses * size * quadratic(state.C, u).real
+                hung.name, none, quadratic(state.K, u).real, loses * size * quadratic(state.C, u).real
             )
 
 
