@@ -188,6 +188,22 @@ def test_force_on_the_ground_closes_the_balance():
     np.testing.assert_allclose(found[:, 1], -m * (k + 1j * w * c) * H, rtol=1e-11)
 
 
+def test_a_rigid_support_bears_what_the_part_puts_on_it():
+    app = layered(RUBBER)
+    f = np.array([10.0, 900.0])
+    found = frequency_response(
+        equilibrium(app),
+        f,
+        ["ring.centre.y"],
+        ["ground.layer.outer.y", "layer.outer.force.y", "layer.inner.force.y", "ring.centre.y"],
+    ).response.values[:, :, 0]
+    np.testing.assert_array_equal(found[:, 0], found[:, 1])
+    # all of the unit force but the inertia of the ring arrives at the layer
+    np.testing.assert_allclose(-found[:, 2], 1.0 + (2 * math.pi * f) ** 2 * found[:, 3], rtol=1e-9)
+    # slowly, all of it at the ground
+    assert found[0, 0] == pytest.approx(1.0, rel=1e-3)
+
+
 def test_force_through_layer_bearing_and_supports_is_that_of_the_bodies_between():
     state = equilibrium(motor())
     f = np.array([40.0, 700.0, 3000.0])
@@ -215,6 +231,7 @@ def test_force_through_layer_bearing_and_supports_is_that_of_the_bodies_between(
         (["shaft.end.y"], ["layer.middle.force.y"], r"'layer' has \['inner', 'outer'\]"),
         (["shaft.end.y"], ["axle.a.force.y"], "no bearing and no interface"),
         (["shaft.end.y"], ["layer.inner.force.w"], "not 'w'"),
+        (["shaft.end.y"], ["ground.ring.centre.y"], "'ring.centre' is no interface that the ground holds"),
     ],
 )
 def test_unknown_forces_are_named(inputs, outputs, message):

@@ -75,6 +75,22 @@ class Viscoelastic:
 
 
 @dataclass(frozen=True, eq=False)
+class Surface:
+    """A surface of a part: ∫ v_n² dA = q̇ᵀ W q̇ of the normal velocity. area: m²; W: (n, n) symmetric, m²."""
+
+    area: float
+    W: Float
+
+    def __post_init__(self) -> None:
+        if not (self.area > 0 and math.isfinite(self.area)):
+            raise ValueError(f"area is {self.area}; a surface has a positive area in m²")
+        n = np.shape(self.W)[0] if np.ndim(self.W) else 0
+        W = _frozen("W", self.W, (n, n))
+        _check_symmetry("W", W, 1.0)
+        object.__setattr__(self, "W", W)
+
+
+@dataclass(frozen=True, eq=False)
 class Superelement:
     """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
@@ -89,6 +105,7 @@ class Superelement:
 
     N: (n, n) skew, N s/m: the circulatory force Ω N x on the left-hand side, there when the damping C belongs
         to material that turns with the shaft; zero by default.
+    surfaces: name -> Surface, from which sound is radiated.
 
     Raises ValueError for a wrong shape, a matrix with non-finite entries or without its symmetry, an index
     out of range or used twice, or a name used twice.
@@ -102,6 +119,7 @@ class Superelement:
     outputs: Mapping[str, Float] = field(default_factory=dict)
     viscoelastic: tuple[Viscoelastic, ...] = ()
     N: Float | None = None
+    surfaces: Mapping[str, Surface] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) else 0
@@ -142,6 +160,11 @@ class Superelement:
                 raise ValueError(f"outputs[{name!r}] has shape {np.shape(rows)}; it must be (3 or 6, {n})")
             outputs[name] = _frozen(f"outputs[{name!r}]", rows, (count, n))
         object.__setattr__(self, "outputs", outputs)
+
+        object.__setattr__(self, "surfaces", dict(self.surfaces))
+        for name, surface in self.surfaces.items():
+            if surface.W.shape != (n, n):
+                raise ValueError(f"surfaces[{name!r}].W has shape {surface.W.shape}; it must be ({n}, {n})")
 
         object.__setattr__(self, "viscoelastic", tuple(self.viscoelastic))
         for i, part in enumerate(self.viscoelastic):

@@ -103,10 +103,10 @@ def frequency_response(
         Channels: "shaft.left.y" is a force there, N (or N m); "ground.y" is a motion of the ground, all of
         it together, in the quantity of the outputs: the response to it is the transmissibility.
     outputs
-        Channels: "shaft.left.y" is the motion there, absolute where the ground moves; "left.force.y" the
-        force that bearing "left" passes from its inner ring to its outer (x, y, z); "block.feet.force.y" the
-        force that part "block" puts on all it is joined to at its interface "feet", such as the ground (x, y,
-        z, and the moments θx, θy, θz).
+        Channels: "shaft.left.y" is the motion there, absolute where the ground moves. Forces: "left.force.y",
+        which bearing "left" passes from its inner ring to its outer (x, y, z); "ground.block.feet.y", which
+        the ground bears where it holds "block.feet" (with moments θx, θy, θz); "layer.inner.force.y", which
+        part "layer" puts on all it is joined to at its interface "inner".
     speed
         rad/s of the shaft, for gyroscopic forces; it is not the excitation frequency.
     quantity

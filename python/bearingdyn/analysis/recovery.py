@@ -54,7 +54,7 @@ class Input:
         if system.inertia is None:
             raise ValueError(f"{name!r}: the system was made without an application and knows no ground")
         for term in system.parts:
-            if np.isnan(term.inertia).any():
+            if np.isnan(term.translation).any():
                 raise ValueError(
                     f"{name!r}: part {term.name!r} has no rigid motion of its own (no interface, or a "
                     f"stiffness that holds it); base motion needs parts that are free by themselves"
@@ -65,10 +65,10 @@ class Input:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """A motion, or a force through a bearing or an interface, from the motions rows (k, n).
+    """A motion, or a force through a bearing, a support or an interface, from the motions rows (k, n).
 
     bearing: (first, pick): the bearing's first coefficient among all, and pick (coefs,) of its force.
-    part, index: the part whose coordinate `index` is balanced.
+    part, index: the part whose coordinate `index` is balanced. spring: stiffness and damping of a support.
     """
 
     name: str
@@ -76,11 +76,12 @@ class Output:
     bearing: tuple[int, Array] | None = None
     part: PartTerm | None = None
     index: int = 0
+    spring: tuple[float, float] | None = None
 
     @property
     def is_force(self) -> bool:
         """Whether it is a force or moment."""
-        return self.bearing is not None or self.part is not None
+        return self.bearing is not None or self.part is not None or self.spring is not None
 
     @property
     def turning(self) -> bool:
@@ -95,9 +96,18 @@ class Output:
         """
         place, _, _ = name.rpartition(".")
         component = component_of(name)
-        if not place.endswith(".force"):
+        on_ground = place.startswith(f"{GROUND}.")
+        if not on_ground and not place.endswith(".force"):
             return cls(name, system.row(name))
-        place = place.removesuffix(".force")
+        place = place.removeprefix(f"{GROUND}.") if on_ground else place.removesuffix(".force")
+        if on_ground:
+            for support in system.springs:
+                if support.name == f"{place}–{GROUND}" and component in COMPONENTS:
+                    k = COMPONENTS.index(component)
+                    law = (float(support.stiffness[k]), float(support.damping[k]))
+                    return cls(name, support.across[k], spring=law)
+            if place not in system.outputs or system.rows(place).any():
+                raise ValueError(f"{name!r}: {place!r} is no interface that the ground holds")
         first = 0
         for hung in system.bearings:
             if hung.name == place:
@@ -132,6 +142,9 @@ class Output:
             return np.asarray(
                 np.einsum("k,fki->fi", stiff, x) + 1j * omega[:, None] * np.einsum("k,fki->fi", damped, x)
             )
+        if self.spring is not None:
+            stiffness, damping = self.spring
+            return np.asarray((stiffness + 1j * omega[:, None] * damping) * x[:, 0])
         assert self.part is not None
         e, k = self.part.element, self.index
         D = (
@@ -145,7 +158,7 @@ class Output:
         force = -np.einsum("fk,fki->fi", D, x)
         for i, given in enumerate(inputs):
             if given.axis is not None:
-                force[:, i] -= self.part.inertia[k, given.axis]
+                force[:, i] -= e.M[k] @ self.part.translation[:, given.axis]
             elif given.part == self.part.name and given.load is not None:
                 force[:, i] += given.load[k]
         return np.asarray(force)

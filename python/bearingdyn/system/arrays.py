@@ -71,13 +71,13 @@ class BearingTerm:
 class PartTerm:
     """One part: its own coordinates are place @ x, place (m, n).
 
-    inertia (m, 3): M R, the force that unit accelerations along x, y, z ask of it, kg.
+    translation (m, 3): its coordinates in unit translations along x, y, z; NaN where it holds itself.
     """
 
     name: str
     element: Superelement
     place: Array
-    inertia: Array
+    translation: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +92,10 @@ class SpringTerm:
 
 @dataclass(frozen=True, eq=False)
 class LoadTerm:
-    """One load: kind as in bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one."""
+    """One load: kind as in bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one.
+
+    part: the part it acts on, if one; own_cos, own_sin: the columns in the part's coordinates.
+    """
 
     kind: str
     omega: float
@@ -100,6 +103,9 @@ class LoadTerm:
     p_sin: Array
     time: Array
     value: Array
+    part: str = ""
+    own_cos: Array | None = None
+    own_sin: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)

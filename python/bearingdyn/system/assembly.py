@@ -45,9 +45,9 @@ def assemble(app: Application) -> System:
         for total, A in zip((M, C, K, G, N), own, strict=True):
             total += select[part].T @ np.asarray(A) @ select[part]
         R = app.rigid_shapes(part)
-        pull = np.full((element.n, 3), np.nan) if R is None else np.asarray(element.M @ R[:, :3])
-        inertia += select[part].T @ pull
-        terms.append(PartTerm(part, element, select[part], pull))
+        translation = np.full((element.n, 3), np.nan) if R is None else R[:, :3]
+        inertia += select[part].T @ (element.M @ translation)
+        terms.append(PartTerm(part, element, select[part], translation))
         for term in element.viscoelastic:
             layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
@@ -175,9 +175,11 @@ def _loads(app: Application, outputs: Mapping[str, Array], inertia: Array) -> tu
             terms.append(LoadTerm("harmonic", load.omega, c * force, -s * force, nothing, nothing))
         elif load.kind == "rotating":
             # u (cos(θ + φ), sin(θ + φ)) = cos θ · u (c, s) + sin θ · u (−s, c)
-            along, across = c * rows[0] + s * rows[1], -s * rows[0] + c * rows[1]
-            u = load.unbalance
-            terms.append(LoadTerm("rotating", 0.0, u * along, u * across, nothing, nothing))
+            turn = load.unbalance * np.array([[c, s], [-s, c]])
+            along, across = turn @ rows[:2]
+            part, _, place = load.where.partition(".")
+            own = turn @ app.parts[part].rows(place)[:2]
+            terms.append(LoadTerm("rotating", 0.0, along, across, nothing, nothing, part, *own))
         elif load.kind == "sampled":
             assert load.time is not None
             assert load.value is not None
