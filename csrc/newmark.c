@@ -248,6 +248,13 @@ static void record_row(const bd_model *model, const bd_work *work, const bd_stat
             for (int j = 0; j < model->bearings[channel->bearing].data.n_balls; j++)
                 value += work->bearings[channel->bearing].force[j] > 0.0 ? 1.0 : 0.0;
             break;
+        case BD_CHANNEL_CONTACT_LOSS:
+            value = bd_contact_loss(&model->bearings[channel->bearing].data,
+                                    &work->bearings[channel->bearing]);
+            break;
+        case BD_CHANNEL_BRANCH_LOSS:
+            value = bd_branch_loss(&model->layers[channel->index], state->stress);
+            break;
         }
         row[c] = value;
     }

@@ -4,6 +4,7 @@ from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.contact import ball_channels, contact_statistics
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.harmonic import frequency_response
+from bearingdyn.analysis.losses import dissipation
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.radiation import radiated_power
 from bearingdyn.analysis.shares import energy_shares
@@ -20,6 +21,7 @@ __all__ = [
     "ball_channels",
     "campbell",
     "contact_statistics",
+    "dissipation",
     "energy_shares",
     "envelope_spectrum",
     "equilibrium",
