@@ -12,7 +12,7 @@ from bearingdyn.analysis import equilibrium, modes, radiated_power, transient, u
 from bearingdyn.application import Application
 from bearingdyn.cms import Superelement, Surface
 from bearingdyn.fem.beam import Section
-from bearingdyn.parts import Disc, RigidBody, Shaft
+from bearingdyn.parts import Disc, Feet, Housing, RigidBody, Shaft
 from rotors import motor
 
 # ------------------------------------------------------------------- unbalance
@@ -173,3 +173,57 @@ def test_bad_requests_are_named():
         replace(Box().superelement(), surfaces={"a": Surface(1.0, np.eye(3))})
     with pytest.raises(ValueError, match="area is 0"):
         Surface(0.0, np.eye(6))
+
+
+# ------------------------------------------------------------------- surfaces of a housing
+
+
+@pytest.mark.parametrize("feet", [None, Feet(0.02), Feet(0.02, 0.02)])
+def test_a_housing_moved_as_a_body_pushes_with_its_projected_faces(feet):
+    w, h, length, d = 0.10, 0.12, 0.03, 0.05
+    app = Application()
+    app.add("housing", Housing(w, h, length, d, feet=feet, f_max=8e3, element_size=0.02))
+    element, R = app.parts["housing"], app.rigid_shapes("housing")
+    assert R is not None
+    flange = 2 * 0.02 * 0.02 if feet is not None and feet.height else 0.0
+    face = w * h - math.pi * d**2 / 4 + flange
+    sides = 2 * h * length
+    shelf = 2 * 0.02 * length if flange else 0.0
+    wanted = {
+        "top": (0.0, w * length, 0.0),
+        "front": (0.0, 0.0, face),
+        "back": (0.0, 0.0, face),
+        "outside": (sides, w * length + shelf, 2 * face),
+    }
+    assert set(element.surfaces) == set(wanted)
+    for name, areas in wanted.items():
+        surface = element.surfaces[name]
+        found = np.diag(R[:, :3].T @ surface.W @ R[:, :3])
+        # quadratic edges follow the bore's circle to 1e-5
+        np.testing.assert_allclose(found, areas, rtol=1e-4, atol=1e-12)
+        assert surface.area == pytest.approx(sum(areas), rel=1e-4)
+        assert np.linalg.eigvalsh(surface.W).min() > -1e-12 * np.abs(surface.W).max()
+    # turned about x, the front moves by y θ: its second moment about the bore's axis, at mid-height here
+    second = (w * h**3 / 12 - math.pi * d**4 / 64) if not flange else None
+    if second:
+        turned = R[:, 3] @ element.surfaces["front"].W @ R[:, 3]
+        assert turned == pytest.approx(second, rel=1e-3)
+
+
+def test_power_of_a_housing_does_not_depend_on_its_mesh():
+    housing = Housing(0.10, 0.12, 0.03, 0.05, f_max=2e4, element_size=0.01)
+    app = Application()
+    app.add("housing", housing)
+    app.ground("housing.feet")
+    app.free("housing.bore")
+    f = np.array([500.0, 3000.0])
+    fine = radiated_power(app, f, ["housing.bore.z"], ["housing.front", "housing.outside"]).power.values
+    other = Application()
+    other.add("housing", replace(housing, element_size=0.02))
+    other.ground("housing.feet")
+    other.free("housing.bore")
+    coarse = radiated_power(other, f, ["housing.bore.z"], ["housing.front", "housing.outside"]).power.values
+    # the same plate with elements twice as long: second-order elements bend to some percent
+    np.testing.assert_allclose(coarse, fine, rtol=0.05)
+    # pushed along z, the front makes nearly half of what the outside does
+    assert 0.4 < fine[0, 0, 0] / fine[0, 1, 0] < 0.5

@@ -371,6 +371,7 @@ def reduce_free_body(
     held: str | None = None,
     f_max: float | None = None,
     n_modes: int | None = None,
+    surfaces: Mapping[str, tuple[Any, Float]] | None = None,
 ) -> Superelement:
     """Superelement of an elastic body free in space, by Craig-Bampton reduction.
 
@@ -381,6 +382,7 @@ def reduce_free_body(
     damping: ratio ζ of every elastic mode (modal_damping), of the free body or of the body held at the
         interface `held`. Dampers then act on the motion relative to that interface, never on rigid motion.
     f_max, n_modes: as in craig_bampton.
+    surfaces: name -> rows (q, n) of the normal motion at integration points, and weights (q,), m².
 
     Raises ValueError for interfaces that overlap, or a stiffness that resists rigid motion.
     """
@@ -433,4 +435,10 @@ def reduce_free_body(
         interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(interfaces)},
         outputs={name: np.asarray(row @ basis.Psi) for name, row in rows.items()},
         N=N,
+        surfaces={name: _surface(r @ basis.Psi, w) for name, (r, w) in (surfaces or {}).items()},
     )
+
+
+def _surface(rows: Float, weights: Float) -> Surface:
+    W = rows.T @ (weights[:, None] * rows)
+    return Surface(float(weights.sum()), np.asarray(0.5 * (W + W.T)))

@@ -96,6 +96,27 @@ def assemble_solid(mesh: Any, elements: ArrayLike | None = None) -> SolidMatrice
     )
 
 
+def serendipity_faces(mesh: Any) -> tuple[Float, Float, Float, Float, NDArray[np.intp], int]:
+    """Integration points of the boundary faces of a mesh of bricks, face by face.
+
+    Returns shape functions (m, 20, q), outward normals (m, q, 3), positions (m, q, 3), m, weights (m, q), m²,
+    the nodes (m, 20) of the brick behind each face, and the number of nodes.
+    """
+    import skfem
+
+    if isinstance(mesh, skfem.MeshHex2):
+        mesh = _isoparametric(mesh)
+    basis = skfem.FacetBasis(mesh, skfem.ElementHexS2(), intorder=4)
+    return (
+        np.stack([np.asarray(b[0]) for b in basis.basis], axis=1),
+        np.asarray(basis.normals).transpose(1, 2, 0),
+        np.asarray(basis.global_coordinates()).transpose(1, 2, 0),
+        np.asarray(basis.dx),
+        np.asarray(basis.element_dofs).T,
+        int(basis.N),
+    )
+
+
 def _isoparametric(mesh: Any) -> Any:
     """The 27-node geometry of a MeshHex2 with face and body centres where the 20-node shapes put them.
 

@@ -12,6 +12,7 @@ import scipy.sparse
 from bearingdyn.cms import RigidInterface, Superelement, reduce_free_body
 from bearingdyn.fem.eigen import rigid_motion
 from bearingdyn.fem.solid import assemble_solid, block_with_bore
+from bearingdyn.fem.solid_surface import normal_motion
 from bearingdyn.material import STEEL, Elastic
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
@@ -48,7 +49,8 @@ class Housing:
     element_size: longest wanted side of an element, m (default: some 300 elements).
 
     Interfaces: "bore" (reference on the axis at mid-length) and "feet" (reference below it, on the base),
-    both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n).
+    both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n). Surfaces: "top",
+    "front" (at +z), "back", and "outside", all but the bore and the base.
 
     Raises ValueError for a bore that leaves no wall, a point outside, or values not positive and finite.
     """
@@ -118,18 +120,17 @@ class Housing:
         size = self.element_size or (volume / ELEMENTS) ** (1.0 / 3.0)
         feet, half = self.feet, 0.5 * self.width
         flanged = feet is not None and feet.height > 0
-        solid = assemble_solid(
-            block_with_bore(
-                self.width,
-                self.height,
-                self.length,
-                self.bore_diameter,
-                self.axis,
-                size,
-                flange=(feet.width, feet.height) if feet is not None and flanged else None,
-                strip=feet.width if feet is not None and not flanged else None,
-            )
+        mesh = block_with_bore(
+            self.width,
+            self.height,
+            self.length,
+            self.bore_diameter,
+            self.axis,
+            size,
+            flange=(feet.width, feet.height) if feet is not None and flanged else None,
+            strip=feet.width if feet is not None and not flanged else None,
         )
+        solid = assemble_solid(mesh)
         p, near = solid.points, 1e-6 * size
         on_bore = np.abs(np.hypot(p[:, 0], p[:, 1]) - 0.5 * self.bore_diameter) < near
         on_feet = np.abs(p[:, 1] + self.axis) < near
@@ -146,6 +147,17 @@ class Housing:
             at = (np.arange(3), 3 * node + np.arange(3))
             return scipy.sparse.csr_matrix((np.ones(3), at), shape=(3, 3 * len(p)))
 
+        def outside(middle: np.ndarray) -> np.ndarray:
+            # a middle of a quadratic face lies within an element's sagitta of the bore
+            in_bore = np.hypot(middle[:, 0], middle[:, 1]) < 0.5 * self.bore_diameter + near
+            return np.asarray(~in_bore & (middle[:, 1] > near - self.axis))
+
+        faces = {
+            "outside": outside,
+            "top": lambda middle: middle[:, 1] > self.height - self.axis - near,
+            "front": lambda middle: middle[:, 2] > 0.5 * self.length - near,
+            "back": lambda middle: middle[:, 2] < near - 0.5 * self.length,
+        }
         places = {"top": (0.0, self.height - self.axis, 0.0), **self.points}
         return reduce_free_body(
             self.material.density * solid.mass,
@@ -155,4 +167,5 @@ class Housing:
             damping=self.damping,
             held="feet",
             f_max=self.f_max,
+            surfaces={name: normal_motion(mesh, on) for name, on in faces.items()},
         )
