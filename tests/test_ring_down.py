@@ -37,8 +37,8 @@ def poles(record: np.ndarray, dt: float, order: int) -> np.ndarray:
     return np.log(z.astype(complex)) / dt
 
 
-def test_poles_of_a_ring_down_are_the_damped_modes():
-    """The nonlinear march, layers by their history and balls in contact, struck by 0.1 N vertically."""
+def ring_down_of_a_layered_rotor() -> tuple[np.ndarray, Equilibrium]:
+    """Poles of the nonlinear march, layers by their history, balls in contact, struck by 0.1 N."""
     dt, keep, strike = 2e-6, 20, 2e-4
     app = motor()
     app.load("shaft.end", (0, 0.1, 0, 0, 0, 0), time=[0.0, strike / 2, strike], value=[0.0, 1.0, 0.0])
@@ -54,8 +54,11 @@ def test_poles_of_a_ring_down_are_the_damped_modes():
     settle = round(strike / dt)
     run = transient(state, speed=0.0, dt=dt, steps=keep * 1000, settle=settle, decimate=keep, record=channels)
     rest = np.array([state.system.row(c) @ state.x for c in channels])
-    found = poles(run.record.values - rest, keep * dt, order=30)
+    return poles(run.record.values - rest, keep * dt, order=30), state
 
+
+def test_poles_of_a_ring_down_are_the_damped_modes():
+    found, state = ring_down_of_a_layered_rotor()
     expected = modes(state, damped=True)
     vertical = [np.abs(state.system.row("shaft.end.y") @ s) for s in expected["shape"].values]
     value, f = expected.eigenvalue.values, expected.frequency.values

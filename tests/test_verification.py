@@ -19,6 +19,9 @@ QUICK = [
     "Paired bearings",
     "Press fits",
     "Rigid rotor",
+    "Weight and a moving ground",
+    "Whirl over speed",
+    "Ring-down",
 ]
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import bearings, contacts, materials, motion, shaker, structures
+from verified import application, bearings, contacts, materials, motion, shaker, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -34,6 +34,10 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
     "Rings on a shaker": shaker.transmissibility,
+    "Weight and a moving ground": application.weight,
+    "Whirl over speed": application.whirl,
+    "Two domains": application.two_domains,
+    "Ring-down": application.ring_down,
 }
 
 
