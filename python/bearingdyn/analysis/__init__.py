@@ -7,6 +7,7 @@ from bearingdyn.analysis.harmonic import frequency_response
 from bearingdyn.analysis.losses import dissipation
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.radiation import radiated_power
+from bearingdyn.analysis.shapes import mode_shapes
 from bearingdyn.analysis.shares import energy_shares
 from bearingdyn.analysis.spectra import orbit, spectrum
 from bearingdyn.analysis.spectra_orders import order_spectrum, shaft_angle, track_orders
@@ -26,6 +27,7 @@ __all__ = [
     "envelope_spectrum",
     "equilibrium",
     "frequency_response",
+    "mode_shapes",
     "modes",
     "orbit",
     "order_spectrum",

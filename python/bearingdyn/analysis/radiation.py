@@ -79,7 +79,7 @@ def radiated_power(
         velocity = own * np.stack([rate ** (1 if i.axis is None else 2) for i in given], axis=1)[:, None]
         for i, one in enumerate(given):
             if one.axis is not None:
-                velocity[:, :, i] += term.translation[:, one.axis]
+                velocity[:, :, i] += term.rigid[:, one.axis]
         for k, (owner, surface) in enumerate(found):
             if owner is term:
                 square[:, k] = np.einsum(

@@ -54,7 +54,7 @@ class Input:
         if system.inertia is None:
             raise ValueError(f"{name!r}: the system was made without an application and knows no ground")
         for term in system.parts:
-            if np.isnan(term.translation).any():
+            if np.isnan(term.rigid).any():
                 raise ValueError(
                     f"{name!r}: part {term.name!r} has no rigid motion of its own (no interface, or a "
                     f"stiffness that holds it); base motion needs parts that are free by themselves"
@@ -158,7 +158,7 @@ class Output:
         force = -np.einsum("fk,fki->fi", D, x)
         for i, given in enumerate(inputs):
             if given.axis is not None:
-                force[:, i] -= e.M[k] @ self.part.translation[:, given.axis]
+                force[:, i] -= e.M[k] @ self.part.rigid[:, given.axis]
             elif given.part == self.part.name and given.load is not None:
                 force[:, i] += given.load[k]
         return np.asarray(force)

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.application.notes import Bush, Connection, HungBearing, Load, Part, Support
-from bearingdyn.application.rigid import rigid_shapes
+from bearingdyn.application.notes import GROUND, Bush, Connection, HungBearing, Load, Part, Support
+from bearingdyn.application.rigid import arm, rigid_shapes
 from bearingdyn.cms import Superelement
 
 Array = NDArray[np.float64]
@@ -79,6 +79,33 @@ class Plan:
         if part not in self._rigid:
             self._rigid[part] = rigid_shapes(self.parts[part])
         return self._rigid[part]
+
+    def positions(self) -> dict[str, Array]:
+        """Where interfaces and points stand, (3,) m, from the first interface of the first part.
+
+        Arms follow from the rigid motions of each part; joined interfaces, springs and bearings stand at one
+        place. Left out are parts without rigid motion, and those that nothing joins to the first.
+        """
+        arms: dict[str, dict[str, Array]] = {}
+        for part, element in self.parts.items():
+            R = self.rigid_shapes(part)
+            if R is not None:
+                names = (*element.interfaces, *element.outputs)
+                arms[part] = {name: arm(element.rows(name), R) for name in names}
+        pairs = [(c.a, c.b) for c in self.connections] + [(s.a, s.b) for s in self.springs]
+        pairs += [(b.inner, b.outer) for b in self.bearings.values()]
+        origin = {part: np.zeros(3) for part in list(arms)[:1]}
+        left = [pair for pair in pairs if GROUND not in pair]
+        while True:
+            for near, far in [*left, *((b, a) for a, b in left)]:
+                (known, at), (part, there) = (name.partition(".")[::2] for name in (near, far))
+                ready = known in origin and part not in origin
+                if ready and at in arms[known] and there in arms.get(part, {}):
+                    origin[part] = origin[known] + arms[known][at] - arms[part][there]
+                    break
+            else:
+                break
+        return {f"{p}.{name}": origin[p] + a for p in origin for name, a in arms[p].items()}
 
     def _split(self, name: str) -> tuple[str, str]:
         part, dot, rest = name.partition(".")

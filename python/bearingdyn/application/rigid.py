@@ -48,6 +48,17 @@ def rigid_shapes(element: Superelement) -> Array | None:
     return R
 
 
+def arm(rows: Array, shapes: Array) -> Array:
+    """Position (3,), m, of a place from a part's first interface: u = θ × arm of its rigid motions.
+
+    rows: (3 or 6, n) of the place; shapes: (n, 6) as `rigid_shapes`.
+    """
+    turned = rows[:3] @ shapes[:, 3:]
+    return (
+        np.array([turned[1, 2] - turned[2, 1], turned[2, 0] - turned[0, 2], turned[0, 1] - turned[1, 0]]) / 2
+    )
+
+
 def free_motions(
     shapes: Mapping[str, Array | None], held: Iterable[Mapping[str, Array]]
 ) -> list[list[tuple[str, str]]]:

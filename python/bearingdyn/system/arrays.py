@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -71,13 +71,14 @@ class BearingTerm:
 class PartTerm:
     """One part: its own coordinates are place @ x, place (m, n).
 
-    translation (m, 3): its coordinates in unit translations along x, y, z; NaN where it holds itself.
+    rigid (m, 6): its coordinates in unit rigid motions x, y, z, θx, θy, θz of its first interface; NaN where
+    it holds itself.
     """
 
     name: str
     element: Superelement
     place: Array
-    translation: Array
+    rigid: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +130,8 @@ class System:
     springs: tuple[SpringTerm, ...] = ()
     turning: tuple[str, ...] = ()
     """Parts that turn with the shaft."""
+    positions: Mapping[str, Array] = field(default_factory=dict)
+    """Where interfaces and points stand, (3,) m, from the first interface of the first part."""
 
     @property
     def n(self) -> int:

@@ -45,9 +45,9 @@ def assemble(app: Application) -> System:
         for total, A in zip((M, C, K, G, N), own, strict=True):
             total += select[part].T @ np.asarray(A) @ select[part]
         R = app.rigid_shapes(part)
-        translation = np.full((element.n, 3), np.nan) if R is None else R[:, :3]
-        inertia += select[part].T @ (element.M @ translation)
-        terms.append(PartTerm(part, element, select[part], translation))
+        rigid = np.full((element.n, 6), np.nan) if R is None else R
+        inertia += select[part].T @ (element.M @ rigid[:, :3])
+        terms.append(PartTerm(part, element, select[part], rigid))
         for term in element.viscoelastic:
             layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
@@ -95,6 +95,7 @@ def assemble(app: Application) -> System:
         tuple(terms),
         tuple(springs),
         tuple(turning),
+        app.positions(),
     )
     check_held(system, firm)
     return system
