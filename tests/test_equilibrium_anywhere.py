@@ -24,12 +24,12 @@ from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, Pit, Waviness
 from bearingdyn.bearing.turning import turned
 from bearingdyn.parts import Layer, RigidBody
-from rotors import BEARING, RUBBER, motor
+from rotors import BEARING, RUBBER, motor, motor_rubber
 
 
 @cache
 def built() -> Application:
-    return example.motor(example.designs(example.rubber()[0])[2])
+    return example.motor(example.designs(motor_rubber())[2])
 
 
 def layered_motor() -> Application:

@@ -14,13 +14,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples"))
 import motor as example
 
 from bearingdyn.analysis import Equilibrium, equilibrium, modes, transient
-from rotors import motor
+from rotors import motor, motor_rubber
 from test_modes import dynamic_stiffness
 
 
 @cache
 def built(design: int) -> Equilibrium:
-    return equilibrium(example.motor(example.designs(example.rubber()[0])[design]))
+    return equilibrium(example.motor(example.designs(motor_rubber())[design]))
 
 
 def poles(record: np.ndarray, dt: float, order: int) -> np.ndarray:

@@ -15,6 +15,7 @@ import motor as example
 
 import bearingdyn as bd
 from bearingdyn import core
+from rotors import motor_rubber
 from test_motor import discrete_response
 
 BASE = 20.0  # Hz: the sines are whole multiples, so that all of them repeat after 1/BASE
@@ -23,7 +24,7 @@ OUTPUTS = [*example.OUTPUTS, "right_housing.top.y", "left_ring.centre.y"]
 
 @cache
 def built(design: int) -> bd.Application:
-    return example.motor(example.designs(example.rubber()[0])[design])
+    return example.motor(example.designs(motor_rubber())[design])
 
 
 def lines(count: int) -> np.ndarray:
