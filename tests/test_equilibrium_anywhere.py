@@ -81,7 +81,8 @@ def test_any_load_and_clearance_finds_its_balance(count):
         assert unbalanced(state) < 1e-9
         assert all((b.loads >= 0).all() for b in state.bearings.values())
     print(
-        f"{count} states, time of one core: median {1e3 * statistics.median(seconds):.1f} ms, most {1e3 * max(seconds):.1f} ms"
+        f"{count} states, time of one core: median {1e3 * statistics.median(seconds):.1f} ms, "
+        f"most {1e3 * max(seconds):.1f} ms"
     )
 
 
