@@ -31,7 +31,7 @@ COMPILERS := lint $(if $(shell command -v clang),lint-clang)
 # The sanitizers' libraries must be in the process first, and the C++ library whose exceptions they watch with them.
 SANITIZERS = $(foreach library,libasan.so libubsan.so libstdc++.so.6,$(shell cc -print-file-name=$(library)))
 
-.PHONY: demo test ctest pytest asan bench lint verify clean always
+.PHONY: demo test ctest pytest asan coverage bench peers lint verify clean always
 
 # Two pip runs on one environment do not mix, and pytest has the last word.
 .NOTPARALLEL:
@@ -58,18 +58,37 @@ asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 	  PYTHONMALLOC=malloc PYTHONPATH=$(BUILD)/asan/site \
 	  $(PY) -m pytest --capture=sys -m "not slow"
 
+# Lines of Python and of C that the C tests and the quick Python tests run through, the least covered files first.
+# The Python tests use a copy of the package whose extension counts lines.
+coverage: $(BUILD)/coverage/build.ninja $(VENV)/package $(VENV)/test $(VENV)/coverage
+	find $(BUILD)/coverage -name '*.gcda' -delete
+	meson compile -C $(BUILD)/coverage
+	meson test -C $(BUILD)/coverage --print-errorlogs
+	meson install -C $(BUILD)/coverage --quiet
+	PYTHONPATH=$(BUILD)/coverage/site COVERAGE_FILE=$(BUILD)/coverage/python.data \
+	  $(PY) -m coverage run --source=bearingdyn -m pytest -m "not slow"
+	cd $(BUILD)/coverage/site && \
+	  COVERAGE_FILE=../python.data $(CURDIR)/$(PY) -m coverage report --sort=cover --skip-covered
+	$(PY) -m gcovr --root . --filter csrc/ --sort=uncovered-percent --print-summary $(BUILD)/coverage
+
 bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/transient.py --json
 	$(PY) benchmarks/harmonic.py --json
 	$(PY) benchmarks/bearing.py --json
 	$(PY) benchmarks/memory.py --json
+	$(PY) benchmarks/study.py --json
+
+# Other programs beside this one; each that is not installed is named and skipped.
+peers: $(VENV)/package $(VENV)/test
+	$(PY) benchmarks/peers_fem.py
+	$(PY) benchmarks/peers.py
 
 lint: $(VENV)/package $(VENV)/lint $(COMPILERS:%=$(BUILD)/%/build.ninja)
 	ruff check
 	ruff format --check
 	clang-format --dry-run -Werror $(C_FILES)
 	mypy
-	stubtest bearingdyn._core
+	stubtest bearingdyn --mypy-config-file pyproject.toml --allowlist tests/stubtest.allow
 	set -e; for build in $(COMPILERS); do meson compile -C $(BUILD)/$$build; done
 
 # The slow tests, and VERIFICATION.md anew: case, source, expected, computed, error.
@@ -94,7 +113,7 @@ $(VENV)/package: $(SOURCES) $(BUILD)/sources.list $(VENV)/tools
 	$(PIP) install --no-build-isolation --config-settings=build-dir=$(BUILD)/package .
 	@touch $@
 
-$(VENV)/test $(VENV)/lint: $(VENV)/%: $(VENV)/tools
+$(VENV)/test $(VENV)/lint $(VENV)/coverage: $(VENV)/%: $(VENV)/tools
 	$(call requirements,$*) >$(VENV)/requirements.txt
 	$(PIP) install --requirement $(VENV)/requirements.txt
 	@touch $@
@@ -108,6 +127,10 @@ $(BUILD)/ctest/build.ninja: $(VENV)/tools $(BUILD)/tests.list
 $(BUILD)/asan/build.ninja: $(VENV)/tools $(BUILD)/tests.list
 	$(configure) -Dctests=true -Dbuildtype=debugoptimized -Db_sanitize=address,undefined -Db_lundef=false \
 	  --prefix=$(CURDIR)/$(BUILD)/asan -Dpython.platlibdir=site -Dpython.purelibdir=site
+
+$(BUILD)/coverage/build.ninja: $(VENV)/tools $(BUILD)/tests.list
+	$(configure) -Dctests=true -Dbuildtype=debugoptimized -Db_coverage=true \
+	  --prefix=$(CURDIR)/$(BUILD)/coverage -Dpython.platlibdir=site -Dpython.purelibdir=site
 
 $(BUILD)/lint/build.ninja: $(VENV)/tools $(BUILD)/tests.list
 	$(configure) -Dctests=true -Dwerror=true

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bearingdyn import results
+from bearingdyn import check, demo, results
 from bearingdyn.cli import main
 from bearingdyn.material import Maxwell, sample_dma_path
 
@@ -72,9 +72,95 @@ def test_show_as_json_parses(result, capsys):
     assert list(json.loads(capsys.readouterr().out)["groups"]) == [""]
 
 
+def test_long_attributes_are_cut_in_the_listing_and_whole_in_json(tmp_path, capsys):
+    data = results.dataset({"x": ("n", [1.0], "m", "x")}, {"inputs": "q" * 5000})
+    results.save(data, tmp_path / "r.nc")
+    assert main(["show", str(tmp_path / "r.nc")]) == 0
+    assert max(map(len, capsys.readouterr().out.splitlines())) < 200
+    assert main(["show", str(tmp_path / "r.nc"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["groups"][""]["attrs"]["inputs"] == "q" * 5000
+
+
 def test_version_names_the_package(capsys):
     assert main(["version"]) == 0
     assert capsys.readouterr().out.startswith("bearingdyn ")
+    assert main(["version", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out).keys() == {"bearingdyn", "Python", "NumPy", "SciPy"}
+
+
+def test_check_holds_and_prints_source_expected_computed_error_and_tolerance(capsys):
+    assert main(["check"]) == 0
+    captured = capsys.readouterr()
+    assert "all hold" in captured.out
+    for part in ("Harris", "ISO/TS 16281", "Friswell", "closed form", "expected", "1.4556"):
+        assert part in captured.out
+    assert "check 7 of 7" in captured.err
+
+
+def test_check_that_does_not_hold_is_code_1(monkeypatch, capsys):
+    """A published value, changed by a hundredth; and a family that raises."""
+
+    def wrong():
+        yield check.Check("ball pass", "a book", 1.01 * 107.36, 107.36, 1e-3)
+
+    def broken():
+        raise ArithmeticError("no balance")
+        yield
+
+    monkeypatch.setattr(check, "FAMILIES", (check.catalogue, wrong, broken))
+    assert main(["check"]) == 1
+    printed = capsys.readouterr().out
+    assert printed.count("DOES NOT HOLD") == 2
+    assert "ArithmeticError: no balance" in printed
+    assert main(["check", "--json"]) == 1
+    record = json.loads(capsys.readouterr().out)
+    assert [row["holds"] for row in record["rows"]] == [True, True, False, False]
+    assert not record["holds"]
+    assert record["rows"][3]["computed"] is None
+
+
+def test_demo_shows_a_quieter_housing_on_a_softer_support(tmp_path, capsys):
+    assert main(["demo", "--out", str(tmp_path / "d"), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    bare, layered = found["no layer"], found["layer"]
+    assert layered["static_receptance"] > bare["static_receptance"]
+    assert layered["shaft_peak"] < bare["shaft_peak"]
+    assert layered["housing_rms_1_to_5_kHz"] < 0.3 * bare["housing_rms_1_to_5_kHz"]
+    assert {path.name for path in (tmp_path / "d").iterdir()} == {"result.nc", "response.png"}
+    assert main(["show", str(tmp_path / "d" / "result.nc")]) == 0
+    assert "group transient layer" in capsys.readouterr().out
+
+
+def test_demo_prints_its_progress_on_standard_error(tmp_path, monkeypatch, capsys):
+    numbers = dict.fromkeys(
+        ("static_receptance", "shaft_peak", "housing_rms_1_to_5_kHz", "housing_velocity_rms"), 2.0
+    )
+
+    def quick(folder, tell):
+        tell("working")
+        return {"no layer": numbers, "layer": {k: 1.0 for k in numbers}, "files": ["a.nc"]}
+
+    monkeypatch.setattr(demo, "demo", quick)
+    assert main(["demo", "--out", str(tmp_path)]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == "bearingdyn: working\n"
+    assert captured.out.count("-6.0 dB") == 3
+    assert "x 0.50" in captured.out
+
+
+def test_missing_package_is_named(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "h5netcdf", None)
+    assert main(["show", __file__]) == 2
+    assert "pip install h5netcdf" in capsys.readouterr().err
+
+
+def test_interrupt_is_code_130(monkeypatch, capsys):
+    def interrupted(progress):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(check, "check", interrupted)
+    assert main(["check"]) == 130
+    assert capsys.readouterr().err == "bearingdyn: interrupted\n"
 
 
 @pytest.mark.parametrize(
@@ -90,10 +176,11 @@ def test_version_names_the_package(capsys):
         (["show", "missing.nc"], "missing.nc: no such file"),
         (["show", __file__], "cannot be read as a result"),
         (["show", "."], "is a folder"),
+        (["demo", "--out", __file__], "exists"),
     ],
 )
-def test_input_that_cannot_be_used_is_one_line_and_code_1(arguments, message, capsys):
-    assert main(arguments) == 1
+def test_input_that_cannot_be_used_is_one_line_and_code_2(arguments, message, capsys):
+    assert main(arguments) == 2
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.startswith("bearingdyn: ")
@@ -109,7 +196,12 @@ def test_command_that_is_not_understood_is_code_2(arguments, capsys):
 
 def test_help_is_code_0(capsys):
     assert main(["--help"]) == 0
-    assert "fit" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    for command in ("fit", "show", "check", "demo", "version", "Exit codes"):
+        assert command in printed
+    for command in ("fit", "show", "check", "demo", "version"):
+        assert main([command, "--help"]) == 0
+        assert "--json" in capsys.readouterr().out
 
 
 def test_warning_is_one_line_on_standard_error(capsys):

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import application, bearings, contacts, materials, motion, shaker, structures
+from verified import application, bearings, contacts, materials, motion, peers, shaker, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -30,6 +30,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Bonded rings": structures.bonded_rings,
     "Damping-layer sample": structures.sample,
     "Sandwich cantilever": structures.sandwich,
+    "Housing in CalculiX": peers.calculix,
     "Free shaft and ring": structures.free_bodies,
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,

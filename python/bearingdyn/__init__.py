@@ -1,98 +1,91 @@
 """Dynamics of rotors on ball bearings with viscoelastic layers, from measured rubber to a running motor.
 
 SI units everywhere; z along the shaft, y vertical; interfaces in the order (x, y, z, θx, θy, θz).
+
+A name is loaded when it is first asked for, so that a script which only reads rubber loads no more than that.
 """
 
-from bearingdyn.analysis import (
-    Equilibrium,
-    equilibrium,
-    frequency_response,
-    modes,
-    orbit,
-    spectrum,
-    transient,
-    transients,
-)
-from bearingdyn.application import Application
-from bearingdyn.bearing import BallBearing, ConstantDamping, LoadDamping, Pit, TabulatedDamping, Waviness
-from bearingdyn.cms import Superelement
-from bearingdyn.core import Interrupted, Scheme, SolverError
-from bearingdyn.material import (
-    STEEL,
-    DMAData,
-    Elastic,
-    FractionalZener,
-    MasterCurve,
-    Maxwell,
-    PowerLaw,
-    TabulatedModulus,
-    fit_maxwell,
-    master_curve,
-    read_dma,
-    sample_dma_path,
-)
-from bearingdyn.parts import (
-    Cylinder,
-    Disc,
-    EndFace,
-    Feet,
-    Housing,
-    Layer,
-    Region,
-    Revolved,
-    RigidBody,
-    Ring,
-    Section,
-    Shaft,
-    damping_sample,
-)
-from bearingdyn.results import load, save
+from __future__ import annotations
 
-__all__ = [
-    "STEEL",
-    "Application",
-    "BallBearing",
-    "ConstantDamping",
-    "Cylinder",
-    "DMAData",
-    "Disc",
-    "Elastic",
-    "EndFace",
-    "Equilibrium",
-    "Feet",
-    "FractionalZener",
-    "Housing",
-    "Interrupted",
-    "Layer",
-    "LoadDamping",
-    "MasterCurve",
-    "Maxwell",
-    "Pit",
-    "PowerLaw",
-    "Region",
-    "Revolved",
-    "RigidBody",
-    "Ring",
-    "Scheme",
-    "Section",
-    "Shaft",
-    "SolverError",
-    "Superelement",
-    "TabulatedDamping",
-    "TabulatedModulus",
-    "Waviness",
-    "damping_sample",
-    "equilibrium",
-    "fit_maxwell",
-    "frequency_response",
-    "load",
-    "master_curve",
-    "modes",
-    "orbit",
-    "read_dma",
-    "sample_dma_path",
-    "save",
-    "spectrum",
-    "transient",
-    "transients",
-]
+from importlib import import_module
+
+ROOMS = ("bearing", "material", "plot", "study")
+# the stub beside this file says the same to type checkers
+HOMES = {
+    "analysis": (
+        "Equilibrium",
+        "equilibrium",
+        "frequency_response",
+        "modes",
+        "orbit",
+        "spectrum",
+        "transient",
+        "transients",
+    ),
+    "application": ("Application",),
+    "bearing": (
+        "BallBearing",
+        "ConstantDamping",
+        "LoadDamping",
+        "Pit",
+        "TabulatedDamping",
+        "Waviness",
+    ),
+    "cms": ("Superelement",),
+    "core": (
+        "Interrupted",
+        "Scheme",
+        "SolverError",
+    ),
+    "material": (
+        "STEEL",
+        "DMAData",
+        "Elastic",
+        "FractionalZener",
+        "MasterCurve",
+        "Maxwell",
+        "PowerLaw",
+        "TabulatedModulus",
+        "fit_maxwell",
+        "master_curve",
+        "read_dma",
+        "sample_dma_path",
+    ),
+    "parts": (
+        "Cylinder",
+        "Disc",
+        "EndFace",
+        "Feet",
+        "Housing",
+        "Layer",
+        "Region",
+        "Revolved",
+        "RigidBody",
+        "Ring",
+        "Section",
+        "Shaft",
+        "damping_sample",
+    ),
+    "results": (
+        "load",
+        "save",
+    ),
+}
+
+__all__ = sorted(name for names in HOMES.values() for name in names)
+
+
+def __getattr__(name: str) -> object:
+    """A room, or a public name out of the room it lives in."""
+    if name in ROOMS:
+        return import_module(f"{__name__}.{name}")
+    for home, names in HOMES.items():
+        if name in names:
+            value: object = getattr(import_module(f"{__name__}.{home}"), name)
+            globals()[name] = value
+            return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, *ROOMS})

@@ -84,7 +84,7 @@ def campbell(
     eigenvalue = np.array([v[keep] for v in values])
     size = np.abs(eigenvalue)
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     over = ("speed", "mode")
     return dataset(
@@ -110,7 +110,12 @@ def campbell(
                 "modal assurance criterion with the next higher speed",
             ),
         },
-        {"analysis": "Campbell diagram", "damped": int(damped), "modulus": modulus},
+        {
+            "analysis": "Campbell diagram",
+            "damped": int(damped),
+            "modulus": modulus,
+            **inputs_of(system.inputs),
+        },
         {"speed": (given, "rad/s")},
     )
 

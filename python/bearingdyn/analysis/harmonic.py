@@ -133,7 +133,7 @@ def frequency_response(
     x = state.solve(omega, force, requested(wanted, state.system.n), speed, progress)
     response = recovered(wanted, given, x, omega, speed, QUANTITIES[quantity], state.K, state.C)
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     return dataset(
         {
@@ -144,7 +144,12 @@ def frequency_response(
                 f"complex {quantity}, zero-to-peak, per unit force",
             ),
         },
-        {"analysis": "frequency response", "speed": speed, "quantity": quantity},
+        {
+            "analysis": "frequency response",
+            "speed": speed,
+            "quantity": quantity,
+            **inputs_of(state.system.inputs),
+        },
         {"frequency": (f, "Hz"), "output": (list(outputs), ""), "input": (list(inputs), "")},
     )
 

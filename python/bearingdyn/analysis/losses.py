@@ -110,7 +110,7 @@ def dissipation(
         energy += dt * (power.sum(axis=0) - 0.5 * (power[0] + power[-1]))
         last, start, done = power[-1:], False, done + count
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     duration = dt * (steps if settle else max(steps - 1, 1))
     return dataset(
@@ -118,7 +118,13 @@ def dissipation(
             "energy": ("part", energy, "J", "energy turned into heat"),
             "power": ("part", energy / duration, "W", "its mean power"),
         },
-        {"analysis": "dissipation", "dt": dt, "settle": int(settle), "steps": int(steps)},
+        {
+            "analysis": "dissipation",
+            "dt": dt,
+            "settle": int(settle),
+            "steps": int(steps),
+            **inputs_of(system.inputs),
+        },
         {"part": ([s.name for s in sinks], "")},
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.linalg
+import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.analysis.equilibrium import Equilibrium
@@ -52,7 +52,7 @@ def modes(
     order = np.argsort(np.abs(values), kind="stable")[:count]
     values, shapes = values[order], shapes[:, order]
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     size = np.abs(values)
     return dataset(
@@ -67,7 +67,13 @@ def modes(
             "eigenvalue": ("mode", values, "rad/s", "λ of exp(λt)"),
             "shape": (("mode", "coordinate"), shapes.T, "m, rad", "mode shape in system coordinates"),
         },
-        {"analysis": "modes", "speed": speed, "damped": int(damped), "modulus": modulus},
+        {
+            "analysis": "modes",
+            "speed": speed,
+            "damped": int(damped),
+            "modulus": modulus,
+            **inputs_of(system.inputs),
+        },
     )
 
 

@@ -87,7 +87,7 @@ def radiated_power(
                 ).real
     area = np.array([surface.area for _, surface in found])
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     over = ("frequency", "surface", "input")
     return dataset(
@@ -106,7 +106,13 @@ def radiated_power(
             ),
             "area": ("surface", area, "m²", "area of the surface"),
         },
-        {"analysis": "radiated power", "speed": speed, "density": density, "sound_speed": sound_speed},
+        {
+            "analysis": "radiated power",
+            "speed": speed,
+            "density": density,
+            "sound_speed": sound_speed,
+            **inputs_of(state.system.inputs),
+        },
         {"frequency": (f, "Hz"), "surface": (list(surfaces), ""), "input": (list(inputs), "")},
     )
 

@@ -40,7 +40,7 @@ def mode_shapes(source: Equilibrium | Application | System, found: xarray.Datase
         rows = system.rows(name)
         motion[:, k, : len(rows)] = shape @ rows.T
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     return dataset(
         {
@@ -58,6 +58,6 @@ def mode_shapes(source: Equilibrium | Application | System, found: xarray.Datase
             ),
             "frequency": ("mode", found["frequency"].values, "Hz", "undamped natural frequency |λ|/2π"),
         },
-        {"analysis": "mode shapes"},
+        {"analysis": "mode shapes", **inputs_of(system.inputs)},
         {"place": (places, ""), "component": (list(COMPONENTS), ""), "axis": (["x", "y", "z"], "")},
     )

@@ -76,7 +76,7 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
     size = np.abs(value) * energy
     damping = np.divide(lost, size[:, None], out=np.zeros_like(lost), where=size[:, None] > 0.0)
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     over = ("mode", "part")
     return dataset(
@@ -87,7 +87,7 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
             "damping": (over, damping, "1", "part of the damping ratio −Re λ/|λ|"),
             "frequency": ("mode", found["frequency"].values, "Hz", "undamped natural frequency |λ|/2π"),
         },
-        {"analysis": "energy shares", "speed": speed, "damped": int(damped)},
+        {"analysis": "energy shares", "speed": speed, "damped": int(damped), **inputs_of(system.inputs)},
         {"part": ([s.name for s in stores], "")},
     )
 

@@ -130,6 +130,7 @@ def transient(
         "decimate": int(decimate),
         "settle": int(settle),
         "steps": int(steps),
+        "inputs": system.inputs,
     }
     header = facts if stream is None else {**facts, "digest": digest(modal, scheme, state)}
     rows, state, report = run(

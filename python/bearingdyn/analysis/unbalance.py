@@ -74,7 +74,7 @@ def unbalance_response(
             unit = recovered(wanted, inputs, x, omega, float(speed), QUANTITIES[quantity], state.K, state.C)
             response[k] = speed**2 * (unit[0] @ phase)
 
-    from bearingdyn.results import dataset
+    from bearingdyn.results import dataset, inputs_of
 
     rate = {"displacement": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
     units = [
@@ -89,7 +89,7 @@ def unbalance_response(
                 f"complex {quantity}, zero-to-peak, at the frequency of the speed",
             )
         },
-        {"analysis": "unbalance response", "quantity": quantity},
+        {"analysis": "unbalance response", "quantity": quantity, **inputs_of(system.inputs)},
         {"speed": (given, "rad/s"), "output": (list(outputs), "")},
     )
     return made.assign_coords(unit=("output", units))

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from scipy.optimize import brentq
-from scipy.special import elliprd, elliprf, elliprg
+import scipy
 
 from bearingdyn.bearing.checks import nonnegative, number, positive, require
 from bearingdyn.bearing.geometry import Geometry
@@ -62,13 +61,15 @@ def _ellipticity(complement: float) -> float:
 
     def excess(t: float) -> float:
         k2 = math.exp(-2 * t)
-        return math.log(k2 * float(elliprd(0, k2, 1)) / (3 * float(elliprg(0, k2, 1)))) - math.log(complement)
+        return math.log(
+            k2 * float(scipy.special.elliprd(0, k2, 1)) / (3 * float(scipy.special.elliprg(0, k2, 1)))
+        ) - math.log(complement)
 
     # 1 − F → 2 ln(4χ)/χ² for long ellipses, hence ln χ < 1 − ln(1 − F) always
     upper = 1 - math.log(complement)
     if excess(0.0) <= 0:
         return 1.0
-    return math.exp(brentq(excess, 0.0, upper, xtol=1e-15, rtol=1e-15))
+    return math.exp(scipy.optimize.brentq(excess, 0.0, upper, xtol=1e-15, rtol=1e-15))
 
 
 @dataclass(frozen=True)
@@ -116,11 +117,11 @@ class PointContact:
 
     @cached_property
     def _K(self) -> float:
-        return float(elliprf(0, self.chi**-2, 1))
+        return float(scipy.special.elliprf(0, self.chi**-2, 1))
 
     @cached_property
     def _E(self) -> float:
-        return 2 * float(elliprg(0, self.chi**-2, 1))
+        return 2 * float(scipy.special.elliprg(0, self.chi**-2, 1))
 
     @property
     def a_star(self) -> float:

@@ -12,8 +12,8 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 Vector: TypeAlias = NDArray[np.float64]
 Law: TypeAlias = Callable[[Vector], tuple[float, Vector, Vector, float]]
@@ -104,4 +104,4 @@ def _step(r: Vector, H: Vector, radius: float, negligible: float) -> Vector:
     limit = float(np.linalg.norm(force)) / radius
     if shortfall(limit) <= 0:
         return modes @ along(limit)
-    return modes @ along(float(brentq(shortfall, 0.0, limit, rtol=1e-8)))
+    return modes @ along(float(scipy.optimize.brentq(shortfall, 0.0, limit, rtol=1e-8)))

@@ -10,8 +10,8 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def _zeros(G0: float, eta0: float, rates: Array, strengths: Array) -> list[float
     for low, high in brackets:
         a, b = low + _EDGE * (high - low), high - _EDGE * (high - low)
         if modulus(a) > 0 > modulus(b):
-            found.append(float(brentq(modulus, a, b, xtol=1e-300, rtol=1e-14, maxiter=1000)))
+            found.append(float(scipy.optimize.brentq(modulus, a, b, xtol=1e-300, rtol=1e-14, maxiter=1000)))
         else:  # a branch so weak that pole and zero cancel to the edge
             found.append(a if modulus(a) <= 0 else b)
     return found

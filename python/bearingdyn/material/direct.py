@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from bearingdyn.material.fit import fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
@@ -136,8 +136,10 @@ class TabulatedModulus:
                 f"{high:.6g} Hz"
             )
         x = np.log(np.clip(np.where(rest, low, f), low, high))
-        storage = np.exp(PchipInterpolator(np.log(self.frequency), np.log(self.storage))(x))
-        tan = np.exp(PchipInterpolator(np.log(self.frequency), np.log(self.loss / self.storage))(x))
+        storage = np.exp(scipy.interpolate.PchipInterpolator(np.log(self.frequency), np.log(self.storage))(x))
+        tan = np.exp(
+            scipy.interpolate.PchipInterpolator(np.log(self.frequency), np.log(self.loss / self.storage))(x)
+        )
         return np.asarray(storage * (1 + 1j * np.sign(omega) * tan))
 
     def at(self, T: float) -> TabulatedModulus:

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import least_squares
 
 from bearingdyn.material.shift import (
     WLF,
@@ -107,7 +106,7 @@ def fit_law(T: Array, shifts: Array, T_ref: float, name: LawName, pinned: bool =
     """
     require_isotherms(name, T.size)
     if name == "free":
-        offset = 0.0 if pinned else float(PchipInterpolator(T, shifts)(T_ref))
+        offset = 0.0 if pinned else float(scipy.interpolate.PchipInterpolator(T, shifts)(T_ref))
         return ShiftTable(tuple(T), tuple(shifts - offset), T_ref), offset
     if not np.polyfit(T, shifts, 1)[0] < 0:
         raise ValueError(f"law = {name!r}: the shifts do not fall with temperature; take law='free'")
@@ -121,7 +120,9 @@ def fit_law(T: Array, shifts: Array, T_ref: float, name: LawName, pinned: bool =
     for start in form.starts:
         first = np.append(start, np.interp(T_ref, T, shifts)) if free else start
         bounds = (np.append(form.lower, [-np.inf] * free), np.append(form.upper, [np.inf] * free))
-        found = least_squares(residual, first, jac="3-point", bounds=bounds, x_scale="jac", max_nfev=300)
+        found = scipy.optimize.least_squares(
+            residual, first, jac="3-point", bounds=bounds, x_scale="jac", max_nfev=300
+        )
         if best is None or found.cost < best.cost * (1 - 1e-9):
             best = found
     assert best is not None  # every form has starts
@@ -172,7 +173,7 @@ def fit_law_to_data(
         return fit.slopes(points(p), direction)
 
     p = _parameters(start, form)
-    found = least_squares(
+    found = scipy.optimize.least_squares(
         lambda q: fit.solve(points(q)).residual,
         p,
         jac=jacobian,

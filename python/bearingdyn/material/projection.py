@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from bearingdyn.material.spectrum import (
     Strengths,
@@ -164,7 +164,7 @@ class Projection:
         lower, upper = self.limits.log_lower[self.free], self.limits.log_upper[self.free]
         start = np.clip(((edges[:-1] + edges[1:]) / 2)[self.free], lower, upper)
         if start.size:
-            start = least_squares(
+            start = scipy.optimize.least_squares(
                 lambda theta: self._solve(theta).residual,
                 start,
                 jac=self._jacobian,
@@ -245,7 +245,7 @@ def polish(points: Points, limits: Limits, tau: Array, strengths: Array) -> Poli
 
     theta = first[free]
     if theta.size:
-        theta = least_squares(
+        theta = scipy.optimize.least_squares(
             residual,
             theta,
             jac=jacobian,

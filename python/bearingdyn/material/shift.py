@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 GAS_CONSTANT = 8.31446261815324
 """Molar gas constant, J/(mol K), exact in the SI of 2019."""
@@ -213,7 +213,7 @@ class ShiftTable:
         """log10 a_T at T, °C; ValueError outside the table."""
         T = np.asarray(T, dtype=float)
         self._check(T)
-        curve = PchipInterpolator(self.T, self.log_aT)
+        curve = scipy.interpolate.PchipInterpolator(self.T, self.log_aT)
         return np.asarray(curve(T) - curve(self.T_ref))
 
 

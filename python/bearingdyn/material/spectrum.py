@@ -12,8 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import lsq_linear, nnls
 
 Array = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ def solve_strengths(A: Array, b: Array, lower: Array | None = None, upper: Array
     length = np.linalg.norm(A[:, free], axis=0)
     length[length == 0] = 1.0
     scaled = A[:, free] / length
-    found = lsq_linear(scaled, rest, bounds=(low * length, high * length), method="bvls")
+    found = scipy.optimize.lsq_linear(scaled, rest, bounds=(low * length, high * length), method="bvls")
     x[free] = np.clip(found.x / length, low, high)
     inside = found.active_mask == 0
     return Strengths(x, A @ x - b, np.linalg.qr(scaled[:, inside])[0])
@@ -88,9 +88,9 @@ def _non_negative(A: Array, b: Array) -> Strengths:
         return Strengths(np.empty(0), -b, scaled)
     if A.shape[0] > 2 * n:  # the triangular factor poses the same problem in fewer rows
         R: Array = np.asarray(np.linalg.qr(np.column_stack([scaled, b]), mode="r"))
-        y, _ = nnls(R[:, :n], R[:, n], maxiter=30 * n)
+        y, _ = scipy.optimize.nnls(R[:, :n], R[:, n], maxiter=30 * n)
     else:
-        y, _ = nnls(scaled, b, maxiter=30 * n)
+        y, _ = scipy.optimize.nnls(scaled, b, maxiter=30 * n)
     active = y > 0
     basis = np.linalg.qr(scaled[:, active])[0]
     return Strengths(y / length, scaled @ y - b, basis)

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import least_squares
 
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.shift import WLF
@@ -138,7 +137,7 @@ class Superposition:
                 data = self.slopes(point(x), owner)
                 return np.vstack([data, rows[:, None] * P[:, self.free]]) if prior > 0 else data
 
-            found = least_squares(
+            found = scipy.optimize.least_squares(
                 residual,
                 theta,
                 jac=jacobian,
@@ -240,7 +239,7 @@ class Superposition:
 
     def _within(self, shifts: Array) -> Array:
         """What a point's own temperature adds to its isotherm's shift, decades, (n,)."""
-        slope = PchipInterpolator(self.T, shifts).derivative()(self.T)
+        slope = scipy.interpolate.PchipInterpolator(self.T, shifts).derivative()(self.T)
         labels = self.dma.labels
         return np.asarray(slope[labels] * (self.dma.temperature - self.T[labels]))
 

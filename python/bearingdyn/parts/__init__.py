@@ -2,6 +2,7 @@
 
 from bearingdyn.fem.beam import Section
 from bearingdyn.parts.housing import Feet, Housing
+from bearingdyn.parts.imported import Imported, NodeSet, at_radius
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.rigid_body import RigidBody
@@ -15,7 +16,9 @@ __all__ = [
     "EndFace",
     "Feet",
     "Housing",
+    "Imported",
     "Layer",
+    "NodeSet",
     "Region",
     "Revolved",
     "RevolvedModes",
@@ -24,5 +27,6 @@ __all__ = [
     "Section",
     "Shaft",
     "ViscoelasticSolid",
+    "at_radius",
     "damping_sample",
 ]

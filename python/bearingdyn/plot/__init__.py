@@ -10,6 +10,7 @@ from bearingdyn.plot.material import isotherms, layer_stiffness, master, shifts
 from bearingdyn.plot.modes import campbell, mode_shape
 from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum
 from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
+from bearingdyn.plot.trade_off import trade_off
 
 __all__ = [
     "ball_loads",
@@ -29,5 +30,6 @@ __all__ = [
     "shifts",
     "spectrum",
     "spectrum_of",
+    "trade_off",
     "van_gurp_palmen",
 ]

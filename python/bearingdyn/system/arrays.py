@@ -113,6 +113,8 @@ class LoadTerm:
 class System:
     """Matrices (n, n), terms, and rows (3 or 6, n) of every interface and point by name."""
 
+    inputs: str = field(default="", kw_only=True)
+    """What the system was assembled from, as `bearingdyn.inputs` writes it."""
     M: Array
     C: Array
     K: Array

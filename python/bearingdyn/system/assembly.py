@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from bearingdyn.application import GRAVITY, GROUND, Application
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System
 from bearingdyn.system.held import check_held
+from bearingdyn.system.origin import noted
 
 Array = NDArray[np.float64]
 
@@ -98,7 +99,7 @@ def assemble(app: Application) -> System:
         app.positions(),
     )
     check_held(system, firm)
-    return system
+    return noted(system, app)
 
 
 def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:

@@ -1,0 +1,143 @@
+"""The command line: `bearingdyn fit`, `show`, `check`, `demo` and `version`.
+
+Results go to standard output; progress, and warnings and errors of one line each, to standard error. The exit
+code is 0, 1 where a check does not hold, 2 for a command or input that cannot be used, 130 after Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import warnings
+from collections.abc import Sequence
+from typing import Literal
+
+from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, run_fit
+from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
+from bearingdyn.cli.own import run_check, run_demo, run_version
+from bearingdyn.cli.show import run_show
+
+EPILOG = """\
+examples:
+  bearingdyn fit rubber.csv --n 5 --band 10 5000 --out rubber.json
+  bearingdyn show result.nc
+  bearingdyn check
+  bearingdyn demo --out demo
+
+Every command takes --json and --help. Exit codes: 0 good, 1 a check does not hold, 2 a command or input
+that cannot be used. SI units throughout, temperatures in C.
+"""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command, sys.argv's when none is given, and return its exit code."""
+    parser = _parser()
+    try:
+        arguments = parser.parse_args(argv)
+    except SystemExit as stop:  # argparse has said why
+        return int(stop.code or 0)
+    # a name with θ must not stop a terminal that cannot show it
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="backslashreplace")
+    code = GOOD
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            command: Command = arguments.run
+            text, code = command(arguments)
+        for warning in caught:
+            if issubclass(warning.category, UserWarning):
+                print(f"bearingdyn: warning: {_line(warning.message)}", file=sys.stderr)
+        print(text, flush=True)
+    except BrokenPipeError:  # the reader had enough, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return code
+    except ModuleNotFoundError as error:
+        print(f"bearingdyn: this needs the package {error.name}; pip install {error.name}", file=sys.stderr)
+        return UNUSABLE
+    except (ValueError, OSError) as error:
+        print(f"bearingdyn: {_line(error)}", file=sys.stderr)
+        return UNUSABLE
+    except KeyboardInterrupt:
+        print("bearingdyn: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    return code
+
+
+def _line(message: object) -> str:
+    return " ".join(str(message).split())
+
+
+def _branches(text: str) -> int | Literal["auto"]:
+    """A number of branches, or "auto"."""
+    return "auto" if text == "auto" else int(text)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="bearingdyn",
+        description="Dynamics of rotors on ball bearings with viscoelastic layers.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    commands = parser.add_subparsers(required=True, metavar="command")
+
+    def add(name: str, run: Command, summary: str, description: str) -> argparse.ArgumentParser:
+        made = commands.add_parser(name, help=summary, description=description)
+        made.set_defaults(run=run)
+        made.add_argument("--json", action="store_true", help="print JSON instead of a table")
+        return made
+
+    fit = add(
+        "fit",
+        run_fit,
+        "a Maxwell model from measured DMA data",
+        "Shift the isotherms of a DMA measurement to a master curve and fit a Maxwell model to it.",
+    )
+    fit.add_argument("data", help="table of isothermal frequency sweeps, with a header")
+    fit.add_argument("--n", type=_branches, default=5, help='number of branches, or "auto" (default 5)')
+    fit.add_argument(
+        "--band", type=float, nargs=2, metavar=("LOW", "HIGH"), help="frequencies to fit between at T-ref, Hz"
+    )
+    fit.add_argument(
+        "--T-ref", type=float, default=20.0, metavar="T", help="reference temperature, C (default 20)"
+    )
+    fit.add_argument(
+        "--law", choices=("wlf", "arrhenius", "joined", "free"), default="wlf", help="shift law (default wlf)"
+    )
+    fit.add_argument("--K", type=float, help=f"bulk modulus, Pa (default {BULK_MODULUS:g}, usual for rubber)")
+    fit.add_argument("--density", type=float, help=f"kg/m3 (default {DENSITY:g}, usual for rubber)")
+    fit.add_argument("--mode", choices=("shear", "tension"), help="where the header does not say it")
+    fit.add_argument("--f-max", type=float, metavar="F", help="leave out what was measured above, Hz")
+    fit.add_argument("--no-clean", action="store_true", help="keep points that look like fixture resonance")
+    fit.add_argument("--out", metavar="FILE", help="write the model there, as Maxwell.from_json reads it")
+
+    show = add(
+        "show",
+        run_show,
+        "what a result file holds",
+        "List groups, dimensions, variables with their units, and attributes of a result file, or of the "
+        "file of a running march.",
+    )
+    show.add_argument("result", help="file written by bearingdyn.save")
+
+    add(
+        "check",
+        run_check,
+        "the installed package against published numbers and closed forms",
+        "Compute some thirty cases with a published value or a closed form, in a few seconds. The exit code "
+        "is 1 where one does not hold.",
+    )
+    demo = add(
+        "demo",
+        run_demo,
+        "a small motor with and without a rubber layer, from shipped data",
+        "Fit a rubber from the data shipped with the package, put a layer of it around the bearings of a "
+        "small motor, compute response and transient with it and without; write result.nc and response.png.",
+    )
+    demo.add_argument(
+        "--out", default="bearingdyn-demo", metavar="FOLDER", help="where to (default bearingdyn-demo)"
+    )
+    add("version", run_version, "versions of the package and what it computes with", "Say the versions.")
+    return parser

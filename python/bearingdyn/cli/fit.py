@@ -1,0 +1,100 @@
+"""`bearingdyn fit`: a Maxwell model from measured DMA data, as a table or JSON."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from bearingdyn.cli.outcome import GOOD
+from bearingdyn.material import MasterCurve, Maxwell, fit_maxwell, master_curve, read_dma
+
+# usual for rubber; said in the table where they were not given
+BULK_MODULUS = 2e9
+DENSITY = 1200.0
+
+
+def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
+    """The fitted model, written to --out as well."""
+    out = None if arguments.out is None else Path(arguments.out)
+    if out is not None and not out.resolve().parent.is_dir():
+        raise ValueError(f"--out {out}: there is no folder {out.parent}")
+    if arguments.f_max is not None and not arguments.f_max > 0:
+        raise ValueError(f"--f-max is {arguments.f_max}; it must be a positive frequency, in Hz")
+    dma = read_dma(arguments.data, arguments.mode)
+    if arguments.f_max is not None:
+        dma = dma.select(f_max=arguments.f_max)
+    curve = master_curve(dma, T_ref=arguments.T_ref, law=arguments.law, clean=not arguments.no_clean)
+    band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
+    model = fit_maxwell(
+        curve,
+        n=arguments.n,
+        band=band,
+        K=BULK_MODULUS if arguments.K is None else arguments.K,
+        density=DENSITY if arguments.density is None else arguments.density,
+    )
+    if out is not None:
+        out.write_text(model.to_json() + "\n", encoding="utf-8")
+    if arguments.json:
+        return json.dumps({**_fit_record(curve, model), "data": arguments.data}, indent=1), GOOD
+    text = _fit_table(
+        curve, model, K_given=arguments.K is not None, density_given=arguments.density is not None
+    )
+    return (text if out is None else f"{text}\nwritten to {out}"), GOOD
+
+
+def _fit_record(curve: MasterCurve, model: Maxwell) -> dict[str, Any]:
+    report = model.fit
+    assert report is not None  # fit_maxwell leaves one
+    return {
+        "maxwell": json.loads(model.to_json()),
+        "fit": {
+            "band": list(report.band),
+            "points": report.points,
+            "storage_rms": report.storage_rms,
+            "storage_max": report.storage_max,
+            "tan_delta_rms": report.tan_delta_rms,
+            "tan_delta_max": report.tan_delta_max,
+        },
+        "master": {
+            "T_ref": curve.T_ref,
+            "mode": curve.mode,
+            "frequency": [float(curve.frequency[0]), float(curve.frequency[-1])],
+            "shifts": [{"temperature": T, "log_aT": shift} for T, shift in curve.shifts.items()],
+            "law_residual": curve.law_residual,
+            "kk_residual": list(curve.kk_residual),
+        },
+    }
+
+
+def _fit_table(curve: MasterCurve, model: Maxwell, K_given: bool, density_given: bool) -> str:
+    report = model.fit
+    assert report is not None  # fit_maxwell leaves one
+
+    storage, loss = curve.kk_residual
+
+    def assumed(given: bool) -> str:
+        return "" if given else "  (assumed)"
+
+    lines = [
+        f"master curve   {len(curve.shifts)} isotherms in {curve.mode}, {curve.frequency[0]:.3g} to "
+        f"{curve.frequency[-1]:.3g} Hz at {curve.T_ref:g} C",
+        f"shift law      {type(curve.law).__name__}, rms {curve.law_residual:.3f} decades",
+        f"causality      rms {storage:.2%} of the storage, {loss:.2%} of the loss modulus",
+        "",
+        f"Maxwell model in shear at {curve.T_ref:g} C",
+        f"  G0           {model.G0:12.5g} Pa",
+        *(
+            f"  G{i:<2d}          {G:12.5g} Pa     tau{i:<2d} {tau:12.5g} s"
+            for i, (G, tau) in enumerate(zip(model.G, model.tau, strict=True), 1)
+        ),
+        f"  eta0         {model.eta0:12.5g} Pa s",
+        f"  K            {model.K:12.5g} Pa{assumed(K_given)}",
+        f"  density      {model.density:12.5g} kg/m3{assumed(density_given)}",
+        "",
+        f"errors of the {report.points} points from {report.band[0]:g} to {report.band[1]:g} Hz",
+        f"  storage modulus  rms {report.storage_rms:.2%}   largest {report.storage_max:.2%}",
+        f"  tan delta        rms {report.tan_delta_rms:.2%}   largest {report.tan_delta_max:.2%}",
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,55 @@
+"""Nastran: output4 files (.op4), read with pyyeti."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bearingdyn.fem.exchange.matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.exchange.text import existing
+
+
+def read_op4(
+    path: str | Path,
+    mass_path: str | Path | None = None,
+    points: Points | None = None,
+    *,
+    names: tuple[str, str] = ("KGG", "MGG"),
+    coordinates: str | None = None,
+    **check: Any,
+) -> FEMatrices:
+    """Read a stiffness and a mass matrix from one output4 file, or from two (mass_path).
+
+    names: of stiffness and mass in the file. coordinates: name of a (k, 3) matrix of the grids'
+        positions in it, if it has one; else points, (k, 3), in the order of the matrices' grids. KGG and MGG
+        have six coordinates a grid, in the basic system when no grid has another.
+    The rest: as in check_matrices.
+
+    Raises ValueError for a file that is not there, not output4 or without a named matrix, and where
+    check_matrices does; ImportError without pyyeti.
+    """
+    try:
+        from pyyeti.nastran import op4
+    except ImportError as error:
+        raise ImportError("reading .op4 needs pyyeti: pip install bearingdyn[op4]") from error
+
+    def content(given: str | Path) -> dict[str, Any]:
+        file = existing(given)
+        try:
+            return {key.upper(): value for key, value in op4.read(str(file), sparse=None).items()}
+        except Exception as error:  # pyyeti raises whatever a misread header leads to
+            raise ValueError(f"{file} cannot be read as a Nastran output4 file: {error}") from error
+
+    def named(matrices: dict[str, Any], name: str, where: str | Path) -> Any:
+        if name.upper() not in matrices:
+            raise ValueError(f"{where} has no matrix {name!r}; it has {sorted(matrices)}")
+        return matrices[name.upper()]
+
+    first = content(path)
+    other = first if mass_path is None else content(mass_path)
+    K, M = named(first, names[0], path), named(other, names[1], path if mass_path is None else mass_path)
+    if points is None and coordinates is not None:
+        points = np.asarray(named(first, coordinates, path), dtype=np.float64)
+    return check_matrices(K, M, points, **check)

@@ -1,0 +1,184 @@
+"""A part whose stiffness and mass come from another finite element program."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.sparse
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
+
+from bearingdyn.cms import RigidInterface, Superelement, reduce_free_body
+from bearingdyn.fem.exchange import FEMatrices
+
+Float = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class NodeSet:
+    """Nodes that move as one rigid body.
+
+    nodes: their numbers in the file (rows of its points, from 0, where it names none), or a function of all
+        positions (k, 3), m, that says which (k,) belong to it.
+    reference: (x, y, z), m, of the six coordinates; default: the mean of the nodes' positions.
+    """
+
+    nodes: Sequence[int] | Callable[[Float], NDArray[np.bool_]]
+    reference: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """An elastic body of another program's matrices, reduced like any other part.
+
+    matrices: from fem.read_matrices, with points. Matrices reduced already (Craig-Bampton: nodes of six
+        coordinates, then modal ones, `internal` of them) are taken too: each such node is an interface.
+    interfaces: name -> the nodes that move as one rigid body.
+    outputs: name -> number of a node, or a position (x, y, z), m, whose nearest node is meant; rows (3, n),
+        or (6, n) at a node of six coordinates.
+    damping: ratio ζ of every elastic mode, of the free body or of the body held at the interface `held`.
+    f_max: fixed-interface modes are kept up to this, Hz; math.inf keeps all of a reduced model.
+
+    Raises ValueError for an interface without nodes, with nodes on one line, or with nodes the matrices do
+    not have; for a part of the mesh that no interface holds; and for values outside their range.
+    """
+
+    matrices: FEMatrices
+    interfaces: Mapping[str, NodeSet]
+    outputs: Mapping[str, int | tuple[float, float, float]] = field(default_factory=dict)
+    damping: float = 0.0
+    held: str | None = None
+    f_max: float = 20e3
+
+    def __post_init__(self) -> None:
+        if self.matrices.points is None:
+            raise ValueError("matrices has no points; pass the nodes' positions when they are read")
+        if not 0 <= self.damping < 1:
+            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
+        if not self.f_max > 0:
+            raise ValueError(f"f_max is {self.f_max}; it must be a positive frequency in Hz")
+        if self.held is not None and self.held not in self.interfaces:
+            raise ValueError(f"held is {self.held!r}; the interfaces are {sorted(self.interfaces)}")
+        if not self.interfaces:
+            raise ValueError("interfaces is empty; a part needs at least one to be joined by")
+        faces = self._faces()
+        for name in self.outputs:
+            if name in self.interfaces:
+                raise ValueError(f"outputs has {name!r}, the name of an interface; choose another")
+            self._rows(name)
+        self._check_held_together(faces)
+
+    @property
+    def mass(self) -> float:
+        """Mass, kg."""
+        x = self.matrices.rigid_motion((0.0, 0.0, 0.0))[:, 0]
+        return float(x @ (self.matrices.M @ x))
+
+    def superelement(self) -> Superelement:
+        """The body reduced onto its interfaces and the fixed-interface modes up to f_max."""
+        return reduce_free_body(
+            self.matrices.M,
+            self.matrices.K,
+            self._faces(),
+            {name: self._rows(name) for name in self.outputs},
+            damping=self.damping,
+            held=self.held,
+            f_max=self.f_max,
+        )
+
+    def _points(self) -> Float:
+        assert self.matrices.points is not None
+        return self.matrices.points
+
+    def _row_of(self, where: str, number: int) -> int:
+        """Row in points of a node's number."""
+        nodes, count = self.matrices.nodes, len(self._points())
+        found = np.flatnonzero((np.arange(count) if nodes is None else nodes) == number)
+        if not found.size:
+            raise ValueError(f"{where} names node {number}, which the matrices do not have")
+        return int(found[0])
+
+    def _faces(self) -> dict[str, RigidInterface]:
+        p, place = self._points(), self.matrices.places
+        faces = {}
+        for name, chosen in self.interfaces.items():
+            where = f"interfaces[{name!r}]"
+            if callable(chosen.nodes):
+                mask = np.asarray(chosen.nodes(p))
+                if mask.shape != (len(p),) or mask.dtype != np.bool_:
+                    raise ValueError(
+                        f"{where}: its function gave {mask.dtype} of shape {mask.shape}; it must give a "
+                        f"truth value for each of {len(p)} positions"
+                    )
+                rows = np.flatnonzero(mask)
+            else:
+                rows = np.array([self._row_of(where, int(i)) for i in chosen.nodes], dtype=np.intp)
+            if not rows.size:
+                raise ValueError(f"{where} has no nodes; the positions run from {p.min(0)} to {p.max(0)} m")
+            given = p[rows].mean(axis=0) if chosen.reference is None else chosen.reference
+            reference = np.asarray(given, dtype=np.float64)
+            if reference.shape != (3,) or not np.isfinite(reference).all():
+                raise ValueError(f"{where} has the reference {chosen.reference!r}; it must be (x, y, z), m")
+            dofs = np.flatnonzero(np.isin(place[:, 0], rows))
+            T = self.matrices.rigid_motion(reference)[dofs]
+            size = float(np.linalg.norm(T[:, 3:], axis=0).max())
+            scaled = T / np.array([1.0] * 3 + [size or 1.0] * 3)
+            if np.linalg.matrix_rank(scaled, tol=1e-6 * np.linalg.norm(scaled)) < 6:
+                raise ValueError(
+                    f"{where} has {rows.size} nodes, on a point or a line; a rigid interface needs three "
+                    "that are not, or one of six coordinates"
+                )
+            faces[name] = RigidInterface(dofs, T, reference)
+        return faces
+
+    def _rows(self, name: str) -> scipy.sparse.csr_matrix:
+        p, place, target = self._points(), self.matrices.places, self.outputs[name]
+        where = f"outputs[{name!r}]"
+        if isinstance(target, int | np.integer):
+            row = self._row_of(where, int(target))
+        else:
+            position = np.asarray(target, dtype=np.float64)
+            if position.shape != (3,) or not np.isfinite(position).all():
+                raise ValueError(f"{where} is {target!r}; it must be a node's number or (x, y, z), m")
+            row = int(np.argmin(np.linalg.norm(p - position, axis=1)))
+        at = np.flatnonzero(place[:, 0] == row)
+        direction = place[at, 1]
+        count = 6 if direction.size == 6 else 3
+        at, direction = at[direction < count], direction[direction < count]
+        if direction.size < count:
+            raise ValueError(f"{where} is a node without a coordinate for each of x, y, z; choose another")
+        shape = (count, self.matrices.n)
+        return scipy.sparse.csr_matrix((np.ones(count), (direction, at)), shape=shape)
+
+    def _check_held_together(self, faces: Mapping[str, RigidInterface]) -> None:
+        """Every piece of the mesh hangs on an interface."""
+        model = self.matrices
+        count, label = connected_components(model.K, directed=False)
+        held = {int(i) for face in faces.values() for i in label[face.dofs]}
+        at_nodes = model.places[:, 0] >= 0
+        for piece in set(range(count)) - held:
+            inside = np.flatnonzero((label == piece) & at_nodes)
+            if inside.size:
+                raise ValueError(
+                    f"matrices hold a piece of {inside.size} coordinates, {model.name(int(inside[0]))} among "
+                    "them, that is joined to no interface; tie it in the export, or give it an interface"
+                )
+
+
+def at_radius(
+    radius: float, axial: tuple[float, float] = (-math.inf, math.inf), tolerance: float = 1e-6
+) -> Callable[[Float], NDArray[np.bool_]]:
+    """Choice of the nodes on a cylinder about z, for NodeSet.
+
+    radius: m. axial: z from, to, m. tolerance: m, as fine as the file's digits.
+    """
+
+    def choose(p: Float) -> NDArray[np.bool_]:
+        near = np.abs(np.hypot(p[:, 0], p[:, 1]) - radius) <= tolerance
+        return np.asarray(near & (p[:, 2] >= axial[0] - tolerance) & (p[:, 2] <= axial[1] + tolerance))
+
+    return choose

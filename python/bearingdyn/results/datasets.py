@@ -1,0 +1,116 @@
+"""Results as xarray Datasets: named dimensions, units, and what they were made from and by."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import scipy
+
+from bearingdyn.core import Report
+
+if TYPE_CHECKING:
+    import xarray
+
+Variable: TypeAlias = tuple[str | tuple[str, ...], Any, str, str]
+"""dims, values, unit, meaning"""
+
+
+def _own_version() -> str:
+    try:
+        return version("bearingdyn")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+# found once: it takes milliseconds where many packages are installed
+VERSION = _own_version()
+
+
+def versions() -> dict[str, str]:
+    """Versions of the package and of what it computes with, by name; "not installed" where there is none."""
+    return {
+        "bearingdyn": VERSION,
+        "Python": platform.python_version(),
+        "NumPy": np.__version__,
+        "SciPy": scipy.__version__,
+    }
+
+
+def stamp(time: datetime | None = None) -> str:
+    """A time, by default now, in UTC as ISO 8601 writes it."""
+    return (time or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="seconds")
+
+
+def inputs_of(text: str) -> dict[str, str]:
+    """Attributes that say what a result was computed from, and its hash; none where it is not known."""
+    if not text:
+        return {}
+    return {"inputs": text, "inputs_hash": hashlib.sha256(text.encode()).hexdigest()[:32]}
+
+
+def dataset(
+    variables: Mapping[str, Variable],
+    attrs: Mapping[str, Any],
+    coords: Mapping[str, tuple[Any, str]] | None = None,
+) -> xarray.Dataset:
+    """A Dataset whose variables carry units and meaning, and which says what made it, and when (UTC)."""
+    import xarray
+
+    made_by = ", ".join(f"{name} {number}" for name, number in versions().items())
+    made = xarray.Dataset(attrs={"made_by": made_by, "made_at": stamp(), **attrs})
+    for name, (values, unit) in (coords or {}).items():
+        made = made.assign_coords({name: (name, np.asarray(values), {"units": unit} if unit else {})})
+    for name, (dims, values, unit, meaning) in variables.items():
+        made[name] = (dims, values, {"units": unit, "long_name": meaning})
+    return made
+
+
+def march_dataset(
+    facts: Mapping[str, Any],
+    rows: np.ndarray,
+    state: np.ndarray,
+    report: Report,
+    attrs: Mapping[str, Any] | None = None,
+) -> xarray.Dataset:
+    """Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
+
+    facts: channels, units, dt, speed (times and speeds), decimate, settle, steps and, where known, inputs,
+    as in a run file's header.
+    """
+    origin, count = float(state[0]), int(state[1])
+    decimate = int(facts["decimate"])
+    times, speeds = (np.asarray(part, dtype=np.float64) for part in facts["speed"])
+    last = count - count % decimate
+    time = origin + (last - decimate * np.arange(len(rows))[::-1]) * facts["dt"]
+    constant = len(speeds) == 1
+    data = dataset(
+        {
+            "record": (("time", "channel"), rows, "", "recorded channels; their units are in `unit`"),
+            "state": ("word", state, "", "state of the march in the core's own order"),
+        },
+        {
+            "analysis": "transient",
+            "speed": float(speeds[0]) if constant else speeds,
+            **({} if constant else {"speed_time": times}),
+            "dt": facts["dt"],
+            "decimate": decimate,
+            "settle": facts["settle"],
+            "steps": max(report.steps - facts["settle"], 0),
+            "iterations": report.iterations,
+            "refreshes": report.refreshes,
+            "refactors": report.refactors,
+            "grazing": report.grazing,
+            "complete": int(report.status == 0 and report.steps == facts["settle"] + facts["steps"]),
+            "status": report.text,
+            **inputs_of(facts.get("inputs", "")),
+            **(attrs or {}),
+        },
+        {"time": (time, "s"), "channel": (facts["channels"], "")},
+    )
+    return data.assign_coords(unit=("channel", facts["units"]))

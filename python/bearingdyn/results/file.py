@@ -1,0 +1,122 @@
+"""One file for each result, or for several by name: netCDF-4, and run files as far as they go."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bearingdyn import runfile
+from bearingdyn.core import Report
+from bearingdyn.results.datasets import march_dataset, stamp
+
+if TYPE_CHECKING:
+    import xarray
+
+# netCDF has no complex type: a trailing axis of two of this name holds real and imaginary part
+PARTS = "part"
+
+
+def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
+    """Write one Dataset, or several by name (as groups), to one netCDF-4 file.
+
+    The file is written under another name and moved into place, so that a failure leaves no half file.
+    Raises ValueError if there is nothing to save, OSError where the place cannot be written.
+    """
+    target = Path(path)
+    groups = dict(results) if isinstance(results, Mapping) and not hasattr(results, "dims") else {"": results}
+    if not groups:
+        raise ValueError(f"{target}: nothing to save; give at least one result")
+    scratch = target.with_name(target.name + ".part")
+    try:
+        for i, (name, data) in enumerate(groups.items()):
+            _plain(data).to_netcdf(
+                scratch, mode="w" if i == 0 else "a", group=name or None, engine="h5netcdf"
+            )
+        scratch.replace(target)
+    finally:
+        scratch.unlink(missing_ok=True)
+
+
+def load(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
+    """Read a Dataset written by `save`, or what a run file holds so far, wholly into memory.
+
+    Raises ValueError if the file does not exist, is no netCDF-4 file, or lacks the group.
+    """
+    import xarray
+
+    if runfile.is_run(path):
+        return _run_dataset(path)
+    try:
+        with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
+            return _complex(data.load())
+    except FileNotFoundError:
+        raise ValueError(f"{os.fspath(path)}: no such file") from None
+    except (OSError, KeyError) as error:
+        place = f"group {group!r} of " if group else ""
+        raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def groups(path: str | os.PathLike[str]) -> list[str]:
+    """Names of the groups in a result file.
+
+    Raises ValueError if it cannot be read.
+    """
+    import h5netcdf
+
+    try:
+        with h5netcdf.File(path, "r") as file:
+            return sorted(file.groups)
+    except OSError as error:
+        raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def _run_dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
+    """What a run file holds so far."""
+    facts, chunks, _ = runfile.read(path)
+    if not chunks:
+        raise ValueError(f"{os.fspath(path)} holds no finished chunk yet")
+    state = chunks[-1].state
+    report = Report(
+        status=0,
+        steps=sum(c.steps for c in chunks),
+        iterations=sum(c.iterations for c in chunks),
+        refreshes=sum(c.refreshes for c in chunks),
+        refactors=sum(c.refactors for c in chunks),
+        grazing=sum(c.grazing for c in chunks),
+        t=float(state[0] + state[1] * state[2]),
+        residual=0.0,
+        bearing=-1,
+    )
+    rows = np.concatenate([c.rows for c in chunks])
+    written = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
+    return march_dataset(facts, rows, state, report, {"made_at": stamp(written)})
+
+
+def _plain(data: Any) -> Any:
+    """Complex variables as a trailing axis of two."""
+    import xarray
+
+    plain = data.copy()
+    for name, variable in data.data_vars.items():
+        if np.iscomplexobj(variable.values):
+            values = np.stack([variable.values.real, variable.values.imag], axis=-1)
+            plain[name] = xarray.Variable((*variable.dims, PARTS), values, {**variable.attrs, "complex": 1})
+    return plain
+
+
+def _complex(data: xarray.Dataset) -> xarray.Dataset:
+    import xarray
+
+    for name, variable in data.data_vars.items():
+        if variable.attrs.get("complex") == 1 and variable.dims[-1] == PARTS:
+            attrs = {k: v for k, v in variable.attrs.items() if k != "complex"}
+            # by parts: re + 1j·im makes NaN of an infinite part
+            values = np.empty(variable.shape[:-1], dtype=np.complex128)
+            values.real, values.imag = variable.values[..., 0], variable.values[..., 1]
+            data = data.assign({str(name): xarray.Variable(variable.dims[:-1], values, attrs)})
+    return data

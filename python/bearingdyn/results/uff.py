@@ -1,0 +1,159 @@
+"""Export as Universal File Format, dataset 58 (function at nodal degree of freedom), which test systems read.
+
+Reference: "Universal File Datasets", Structural Dynamics Research Laboratory, University of Cincinnati.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bearingdyn.system import QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray
+
+DIRECTIONS = {"x": 1, "y": 2, "z": 3, "θx": 4, "θy": 5, "θz": 6, "rx": 4, "ry": 5, "rz": 6}
+# specific data types of records 8 to 10
+TIME, FREQUENCY, FORCE, GENERAL = 17, 18, 13, 1
+MOTION = dict(zip(QUANTITIES, (8, 11, 12), strict=True))
+TIME_RESPONSE, FREQUENCY_RESPONSE = 1, 4
+REAL, COMPLEX = 4, 6  # double precision
+WIDTH = 80
+
+
+@dataclass(frozen=True, eq=False)
+class _Function:
+    """One function: its kind, the channels it is between, and its ordinate (n,), real or complex."""
+
+    kind: int
+    response: str
+    reference: str
+    quantity: int
+    unit: str
+    values: NDArray[np.generic]
+
+
+def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
+    """Write every function of a frequency response or a transient as one ASCII dataset 58; SI units.
+
+    Ordinates keep twelve digits. The abscissa keeps six, as the format has it: it is written as its first
+    value and increment where these say it exactly, else value by value. Places are numbered as nodes from 1
+    in the order they first appear; the names of response and reference stand in full in the first text line.
+
+    Returns the names of the places, node 1 first.
+
+    Raises ValueError for a Dataset that is neither, or has fewer than two points; OSError where the place
+    cannot be written.
+    """
+    functions = list(_functions(data))
+    dim = "time" if "record" in data else "frequency"
+    abscissa = np.asarray(data[dim].values, dtype=np.float64)
+    if abscissa.size < 2:
+        raise ValueError(f"the result has {abscissa.size} points along {dim}; dataset 58 needs two or more")
+    names = [name for f in functions for name in (f.response, f.reference) if name]
+    nodes = list(dict.fromkeys(_split(name)[0] for name in names))
+    lines = [line for f in functions for line in _dataset_58(f, dim, abscissa, nodes, data.attrs)]
+    target = Path(path)
+    scratch = target.with_name(target.name + ".part")
+    try:
+        scratch.write_text("\n".join(lines) + "\n", encoding="ascii")
+        scratch.replace(target)
+    finally:
+        scratch.unlink(missing_ok=True)
+    return nodes
+
+
+def _functions(data: xarray.Dataset) -> Iterator[_Function]:
+    if "response" in data and {"frequency", "output", "input"} <= set(data["response"].dims):
+        H = data["response"].transpose("frequency", "output", "input")
+        quantity = MOTION.get(str(data.attrs.get("quantity")), GENERAL)
+        unit = str(H.attrs.get("units", ""))
+        for i, output in enumerate(H["output"].values):
+            for j, force in enumerate(H["input"].values):
+                yield _Function(
+                    FREQUENCY_RESPONSE, str(output), str(force), quantity, unit, H.values[:, i, j]
+                )
+    elif "record" in data and {"time", "channel"} <= set(data["record"].dims):
+        record = data["record"].transpose("time", "channel")
+        units = {"m": 8, "rad": 8, "m/s": 11, "rad/s": 11, "m/s²": 12, "rad/s²": 12, "N": FORCE}
+        for i, channel in enumerate(record["channel"].values):
+            unit = str(data["unit"].values[i])
+            yield _Function(
+                TIME_RESPONSE, str(channel), "", units.get(unit, GENERAL), unit, record.values[:, i]
+            )
+    else:
+        raise ValueError(
+            f"the result holds {[str(name) for name in data.data_vars]}; dataset 58 takes a frequency "
+            f"response (frequency, output, input) or a transient (time, channel); choose channels by lists, "
+            f'as in .sel(output=["housing.top.y"])'
+        )
+
+
+def _split(channel: str) -> tuple[str, int]:
+    """Place and direction of a channel: "shaft.end.y.velocity" is 2 at "shaft.end"; 0 where it has none."""
+    place, _, last = channel.rpartition(".")
+    if last in QUANTITIES:
+        place, _, last = place.rpartition(".")
+    return (place, DIRECTIONS[last]) if last in DIRECTIONS else (channel, 0)
+
+
+def _ascii(text: str, width: int) -> str:
+    """Text as the format's own letters, θx being rx, in a field."""
+    plain = text.replace("θ", "r").replace("²", "2").encode("ascii", "replace").decode()
+    return f"{plain:<{width}.{width}}"
+
+
+def _dataset_58(
+    f: _Function, dim: str, abscissa: NDArray[np.float64], nodes: list[str], attrs: dict[str, object]
+) -> Iterator[str]:
+    n = abscissa.size
+    rounded = np.array([float(f"{value:.5e}") for value in (abscissa[0], abscissa[1] - abscissa[0])])
+    grid = rounded[0] + rounded[1] * np.arange(n)
+    even = bool(np.abs(grid - abscissa).max() <= 1e-9 * np.abs(abscissa).max())
+    is_complex = np.iscomplexobj(f.values)
+
+    yield f"{-1:6d}"
+    yield f"{58:6d}"
+    yield _ascii(f"{f.response} / {f.reference}" if f.reference else f.response, WIDTH)
+    yield _ascii(f"{attrs.get('analysis', 'NONE')}, zero-to-peak, SI units", WIDTH)
+    yield _ascii(str(attrs.get("made_at", "NONE")), WIDTH)
+    yield _ascii(str(attrs.get("made_by", "NONE")), WIDTH)
+    yield _ascii(f"inputs {attrs.get('inputs_hash', 'not known')}", WIDTH)
+
+    def end(channel: str) -> str:
+        place, direction = _split(channel) if channel else ("NONE", 0)
+        node = nodes.index(place) + 1 if channel else 0
+        return f"{_ascii(place, 10)}{node:10d}{direction:4d}"
+
+    yield f"{f.kind:5d}{0:10d}{0:5d}{0:10d} {end(f.response)} {end(f.reference)}"
+    start = rounded if even else np.zeros(2)
+    kind = COMPLEX if is_complex else REAL
+    yield f"{kind:10d}{n:10d}{int(even):10d}{start[0]:13.5e}{start[1]:13.5e}{0.0:13.5e}"
+
+    def axis(kind: int, label: str, unit: str) -> str:
+        return f"{kind:10d}{0:5d}{0:5d}{0:5d} {_ascii(label, 20)} {_ascii(unit, 20)}"
+
+    numerator, _, denominator = f.unit.partition("/") if f.reference else (f.unit, "", "NONE")
+    yield axis(TIME if dim == "time" else FREQUENCY, dim, "s" if dim == "time" else "Hz")
+    yield axis(f.quantity, "response", numerator or "NONE")
+    yield axis(FORCE if f.reference else 0, "force" if f.reference else "NONE", denominator or "NONE")
+    yield axis(0, "NONE", "NONE")
+
+    columns = [np.real(f.values), np.imag(f.values)] if is_complex else [f.values]
+    if even:
+        flat, form, across = np.stack(columns, axis=1).ravel(), ["{:20.11e}"], 4
+    else:
+        flat = np.stack([abscissa, *columns], axis=1).ravel()
+        form = ["{:13.5e}"] + ["{:20.11e}"] * len(columns)
+        across = 3 if is_complex else 4
+    written = [form[k % len(form)].format(value) for k, value in enumerate(flat)]
+    for k in range(0, len(written), across):
+        yield "".join(written[k : k + across])
+    yield f"{-1:6d}"

@@ -1,0 +1,16 @@
+"""What a system was assembled from, noted on it so that results can say it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bearingdyn import inputs
+from bearingdyn.application import Application
+from bearingdyn.system.arrays import System
+
+
+def noted(system: System, app: Application) -> System:
+    """The system with its application's parts, joints, bearings and loads as a text."""
+    # the reduced parts, and what is kept of them, follow from their sources
+    held = {name: value for name, value in vars(app).items() if name != "parts" and name[0] != "_"}
+    return replace(system, inputs=inputs.text(held))

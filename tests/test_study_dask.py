@@ -1,0 +1,82 @@
+"""Studies on a cluster of dask.distributed: the same call, and a worker killed on the way costs nothing."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import time
+
+import pytest
+
+from bearingdyn import study
+
+distributed = pytest.importorskip("distributed")
+
+
+def slow(case):
+    """Marks its beginning in a file of its own, then takes a while."""
+    with open(f"{case['folder']}/{case['x']:g}.{os.getpid()}.begun", "w") as mark:
+        mark.write("x")
+    time.sleep(case["seconds"])
+    if case["x"] == 7.0:
+        raise ValueError("seven is not lucky here")
+    return {"y": case["x"] ** 2, "pid": os.getpid()}
+
+
+@pytest.fixture
+def client():
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield client
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs a process that can be killed")
+def test_worker_killed_on_the_way_loses_nothing_and_stores_nothing_twice(client, tmp_path):
+    store, marks = tmp_path / "store", tmp_path / "marks"
+    marks.mkdir()
+    cases = study.grid(x=[float(x) for x in range(24)], seconds=[0.1], folder=[str(marks)])
+    pids = set(client.run(os.getpid).values())
+    assert len(pids) == 2
+    victim, seen = min(pids), []
+
+    def kill_one(done, total):
+        seen.append(done)
+        if done == 6:
+            os.kill(victim, signal.SIGKILL)
+
+    found = study.sweep(slow, cases, client.get_executor(), store=store, progress=kill_one)
+    assert seen == list(range(1, 25))  # each case came back once
+    assert [c.parameters["x"] for c in found] == [float(x) for x in range(24)]
+    assert [c.values.get("y") for c in found] == [None if x == 7 else float(x**2) for x in range(24)]
+    assert [c.error for c in found if c.error] == ["ValueError: seven is not lucky here"]
+    kept = [json.loads(path.read_text()) for path in store.iterdir()]
+    assert sorted(k["parameters"]["x"] for k in kept) == [float(x) for x in range(24)]
+    assert [k["error"] for k in kept if k["parameters"]["x"] == 7] == ["ValueError: seven is not lucky here"]
+    # both workers had begun cases, and the killed one's are begun anew by the other or its successor
+    begun = [path.name.split(".") for path in marks.iterdir()]
+    assert {int(pid) for _, pid, _ in begun} >= pids
+    assert len(begun) >= 24
+
+    before = len(begun)
+    again = study.sweep(slow, cases, client.get_executor(), store=store)
+    assert again == found
+    assert len(list(marks.iterdir())) == before
+
+
+def always_dies(case):
+    if case["x"] == 1.0:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"y": case["x"]}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs a process that can be killed")
+def test_case_that_kills_every_worker_fails_alone(client):
+    found = study.sweep(always_dies, study.grid(x=[0.0, 1.0, 2.0]), client.get_executor())
+    assert [c.values.get("y") for c in found] == [0.0, None, 2.0]
+    assert "KilledWorker" in found[1].error
