@@ -53,8 +53,6 @@ CORNERS = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0
 EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
 # half steps of a C3D20's nodes from its first corner, in CalculiX's order
 BRICK = np.vstack([2 * CORNERS, *[(CORNERS[a] + CORNERS[b])[None] for a, b in EDGES]])
-# the same brick with its third direction turned round
-MIRROR = [4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11, 16, 17, 18, 19]
 
 
 def ccx() -> str | None:
@@ -116,20 +114,6 @@ def frequencies(path: Path) -> np.ndarray:
 # ---------------------------------------------------------------- the housing
 
 
-def connectivity(mesh: Any) -> np.ndarray:
-    """Nodes (elements, 20) of a mesh of bricks, in CalculiX's order."""
-    own = getattr(mesh, "elements", None)  # a SolidMesh has the same
-    if own is not None:
-        return np.asarray(own)
-    import skfem
-
-    element = skfem.ElementHexS2()
-    basis = skfem.Basis(mesh, element, intorder=4)
-    place = [int(np.argmin(np.linalg.norm(element.doflocs - 0.5 * at, axis=1))) for at in BRICK]
-    bricks = basis.element_dofs.T[:, place]
-    return bricks[:, MIRROR] if basis.mapping.detDF(basis.X, basis.tind).mean() < 0 else bricks
-
-
 class HousingCase:
     """The demo's pedestal as a mesh of bricks, for both programs."""
 
@@ -142,11 +126,10 @@ class HousingCase:
         self.folder = folder
         mesh = block_with_bore(part.width, part.height, part.length, part.bore_diameter, part.axis, size)
         self.solid = assemble_solid(mesh)
-        bricks = connectivity(mesh)
         p = self.points = self.solid.points
         self.base = np.abs(p[:, 1] + part.axis) < 1e-9
         self.bore = np.abs(np.hypot(p[:, 0], p[:, 1]) - 0.5 * part.bore_diameter) < 1e-9
-        self.model = [*mesh_lines(p, bricks, "C3D20"), *set_lines("BASE", self.base)]
+        self.model = [*mesh_lines(p, mesh.elements, "C3D20"), *set_lines("BASE", self.base)]
         self.model += [*set_lines("BORE", self.bore), *material_lines(part.material)]
 
     def ours(self) -> np.ndarray:

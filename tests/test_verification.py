@@ -22,6 +22,7 @@ QUICK = [
     "Weight and a moving ground",
     "Whirl over speed",
     "Ring-down",
+    "Sandwich cantilever",
 ]
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import application, bearings, contacts, materials, motion, peers, shaker, structures
+from verified import application, bearings, contacts, materials, motion, peers, shaker, solids, structures
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -29,7 +29,8 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Varying compliance": motion.varying_compliance,
     "Bonded rings": structures.bonded_rings,
     "Damping-layer sample": structures.sample,
-    "Sandwich cantilever": structures.sandwich,
+    "Sandwich cantilever": solids.sandwich,
+    "Solids of elements": solids.bonded,
     "Housing in CalculiX": peers.calculix,
     "Free shaft and ring": structures.free_bodies,
     "Rigid rotor": structures.rigid_rotor,

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import scipy.sparse.linalg
 
 from bearingdyn.analysis import modes
 from bearingdyn.application import Application
 from bearingdyn.fem.beam import Section
-from bearingdyn.fem.solid import assemble_solid
 from bearingdyn.material import STEEL, Elastic, Maxwell
 from bearingdyn.parts import Disc, Layer, Region, Revolved, RigidBody, Ring, Shaft, damping_sample
 from verified.row import INDEPENDENT, MM, RPM, Row, rows
@@ -64,66 +62,6 @@ def sample() -> list[Row]:
         "asked for to 0.5 %: rigid faces, rubber's inertia static",
         INDEPENDENT,
         [(f"damping sample as a part, {n} mode (Hz)", w, f) for n, w, f in reduced],
-    )
-
-
-def sandwich() -> list[Row]:
-    """Cantilever of two faces and a viscoelastic core: 20-node bricks, plane motion, faces with ν = 0."""
-    import skfem
-
-    face, core_h, L = 1.524 * MM, 0.127 * MM, 177.8 * MM
-    x = np.linspace(0.0, L, 61)
-    y = np.array([0.0, face, face + core_h, 2 * face + core_h])
-    mesh = skfem.MeshHex.init_tensor(x, y, np.array([0.0, 3 * MM]))
-    middle = mesh.p[1, mesh.t].mean(axis=0)
-    in_core = (middle > face) & (middle < face + core_h)
-    faces = assemble_solid(mesh, np.flatnonzero(~in_core))
-    inner = assemble_solid(mesh, np.flatnonzero(in_core))
-    metal, soft = Elastic(6.9e10, 0.0, 2766.0), Elastic(2 * 0.6899e6 * 1.3, 0.3, 968.1)
-    M = metal.density * faces.mass + soft.density * inner.mass
-    loss = 0.1
-    K = (
-        faces.stiffness(metal)
-        + soft.K * (1 + 1j * loss) * inner.volumetric
-        + 2 * soft.G * (1 + 1j * loss) * inner.deviatoric
-    )
-    held = np.repeat(faces.points[:, 0] < 1e-9, 3)
-    held[2::3] = True
-    free = np.flatnonzero(~held)
-    squares = scipy.sparse.linalg.eigs(
-        K[free][:, free].tocsc(), 5, M[free][:, free].tocsc(), sigma=1e3, return_eigenvectors=False
-    )
-    squares = squares[np.argsort(squares.real)]
-    frequency, damping = np.sqrt(squares.real) / (2 * math.pi), squares.imag / squares.real / loss
-    theory = (64.128, 296.664, 744.324, 1395.12, 2263.02)
-    literature = (64.075, 296.41, 743.70, 1393.9, 2261.1)
-    shares = (0.28151, 0.24238, 0.15409, 0.08890, 0.05725)
-    reason = "a solid against sandwich-beam theory, which leaves out shear and rotatory inertia of the faces"
-    return (
-        rows(
-            "§3.9",
-            5e-3,
-            reason,
-            INDEPENDENT,
-            [(f"sandwich cantilever, mode {k + 1} (Hz)", f, frequency[k]) for k, f in enumerate(theory)],
-        )
-        + rows(
-            "§3.9",
-            5e-3,
-            reason,
-            "literature",
-            [(f"sandwich cantilever, mode {k + 1} (Hz)", f, frequency[k]) for k, f in enumerate(literature)],
-        )
-        + rows(
-            "§3.9",
-            0.01,
-            reason,
-            INDEPENDENT,
-            [
-                (f"sandwich cantilever, loss factor share η/η_c {k + 1}", s, damping[k])
-                for k, s in enumerate(shares)
-            ],
-        )
     )
 
 

@@ -94,5 +94,7 @@ def lowest_modes(
     order = order[lam[order] <= omega_max**2][:limit]
     phi = phi[:, order]
     if phi.size:
-        phi = phi * np.sign(phi[np.argmax(np.abs(phi), axis=0), np.arange(phi.shape[1])])
+        size = np.abs(phi)  # of entries equal by symmetry, the first: round-off must not turn the sign
+        first = np.argmax(size > (1 - 1e-6) * size.max(axis=0), axis=0)
+        phi = phi * np.sign(phi[first, np.arange(phi.shape[1])])
     return np.sqrt(np.maximum(lam[order], 0.0)) / (2.0 * math.pi), phi

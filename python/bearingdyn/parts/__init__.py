@@ -9,6 +9,7 @@ from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring, damping_sample
 from bearingdyn.parts.section import Cylinder, EndFace, Region, ViscoelasticSolid
 from bearingdyn.parts.shaft import Disc, Shaft
+from bearingdyn.parts.solid import RigidSurface, Solid
 
 __all__ = [
     "Cylinder",
@@ -23,9 +24,11 @@ __all__ = [
     "Revolved",
     "RevolvedModes",
     "RigidBody",
+    "RigidSurface",
     "Ring",
     "Section",
     "Shaft",
+    "Solid",
     "ViscoelasticSolid",
     "at_radius",
     "damping_sample",

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
-import scipy.sparse
 
-from bearingdyn.cms import RigidInterface, Superelement, reduce_free_body
-from bearingdyn.fem.eigen import rigid_motion
-from bearingdyn.fem.solid import assemble_solid, block_with_bore
-from bearingdyn.fem.solid_surface import normal_motion
+from bearingdyn.cms import Superelement
+from bearingdyn.fem.solid_meshers import block_with_bore
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.solid import RigidSurface, Solid
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
 
@@ -116,9 +115,13 @@ class Housing:
 
     def superelement(self) -> Superelement:
         """The housing reduced onto its bore and feet and the fixed-interface modes up to f_max."""
+        return self.body.superelement()
+
+    @cached_property
+    def body(self) -> Solid:
+        """The housing as a solid; its mesh names the surfaces (fem.block_with_bore)."""
         volume = (self.width * self.height - 0.25 * math.pi * self.bore_diameter**2) * self.length
-        size = self.element_size or (volume / ELEMENTS) ** (1.0 / 3.0)
-        feet, half = self.feet, 0.5 * self.width
+        feet = self.feet
         flanged = feet is not None and feet.height > 0
         mesh = block_with_bore(
             self.width,
@@ -126,46 +129,21 @@ class Housing:
             self.length,
             self.bore_diameter,
             self.axis,
-            size,
+            self.element_size or (volume / ELEMENTS) ** (1.0 / 3.0),
             flange=(feet.width, feet.height) if feet is not None and flanged else None,
             strip=feet.width if feet is not None and not flanged else None,
         )
-        solid = assemble_solid(mesh)
-        p, near = solid.points, 1e-6 * size
-        on_bore = np.abs(np.hypot(p[:, 0], p[:, 1]) - 0.5 * self.bore_diameter) < near
-        on_feet = np.abs(p[:, 1] + self.axis) < near
-        if feet is not None:
-            on_feet &= np.abs(p[:, 0]) > (half if flanged else half - feet.width) - near
-
-        def rigid(mask: np.ndarray, reference: tuple[float, float, float]) -> RigidInterface:
-            nodes = np.flatnonzero(mask)
-            dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
-            return RigidInterface(dofs, rigid_motion(p[nodes], reference), np.array(reference))
-
-        def rows(place: tuple[float, float, float]) -> scipy.sparse.csr_matrix:
-            node = int(np.argmin(np.linalg.norm(p - np.asarray(place), axis=1)))
-            at = (np.arange(3), 3 * node + np.arange(3))
-            return scipy.sparse.csr_matrix((np.ones(3), at), shape=(3, 3 * len(p)))
-
-        def outside(middle: np.ndarray) -> np.ndarray:
-            # a middle of a quadratic face lies within an element's sagitta of the bore
-            in_bore = np.hypot(middle[:, 0], middle[:, 1]) < 0.5 * self.bore_diameter + near
-            return np.asarray(~in_bore & (middle[:, 1] > near - self.axis))
-
-        faces = {
-            "outside": outside,
-            "top": lambda middle: middle[:, 1] > self.height - self.axis - near,
-            "front": lambda middle: middle[:, 2] > 0.5 * self.length - near,
-            "back": lambda middle: middle[:, 2] < near - 0.5 * self.length,
-        }
-        places = {"top": (0.0, self.height - self.axis, 0.0), **self.points}
-        return reduce_free_body(
-            self.material.density * solid.mass,
-            solid.stiffness(self.material),
-            {"bore": rigid(on_bore, (0.0, 0.0, 0.0)), "feet": rigid(on_feet, (0.0, -self.axis, 0.0))},
-            {name: rows(place) for name, place in places.items()},
+        return Solid(
+            mesh,
+            self.material,
+            {
+                "bore": RigidSurface("bore", (0.0, 0.0, 0.0)),
+                "feet": RigidSurface("feet", (0.0, -self.axis, 0.0)),
+            },
+            self.f_max,
+            {"top": (0.0, self.height - self.axis, 0.0), **self.points},
             damping=self.damping,
             held="feet",
-            f_max=self.f_max,
-            surfaces={name: normal_motion(mesh, on) for name, on in faces.items()},
+            attach=("top", *self.points),
+            radiating=("outside", "top", "front", "back"),
         )

@@ -9,20 +9,28 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy.linalg
+import scipy
 from numpy.typing import NDArray
 
-from bearingdyn.cms import Superelement, Viscoelastic, modal_damping
+from bearingdyn.cms import (
+    Basis,
+    FullModel,
+    Superelement,
+    Viscoelastic,
+    inertia_shapes,
+    modal_damping,
+    modulus_levels,
+    orthogonalise,
+)
 from bearingdyn.fem.eigen import factorise, lowest_modes, rigid_transfer
 from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
 from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
 from bearingdyn.material import Elastic
+from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.section import Cylinder, EndFace, Face, Region, find_face, shape_moduli
 
 Float = NDArray[np.float64]
 Index = NDArray[np.intp]
-
-DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off
 
 # Coordinates (of x, y, z, θx, θy, θz) and signs of an interface's rigid shapes, for each copy of a
 # harmonic family. Order 1 turned a quarter wave carries y where it carried x, and −θx where it carried θy:
@@ -66,6 +74,8 @@ class Revolved:
         if they are more than a hundredfold apart. Each modulus after the
         first adds up to five shapes for two interfaces.
     refinement: mesh density; 1 gives layer stiffnesses within some 0.02 %.
+    inertia: rounds of cms.inertia_shapes of the static shapes at each modulus; 1 serves a layer or a sample
+        better than many fixed-interface modes.
 
     Raises ValueError for regions that overlap, faces that are not part of the body or share a node, a
     point outside the section, and values outside their range.
@@ -79,6 +89,7 @@ class Revolved:
     f_max: float = 0.0
     moduli: tuple[float, ...] | None = None
     refinement: float = 1.0
+    inertia: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "regions", tuple(self.regions))
@@ -88,6 +99,8 @@ class Revolved:
             raise ValueError(
                 f"f_max is {self.f_max}; it must be a frequency in Hz, not negative, 0 for no modes"
             )
+        if not self.inertia >= 0:
+            raise ValueError(f"inertia is {self.inertia}; it must be a number of rounds, 0 or more")
         if self.moduli is not None:
             object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
             if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
@@ -212,6 +225,8 @@ class Revolved:
         without energy of their own are dropped (torsion has none: it changes no volume, so its shape does
         not depend on the modulus).
         """
+        M = h.mass_matrix(self._density)
+        inner = np.setdiff1d(h.free, self._boundary(h)[0])
         static, k = self._constraint_shapes(h, levels[0])
         unit = 1.0 / np.sqrt(np.diag(k))
         # Rigid motion of all interfaces has the same shape at every modulus: those of the first add nothing.
@@ -219,22 +234,40 @@ class Revolved:
         extra = [
             ((self._constraint_shapes(h, level)[0] - static) * unit)[:, relative] for level in levels[1:]
         ]
-        K, M = h.stiffness(self._bulk, levels[0]), h.mass_matrix(self._density)
+        if self.inertia and inner.size:
+            for level in levels:
+                K = h.stiffness(self._bulk, level)
+                lu, shapes = factorise(K[inner][:, inner]), self._constraint_shapes(h, level)[0]
+                extra += inertia_shapes(lu.solve, K, M, shapes, inner, self.inertia)
+        K = h.stiffness(self._bulk, levels[0])
         if self.f_max > 0:
-            inner = np.setdiff1d(h.free, self._boundary(h)[0])
             frequency, phi = lowest_modes(K[inner][:, inner], M[inner][:, inner], f_max=self.f_max)
             modes = np.zeros((h.n, frequency.size))
             modes[inner] = phi / (2 * np.pi * frequency)
             extra.append(modes)
         internal = np.hstack(extra) if extra else np.zeros((h.n, 0))
-        if internal.shape[1]:
-            energy, mix = np.linalg.eigh(internal.T @ (K @ internal))
-            kept = energy > DISTINCT
-            internal = internal @ (mix[:, kept] / np.sqrt(energy[kept]))
-            inverse, turn = np.linalg.eigh(internal.T @ (M @ internal))
-            order = np.argsort(-inverse)
-            internal = internal @ (turn[:, order] / np.sqrt(inverse[order]))
+        _, internal = orthogonalise(internal, K, M)
         return np.hstack([static, internal]), static.shape[1]
+
+    def _families(self) -> list[tuple[Harmonic, Float, int, Any]]:
+        """Each family with its shapes, the number of constraint shapes among them, and its copies."""
+        levels = shape_moduli(self.regions, self.moduli)
+        return [
+            (h, *self._shapes(h, levels), copies)
+            for h, copies in ((self._harmonic(n, components), copies) for n, components, copies in FAMILIES)
+        ]
+
+    def full_model(self) -> FullModel:
+        """The unreduced equations of orders 0 and 1 (those that rigid interfaces excite), sparse."""
+        families = [(self._harmonic(order, components), copies) for order, components, copies in FAMILIES]
+        return full_model(families, self.regions, self._faces, self.outputs)
+
+    def basis(self) -> Basis:
+        """The shapes `superelement` takes, in the coordinates of `full_model`."""
+        model = self.full_model()
+        materials = [part.material for part in model.viscoelastic]
+        level = modulus_levels(materials, self.moduli)[0]
+        return full_basis(model, self._families(), level)
 
     def superelement(self) -> Superelement:
         """Reduced matrices with rigid interfaces, projections of the full model's (paper (21)-(23)).
@@ -249,11 +282,7 @@ class Revolved:
         """
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
-        levels = shape_moduli(self.regions, self.moduli)
-        families = []
-        for order, components, copies in FAMILIES:
-            h = self._harmonic(order, components)
-            families.append((h, *self._shapes(h, levels), copies))
+        families = self._families()
         n = sum(len(copies) * Psi.shape[1] for _, Psi, _, copies in families)
         rubbers: list[Any] = []
         owner = np.full(len(self.regions), -1)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.cms import modulus_levels
 from bearingdyn.fem.revolution_mesh import SAME, Rectangle, RevolutionMesh
-from bearingdyn.material import Elastic, Maxwell
+from bearingdyn.material import Elastic
 
 
 class ViscoelasticSolid(Protocol):
@@ -110,43 +111,10 @@ def find_face(mesh: RevolutionMesh, name: str, surface: Cylinder | EndFace) -> F
 
 
 def shape_moduli(regions: Sequence[Region], moduli: Sequence[float] | None) -> list[list[float]]:
-    """Real shear moduli, Pa, at which shapes are taken: a list over the regions for each level.
-
-    By default two levels for each material: its relaxed modulus, for the static state (or, if that is zero,
-    |G*| at the slowest branch), and |G*| at ω = 1/τ of its fastest branch, the end of the band in which
-    the branches describe it. Where these are more than a hundredfold apart, a third level, their geometric
-    mean, keeps the stiffness between them within some 0.3 %; two would leave 5 % at a thousandfold.
-    """
-    if moduli is not None or all(isinstance(q.material, Elastic) for q in regions):
-        chosen = [[float(G)] * len(regions) for G in (moduli or (1.0,))]
-        return [
-            [
-                q.material.G if isinstance(q.material, Elastic) else G
-                for q, G in zip(regions, level, strict=True)
-            ]
-            for level in chosen
-        ]
-    low, high = [], []
-    for q in regions:
-        if isinstance(q.material, Elastic):
-            low.append(q.material.G)
-            high.append(q.material.G)
-            continue
-        tau = np.asarray(getattr(q.material, "tau", ()), dtype=np.float64)
-        G0 = abs(complex(q.material.complex_modulus(0.0)))
-        if tau.size == 0:
-            if not G0 > 0:
-                raise ValueError(
-                    "moduli must be given: the material names no relaxation times to choose them by"
-                )
-            low.append(G0)
-            high.append(G0)
-            continue
-        low.append(G0 if G0 > 0 else abs(complex(q.material.complex_modulus(1 / tau.max()))))
-        # shapes want the branches' whole range, also beyond the band of a fit: without it nothing warns
-        bare = replace(q.material, fit=None, band=None) if isinstance(q.material, Maxwell) else q.material
-        high.append(abs(complex(bare.complex_modulus(1 / tau.min()))))
-    ratio = float(np.max(np.divide(high, low)))
-    if ratio < 1.001:
-        return [low]
-    return [low, high] if ratio <= 100.0 else [low, np.sqrt(np.multiply(low, high)).tolist(), high]
+    """Real shear moduli, Pa, at which shapes are taken: a list over the regions per level."""
+    soft = [i for i, q in enumerate(regions) if not isinstance(q.material, Elastic)]
+    shear = [q.material.G if isinstance(q.material, Elastic) else 0.0 for q in regions]
+    materials = [q.material for q in regions if not isinstance(q.material, Elastic)]
+    levels = np.tile(shear, (len(given := modulus_levels(materials, moduli)), 1))
+    levels[:, soft] = given
+    return [level.tolist() for level in levels]

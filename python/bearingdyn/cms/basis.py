@@ -1,0 +1,280 @@
+"""Shapes of a reduction: Craig-Bampton's, at several moduli of viscoelastic regions, made orthogonal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from bearingdyn.cms.full import FullModel
+from bearingdyn.cms.superelement import ComplexModulus, Float, Index
+from bearingdyn.fem.eigen import factorise, lowest_modes
+from bearingdyn.material import Maxwell
+
+DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Shapes of a reduction, u = Psi q.
+
+    Psi: (n, r + m), the r constraint modes and then m fixed-interface modes of unit modal mass.
+    K: (r, r) stiffness of the constraint modes, N/m; it is the exact static stiffness seen at the interfaces.
+    frequency: (m,) frequencies of the fixed-interface modes, Hz.
+    """
+
+    Psi: Float
+    K: Float
+    frequency: Float
+
+    def reduce(self, A: Any, *, skew: bool = False) -> Float:
+        """Psiᵀ A Psi for a symmetric (or skew) A, (r + m, r + m), round-off asymmetry removed."""
+        a = self.Psi.T @ (A @ self.Psi)
+        return np.asarray(0.5 * (a - a.T) if skew else 0.5 * (a + a.T))
+
+    def stiffness(self) -> Float:
+        """Reduced stiffness, (r + m, r + m): constraint and fixed-interface modes do not couple in K."""
+        return np.asarray(scipy.linalg.block_diag(self.K, np.diag((2.0 * np.pi * self.frequency) ** 2)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Held:
+    """A model with some coordinates held: the rest in blocks that do not couple, each with factors."""
+
+    K: Any
+    held: Index
+    inner: Index
+    blocks: list[tuple[Index, Any, Any, Any]]  # coordinates within inner, stiffness, mass, factors
+
+    def solve(self, load: Any) -> Float:
+        """Static motion (inner, m) under loads (inner, m), the interface held."""
+        u = np.zeros(load.shape)
+        for at, _, _, lu in self.blocks:
+            u[at] = lu.solve(np.ascontiguousarray(load[at]))
+        return u
+
+    def static(self, T: Float) -> Float:
+        """Static motion (inner, r) that goes with interface motions T (held, r)."""
+        return -self.solve(np.asarray(self.K[self.inner][:, self.held] @ T))
+
+    def modes(self, f_max: float | None, n_modes: int | None) -> tuple[Float, Float]:
+        """Rising frequencies (m,), Hz, and shapes (inner, m) of unit modal mass, the interface held."""
+        limit = self.inner.size if n_modes is None else min(n_modes, self.inner.size)
+        found = [(np.zeros(0), np.zeros((self.inner.size, 0)))]
+        for at, k, m, lu in self.blocks:
+            try:
+                frequency, phi = lowest_modes(k, m, math.inf if f_max is None else f_max, limit, lu)
+            except (np.linalg.LinAlgError, RuntimeError) as error:
+                raise _free_to_move(self.held, error) from error
+            shape = np.zeros((self.inner.size, frequency.size))
+            shape[at] = phi
+            found.append((frequency, shape))
+        frequency = np.concatenate([f for f, _ in found])
+        order = np.argsort(frequency, kind="stable")[:limit]
+        return frequency[order], np.hstack([phi for _, phi in found])[:, order]
+
+
+def _hold(K: Any, M: Any, held: Index) -> _Held:
+    """Hold some coordinates of a free model. Raises ValueError if the rest can still move."""
+    K, M = scipy.sparse.csr_matrix(K), scipy.sparse.csr_matrix(M)
+    inner = np.setdiff1d(np.arange(K.shape[0]), held)
+    K_ii, M_ii = K[inner][:, inner], M[inner][:, inner]
+    # Bending planes, stretch and torsion of a shaft do not couple: each block is solved by itself.
+    count, label = scipy.sparse.csgraph.connected_components(abs(K_ii) + abs(M_ii), directed=False)
+    blocks = []
+    for block in range(count):
+        at = np.flatnonzero(label == block)
+        k, m = K_ii[at][:, at], M_ii[at][:, at]
+        try:
+            blocks.append((at, k, m, factorise(k)))
+        except RuntimeError as error:
+            raise _free_to_move(held, error) from error
+    return _Held(K, held, inner, blocks)
+
+
+def _free_to_move(held: Index, error: Exception) -> ValueError:
+    return ValueError(
+        f"dofs {held} leave the model free to move, or M or K is not positive definite ({error}); "
+        "a body is held by one rigid interface of six coordinates"
+    )
+
+
+def _check_truncation(f_max: float | None, n_modes: int | None) -> None:
+    if (f_max is None) == (n_modes is None):
+        raise ValueError(f"f_max={f_max} and n_modes={n_modes}: give exactly one of the two")
+    if f_max is not None and not f_max >= 0.0:
+        raise ValueError(f"f_max is {f_max}; it must be a frequency in Hz, not negative")
+    if n_modes is not None and not n_modes >= 0:
+        raise ValueError(f"n_modes is {n_modes}; it must not be negative")
+
+
+def craig_bampton(
+    M: Any,
+    K: Any,
+    dofs: ArrayLike,
+    T: ArrayLike | None = None,
+    *,
+    f_max: float | None = None,
+    n_modes: int | None = None,
+) -> Basis:
+    """Constraint modes of an interface and the fixed-interface modes, for dense or sparse symmetric M and K.
+
+    M, K: (n, n) mass, kg, and stiffness, N/m, of the free model.
+    dofs: (m,) interface coordinates; T: (m, r) makes them move as u[dofs] = T q (default: each by itself).
+    f_max: keep the fixed-interface modes up to this frequency, Hz; or n_modes: keep that many. Give one of
+        the two. Three to four times the highest frequency of interest keeps
+        frequencies to about 0.1 %, twice to about 1 %.
+
+    Raises ValueError for shapes that do not fit, for both or neither of f_max and n_modes, and for an
+    interface that leaves the rest of the model free to move.
+    Reference: Craig & Bampton (1968); paper (21).
+    """
+    _check_truncation(f_max, n_modes)
+    n = np.shape(K)[0]
+    if np.shape(K) != (n, n) or np.shape(M) != (n, n):
+        raise ValueError(f"M has shape {np.shape(M)} and K {np.shape(K)}; both must be square and alike")
+    b = np.asarray(dofs, dtype=np.intp)
+    if b.ndim != 1 or b.size == 0 or np.unique(b).size != b.size or b.min() < 0 or b.max() >= n:
+        raise ValueError(f"dofs {dofs!r} must be distinct indices in 0...{n - 1}, at least one")
+    T = np.eye(b.size) if T is None else np.asarray(T, dtype=np.float64)
+    if T.ndim != 2 or T.shape[0] != b.size:
+        raise ValueError(f"T has shape {T.shape}; it must be ({b.size}, r), a row for each of dofs")
+    held = _hold(K, M, b)
+    r = T.shape[1]
+    static, (frequency, phi) = held.static(T), held.modes(f_max, n_modes)
+    Psi = np.zeros((n, r + frequency.size))
+    Psi[b, :r], Psi[held.inner, :r], Psi[held.inner, r:] = T, static, phi
+    K_c = T.T @ (held.K[b] @ Psi[:, :r])
+    return Basis(Psi, np.asarray(0.5 * (K_c + K_c.T)), frequency)
+
+
+def modulus_levels(
+    materials: Sequence[ComplexModulus], moduli: Sequence[float] | None = None
+) -> list[list[float]]:
+    """Real shear moduli, Pa, at which shapes are taken: a list over the viscoelastic materials per level.
+
+    moduli: the same levels for every material; (G,) is the paper's basis at one modulus.
+    By default two levels for each material: its relaxed modulus, for the static state (or, if that is zero,
+    |G*| at the slowest branch), and |G*| at ω = 1/τ of its fastest branch, the end of the band in which
+    the branches describe it. Where these are more than a hundredfold apart, a third level, their geometric
+    mean, keeps the stiffness between them within some 0.3 %; two would leave 5 % at a thousandfold.
+
+    Raises ValueError for a modulus that is not positive, or a material that names neither.
+    """
+    if not materials:
+        return [[]]
+    if moduli is not None:
+        if not moduli or not all(0 < G < math.inf for G in moduli):
+            raise ValueError(f"moduli is {tuple(moduli)}; it needs one or more positive shear moduli, Pa")
+        return [[float(G)] * len(materials) for G in moduli]
+    low, high = [], []
+    for material in materials:
+        tau = np.asarray(getattr(material, "tau", ()), dtype=np.float64)
+        G0 = abs(complex(material.complex_modulus(0.0)))
+        if tau.size == 0:
+            if not G0 > 0:
+                raise ValueError(
+                    "moduli must be given: the material names no relaxation times to choose them by"
+                )
+            low.append(G0)
+            high.append(G0)
+            continue
+        low.append(G0 if G0 > 0 else abs(complex(material.complex_modulus(1 / tau.max()))))
+        # shapes want the branches' whole range, also beyond the band of a fit: without it nothing warns
+        bare = replace(material, fit=None, band=None) if isinstance(material, Maxwell) else material
+        high.append(abs(complex(bare.complex_modulus(1 / tau.min()))))
+    ratio = float(np.max(np.divide(high, low)))
+    if ratio < 1.001:
+        return [low]
+    return [low, high] if ratio <= 100.0 else [low, np.sqrt(np.multiply(low, high)).tolist(), high]
+
+
+def orthogonalise(shapes: Float, K: Any, M: Any) -> tuple[Float, Float]:
+    """Combine shapes (n, m) into modes of each other: unit modal mass, diagonal stiffness.
+
+    The shapes come with energies uᵀKu of at most about one; combinations with less than DISTINCT are
+    dropped as round-off. Returns rising frequencies (p,), Hz, and shapes (n, p), p <= m.
+    """
+    if not shapes.shape[1]:
+        return np.zeros(0), shapes
+    energy, mix = np.linalg.eigh(shapes.T @ (K @ shapes))
+    kept = energy > DISTINCT
+    shapes = shapes @ (mix[:, kept] / np.sqrt(energy[kept]))
+    inverse, turn = np.linalg.eigh(shapes.T @ (M @ shapes))
+    order = np.argsort(-inverse)
+    return 1.0 / (2.0 * np.pi * np.sqrt(inverse[order])), shapes @ (turn[:, order] / np.sqrt(inverse[order]))
+
+
+def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Float, inner: Index, rounds: int) -> list[Float]:
+    """Static answers (n, m) of the held model to the inertia of shapes (n, m), then to that of the answers.
+
+    solve: static motion (inner, m) under loads (inner, m), the interfaces held; K, M: (n, n). They take over
+    from the truncated modes at low frequency, each round by two more powers of the frequency over that of
+    the first truncated mode. Energies uᵀKu are brought to one.
+    Reference: quasi-static compensation, Shyu, Ma & Hulbert, Mech. Struct. Mach. 25 (1997) 379-401.
+    """
+    found = []
+    for _ in range(rounds):
+        u = np.zeros_like(shapes)
+        u[inner] = solve(np.asarray((M @ shapes)[inner]))
+        energy = np.sum(u * (K @ u), axis=0)
+        shapes = u[:, energy > 0] / np.sqrt(energy[energy > 0])
+        found.append(shapes)
+    return found
+
+
+def basis_of(
+    model: FullModel,
+    *,
+    f_max: float | None = None,
+    n_modes: int | None = None,
+    moduli: Sequence[float] | None = None,
+    inertia: int = 1,
+    attach: Iterable[str] = (),
+) -> Basis:
+    """Shapes of a model's reduction; the arguments and errors are those of `reduce`."""
+    _check_truncation(f_max, n_modes)
+    if not model.interfaces:
+        raise ValueError("interfaces is empty; a part needs at least one to be joined by")
+    if not inertia >= 0:
+        raise ValueError(f"inertia is {inertia}; it must be a number of rounds, 0 or more")
+    for name in (attach := tuple(attach)):
+        if name not in model.outputs:
+            raise ValueError(f"attach has {name!r}; the outputs are {sorted(model.outputs)}")
+    levels = modulus_levels([part.material for part in model.viscoelastic], moduli)
+    faces = list(model.interfaces.values())
+    b = np.concatenate([f.dofs for f in faces])
+    T = scipy.linalg.block_diag(*[f.T for f in faces])
+    rows = [model.outputs[name] for name in attach]
+    load = scipy.sparse.vstack(rows).toarray().T if rows else np.zeros((model.n, 0))
+
+    extra: list[Float] = []
+    for level in levels:
+        K = model.stiffness(level)
+        at = _hold(K, model.M, b)
+        shapes = np.zeros((model.n, T.shape[1] + load.shape[1]))
+        shapes[b, : T.shape[1]] = T
+        shapes[at.inner] = np.hstack([at.static(T), at.solve(load[at.inner])])
+        static, points = np.hsplit(shapes, [T.shape[1]])
+        if level is levels[0]:
+            held, K_0, Psi = at, K, static
+            K_c = T.T @ (K[b] @ Psi)
+            K_c = 0.5 * (K_c + K_c.T)
+        else:
+            # Rigid motion of all interfaces has the same shape at every modulus: the first six add nothing.
+            extra.append(((static - Psi) / np.sqrt(np.diag(K_c)))[:, 0 if model.grounded else 6 :])
+        extra.append(points / np.sqrt(np.sum(points * (K @ points), axis=0)))
+        extra += inertia_shapes(at.solve, K, model.M, static, at.inner, inertia)
+    frequency, modes = held.modes(f_max, n_modes)
+    internal = np.zeros((model.n, frequency.size))
+    internal[held.inner] = modes
+    if any(u.shape[1] for u in extra):
+        frequency, internal = orthogonalise(
+            np.hstack([*extra, internal / (2 * np.pi * frequency)]), K_0, model.M
+        )
+    return Basis(np.hstack([Psi, internal]), np.asarray(K_c), frequency)

@@ -1,0 +1,351 @@
+"""Meshes of solids: nodes, second-order elements, regions and surfaces with names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.sparse
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from bearingdyn.fem.solid_element import (
+    BRICK_EDGES,
+    HEX20,
+    HEX27,
+    KINDS,
+    TET_EDGES,
+    SolidElement,
+    face_points,
+    face_shapes,
+    points,
+    shapes,
+)
+
+Float = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+MIDDLE = 0.3  # a middle node may lie this far from the middle of its edge, in lengths of the edge
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceSamples:
+    """A surface by its integration points: Σ weights·f is ∫ f dA.
+
+    positions: (q, 3), m. normals: (q, 3), outward, of unit length. weights: (q,), all positive, m².
+    interpolation: (q, n) sparse, a nodal field's values at the points.
+    """
+
+    positions: Float
+    normals: Float
+    weights: Float
+    interpolation: Any
+
+    @property
+    def area(self) -> float:
+        """Area, m²."""
+        return float(self.weights.sum())
+
+    @property
+    def centroid(self) -> Float:
+        """Centre of the area, (3,), m."""
+        return np.asarray(self.weights @ self.positions / self.weights.sum())
+
+    @property
+    def rows(self) -> Any:
+        """(3 q, 3 n) sparse: x, y, z of every sample from the displacements of the nodes."""
+        return scipy.sparse.kron(self.interpolation, scipy.sparse.eye(3)).tocsr()
+
+    @property
+    def normal_rows(self) -> Any:
+        """(q, 3 n) sparse: outward normal displacement of every sample from those of the nodes."""
+        q = np.arange(len(self.weights))
+        turn = scipy.sparse.csr_matrix(
+            (self.normals.ravel(), (np.repeat(q, 3), np.arange(3 * len(q)))), shape=(len(q), 3 * len(q))
+        )
+        return turn @ self.rows
+
+    @property
+    def mean_rows(self) -> Any:
+        """(3, 3 n) sparse: displacement averaged over the area."""
+        mean = scipy.sparse.csr_matrix(self.weights[None] / self.area) @ self.interpolation
+        return scipy.sparse.kron(mean, scipy.sparse.eye(3)).tocsr()
+
+
+@dataclass(frozen=True, eq=False)
+class SolidMesh:
+    """20- or 27-node bricks, or 10-node tetrahedra, that hang together.
+
+    points: (n, 3) nodes, m.
+    elements: (m, 20, 27 or 10) nodes of each element, numbered as VTK and Abaqus do: corners, middles of
+        edges, and for 27 the middles of the faces x−, x+, y−, y+, z−, z+ and the centre.
+    regions: name -> elements, each element in one; none given: one region "body".
+    surfaces: name -> nodes.
+    numbers: (m,) what to call the elements in messages (default: from 0).
+
+    Raises ValueError, naming the element or node, for an element turned inside out, numbered in the order of
+    a mirror image or with a middle node far from its edge, for nodes that no element has, bodies that do not
+    hang together, an element in no region or in two, and an empty surface.
+    """
+
+    points: Float
+    elements: Index
+    regions: Mapping[str, Index] = field(default_factory=dict)
+    surfaces: Mapping[str, Index] = field(default_factory=dict)
+    numbers: Index | None = None
+
+    def __post_init__(self) -> None:
+        p, e = np.array(self.points, dtype=np.float64), np.array(self.elements, dtype=np.intp)
+        if p.ndim != 2 or p.shape[1] != 3 or not np.all(np.isfinite(p)):
+            raise ValueError(f"points has shape {p.shape}; it must be (n, 3), finite")
+        if e.ndim != 2 or e.shape[1] not in KINDS or not len(e):
+            raise ValueError(
+                f"elements has shape {e.shape}; a row holds 20 or 27 nodes of a brick or 10 of a tetrahedron"
+                " (second_order makes them of corners)"
+            )
+        numbers = np.arange(len(e)) if self.numbers is None else np.asarray(self.numbers)
+        object.__setattr__(self, "points", p)
+        object.__setattr__(self, "elements", e)
+        object.__setattr__(self, "numbers", numbers)
+        if numbers.shape != (len(e),):
+            raise ValueError(
+                f"numbers has shape {numbers.shape}; it must be ({len(e)},), one for each element"
+            )
+        if e.min() < 0 or e.max() >= len(p):
+            k = int(np.flatnonzero((e < 0).any(axis=1) | (e >= len(p)).any(axis=1))[0])
+            raise ValueError(f"element {numbers[k]} names a node outside 0...{len(p) - 1}")
+        self._check_connection()
+        self._check_shapes()
+        regions = {name: np.unique(np.asarray(at, dtype=np.intp)) for name, at in self.regions.items()}
+        regions = regions or {"body": np.arange(len(e))}
+        uses = np.zeros(len(e), dtype=int)
+        for name, at in regions.items():
+            if not at.size:
+                raise ValueError(f"regions[{name!r}] is empty; it must name elements")
+            if at[0] < 0 or at[-1] >= len(e):
+                raise ValueError(f"regions[{name!r}] names an element outside 0...{len(e) - 1}")
+            uses[at] += 1
+        for k in np.flatnonzero(uses != 1)[:1].tolist():
+            owners = [name for name, at in regions.items() if k in at]
+            where = f"in the regions {owners}" if owners else "in no region"
+            raise ValueError(f"element {numbers[k]} is {where}; each must be in one of {sorted(regions)}")
+        object.__setattr__(self, "regions", regions)
+        surfaces = {name: np.unique(np.asarray(at, dtype=np.intp)) for name, at in self.surfaces.items()}
+        for name, at in surfaces.items():
+            if not at.size:
+                raise ValueError(f"surfaces[{name!r}] is empty; it must name nodes")
+            if at[0] < 0 or at[-1] >= len(p):
+                raise ValueError(f"surfaces[{name!r}] names a node outside 0...{len(p) - 1}")
+        object.__setattr__(self, "surfaces", surfaces)
+
+    def _check_connection(self) -> None:
+        p, e = self.points, self.elements
+        used = np.zeros(len(p), dtype=bool)
+        used[e] = True
+        loose = np.flatnonzero(~used)
+        if loose.size:
+            raise ValueError(
+                f"{loose.size} nodes belong to no element, the first at {p[loose[0]].tolist()} m "
+                f"(node {loose[0]}, from 0); remove them (read_mesh: drop_unconnected=True)"
+            )
+        k = e.shape[1]
+        first = np.repeat(e[:, 0], k - 1)
+        graph = scipy.sparse.coo_matrix(
+            (np.ones(first.size, dtype=bool), (first, e[:, 1:].ravel())), (len(p),) * 2
+        )
+        count, label = connected_components(graph, directed=False)
+        if count > 1:
+            sizes = np.bincount(label[e[:, 0]], minlength=count)
+            twins = len(cKDTree(p).query_pairs(1e-9 * float(np.ptp(p, axis=0).max()), output_type="ndarray"))
+            remedy = (
+                f"{twins} pairs of nodes coincide: join them (read_mesh: merge=1e-9, a distance in m)"
+                if twins
+                else "read each body by itself"
+            )
+            raise ValueError(
+                f"the elements fall into {count} bodies that share no node, of "
+                f"{', '.join(map(str, sizes[:6]))} elements; {remedy}"
+            )
+
+    def _check_shapes(self) -> None:
+        kind, p, e, numbers = self.kind, self.points, self.elements, self.numbers
+        assert numbers is not None
+        c = len(kind.corners)
+        first, twin = np.unique(np.sort(e[:, :c], axis=1), axis=0, return_index=True, return_inverse=True)[1:]
+        for k in np.flatnonzero(first[twin.ravel()] != np.arange(len(e)))[:1].tolist():
+            other = numbers[first[twin.ravel()[k]]]
+            raise ValueError(f"elements {other} and {numbers[k]} have the same corners; keep one of them")
+        ends = p[e[:, np.array(kind.edges)]]  # (m, edges, 2, 3)
+        off = np.linalg.norm(p[e[:, c : c + len(kind.edges)]] - ends.mean(axis=2), axis=2)
+        length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
+        far = off > MIDDLE * length
+        for k in np.flatnonzero(far.any(axis=1))[:1].tolist():
+            raise ValueError(
+                f"element {numbers[k]} has a middle node far from the middle of its edge (its "
+                f"node {c + int(np.argmax(far[k]))}, from 0); nodes must be in VTK's order"
+            )
+        if kind.centres:
+            expected = shapes(HEX20, HEX27.places[20:])[0] @ p[e[:, :20]]
+            off = np.linalg.norm(p[e[:, 20:]] - expected, axis=2)
+            for k in np.flatnonzero((off > MIDDLE * length.max(axis=1)[:, None]).any(axis=1))[:1].tolist():
+                raise ValueError(
+                    f"element {numbers[k]} has the middle of a face or its centre out of place "
+                    f"(its node {20 + int(np.argmax(off[k]))}, from 0); nodes must be in VTK's order"
+                )
+        det = np.linalg.det(self._jacobians(points(kind)[0]))
+        for k in np.flatnonzero(~np.all(det > 0, axis=1))[:1].tolist():
+            if np.all(det[k] < 0):
+                raise ValueError(
+                    f"element {numbers[k]} has the nodes of a mirror image: corners 0, 1, 2 must turn "
+                    "anticlockwise seen from the other end; renumber its nodes"
+                )
+            raise ValueError(
+                f"element {numbers[k]} is turned inside out: its volume changes sign inside; "
+                "check the order of its nodes, or refine the mesh"
+            )
+
+    def _jacobians(self, X: Float, elements: Any = slice(None)) -> Float:
+        """∂x_a/∂ξ_b at points X (q, 3): (m, q, 3, 3)."""
+        gradient = shapes(self.kind, X)[1]
+        return np.asarray(
+            np.einsum("mka,qkb->mqab", self.points[self.elements[elements]], gradient, optimize=True)
+        )
+
+    @property
+    def kind(self) -> SolidElement:
+        """The kind of its elements."""
+        return KINDS[self.elements.shape[1]]
+
+    def volume(self, region: str | None = None) -> float:
+        """Volume of a region, or of all, m³."""
+        at = slice(None) if region is None else self.regions[region]
+        X, w = points(self.kind)
+        return float((np.linalg.det(self._jacobians(X, at)) @ w).sum())
+
+    def surface(self, name: str) -> Index:
+        """Nodes of a surface. Raises ValueError, listing the known, for a name the mesh does not have."""
+        if name not in self.surfaces:
+            raise ValueError(f"the mesh has no surface {name!r}; it has {sorted(self.surfaces)}")
+        return self.surfaces[name]
+
+    def with_surface(self, name: str, where: Callable[[Float], Any]) -> SolidMesh:
+        """The mesh with one more surface: the nodes of the boundary for whose points (k, 3) `where` is true.
+
+        Raises ValueError if there is none, or the name is taken.
+        """
+        if name in self.surfaces:
+            raise ValueError(f"the mesh has a surface {name!r} already; choose another name")
+        outside = np.unique(self.boundary)
+        chosen = outside[np.asarray(where(self.points[outside]), dtype=bool)]
+        if not chosen.size:
+            raise ValueError(f"surface {name!r} is empty: no node of the boundary satisfies the condition")
+        return replace(self, surfaces={**self.surfaces, name: chosen})
+
+    def with_region(self, name: str, where: Callable[[Float], Any]) -> SolidMesh:
+        """The mesh with the elements for whose middles (m, 3) `where` is true made a region of that name.
+
+        Raises ValueError if there is none, or the name is taken.
+        """
+        if name in self.regions:
+            raise ValueError(f"the mesh has a region {name!r} already; choose another name")
+        middle = self.points[self.elements[:, : len(self.kind.corners)]].mean(axis=1)
+        chosen = np.flatnonzero(np.asarray(where(middle), dtype=bool))
+        if not chosen.size:
+            raise ValueError(f"region {name!r} is empty: no element satisfies the condition")
+        others = {n: np.setdiff1d(at, chosen) for n, at in self.regions.items()}
+        return replace(self, regions={**{n: at for n, at in others.items() if at.size}, name: chosen})
+
+    @cached_property
+    def boundary(self) -> Index:
+        """Faces that one element alone has, (f, nodes of a face), seen from outside anticlockwise."""
+        kind = self.kind
+        faces = self.elements[:, kind.face_nodes].reshape(-1, kind.face_nodes.shape[1])
+        corners = np.sort(faces[:, : len(kind.faces[0])], axis=1)
+        _, first, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
+        return np.asarray(faces[np.sort(first[count == 1])])
+
+    def faces(self, name: str) -> Index:
+        """Boundary faces of a surface: those with all their nodes on it.
+
+        Raises ValueError for an unknown name, or a surface that holds no face of the boundary.
+        """
+        on = np.isin(self.boundary, self.surface(name)).all(axis=1)
+        if not on.any():
+            raise ValueError(
+                f"surface {name!r} holds no whole face of the boundary; give all the nodes of its faces"
+            )
+        return np.asarray(self.boundary[on])
+
+    def samples(self, name: str) -> SurfaceSamples:
+        """The integration points of a surface, 9 on each quadrilateral and 6 on each triangle.
+
+        Raises ValueError as `faces` does.
+        """
+        faces = self.faces(name)
+        X, w = face_points(self.kind)
+        N, gradient = face_shapes(self.kind, X)
+        p = self.points[faces]
+        tangents = np.einsum("fka,qkb->fqba", p, gradient, optimize=True)
+        normal = np.cross(tangents[:, :, 0], tangents[:, :, 1]).reshape(-1, 3)
+        area = np.linalg.norm(normal, axis=1)
+        f, q = len(faces), len(w)
+        row = np.repeat(np.arange(f * q), faces.shape[1])
+        column = np.repeat(faces, q, axis=0).ravel()
+        value = np.tile(N, (f, 1)).ravel()
+        return SurfaceSamples(
+            positions=(N @ p).reshape(-1, 3),
+            normals=normal / area[:, None],
+            weights=area * np.tile(w, f),
+            interpolation=scipy.sparse.csr_matrix((value, (row, column)), shape=(f * q, len(self.points))),
+        )
+
+    def with_centres(self) -> SolidMesh:
+        """20-node bricks made 27-node ones, new nodes where the 20-node shapes put them; else unchanged."""
+        if self.kind is not HEX20:
+            return self
+        e, n = self.elements, len(self.points)
+        weight = shapes(HEX20, HEX27.places[20:])[0]  # (7, 20)
+        faces = e[:, np.array(HEX27.faces)].reshape(-1, 4)
+        _, first, which = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_inverse=True)
+        new = np.einsum("jk,mka->mja", weight, self.points[e], optimize=True)
+        centres = np.hstack([n + which.reshape(-1, 6), n + first.size + np.arange(len(e))[:, None]])
+        around = e[:, HEX20.face_nodes].reshape(-1, 8)[first]
+        surfaces = {
+            name: np.concatenate([at, n + np.flatnonzero(np.isin(around, at).all(axis=1))])
+            for name, at in self.surfaces.items()
+        }
+        return replace(
+            self,
+            points=np.vstack([self.points, new[:, :6].reshape(-1, 3)[first], new[:, 6]]),
+            elements=np.hstack([e, centres]),
+            surfaces=surfaces,
+        )
+
+
+def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Float, Index, Index]:
+    """Middle nodes for straight-edged bricks (m, 8) or tetrahedra (m, 4).
+
+    Returns points (n', 3), the given ones first; elements (m, 20) or (m, 10); and the ends (n' − n, 2)
+    between which each new point lies.
+    """
+    p, c = np.asarray(points, dtype=np.float64), np.asarray(corners, dtype=np.intp)
+    edges = np.sort(c[:, np.array(BRICK_EDGES if c.shape[1] == 8 else TET_EDGES)].reshape(-1, 2), axis=1)
+    key, which = np.unique(edges[:, 0] * len(p) + edges[:, 1], return_inverse=True)
+    ends = np.stack([key // len(p), key % len(p)], axis=1)
+    elements = np.hstack([c, len(p) + which.reshape(len(c), -1)])
+    return np.vstack([p, p[ends].mean(axis=1)]), elements, ends
+
+
+def merged(points: ArrayLike, tolerance: float) -> tuple[Float, Index]:
+    """Points with those closer than the tolerance made one; and for each given point its new number."""
+    p = np.asarray(points, dtype=np.float64)
+    pairs = cKDTree(p).query_pairs(tolerance, output_type="ndarray")
+    graph = scipy.sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(p),) * 2)
+    count, label = connected_components(graph, directed=False)
+    unique = np.zeros((count, p.shape[1]))
+    unique[label[::-1]] = p[::-1]
+    return unique, np.asarray(label, dtype=np.intp)

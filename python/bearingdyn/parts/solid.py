@@ -1,0 +1,322 @@
+"""Solids of any shape: a mesh with materials, surfaces that move as rigid bodies, and outputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+from numpy.typing import NDArray
+
+from bearingdyn.cms import (
+    Basis,
+    FullModel,
+    RigidInterface,
+    Superelement,
+    Surface,
+    Viscoelastic,
+    basis_of,
+    project,
+)
+from bearingdyn.fem.eigen import factorise, rigid_motion
+from bearingdyn.fem.solid import assemble_solid
+from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
+from bearingdyn.material import Elastic
+from bearingdyn.parts.section import ViscoelasticSolid
+
+Float = NDArray[np.float64]
+
+Point = tuple[float, float, float]
+Material = Elastic | ViscoelasticSolid
+
+LOCKING = 0.45  # Poisson's ratio from which on an elastic region, too, has the cure against locking
+
+
+@dataclass(frozen=True)
+class RigidSurface:
+    """Surfaces of a mesh that move together as one rigid body with six coordinates.
+
+    surface: one name or several. reference: the point (x, y, z), m, whose motion the coordinates are;
+    "centroid": of the area; "axis": the point of the z axis at the centroid's height.
+    """
+
+    surface: str | tuple[str, ...]
+    reference: Point | str = "centroid"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.reference, str):
+            good = self.reference in ("centroid", "axis")
+        else:
+            good = np.shape(self.reference) == (3,) and bool(np.all(np.isfinite(self.reference)))
+        if not good:
+            raise ValueError(
+                f"reference is {self.reference!r}; it must be (x, y, z) in m, 'centroid' or 'axis'"
+            )
+
+    @property
+    def surfaces(self) -> tuple[str, ...]:
+        """The names."""
+        return (self.surface,) if isinstance(self.surface, str) else tuple(self.surface)
+
+    def place(self, mesh: SolidMesh) -> tuple[NDArray[np.intp], Float]:
+        """Its nodes and reference point (3,), m. Raises ValueError as SolidMesh.surface does."""
+        nodes = np.unique(np.concatenate([mesh.surface(name) for name in self.surfaces]))
+        if not isinstance(self.reference, str):
+            return nodes, np.array(self.reference, dtype=np.float64)
+        area, moment = 0.0, np.zeros(3)
+        for name in self.surfaces:
+            if np.isin(mesh.boundary, mesh.surface(name)).all(axis=1).any():
+                samples = mesh.samples(name)
+                area, moment = area + samples.area, moment + samples.area * samples.centroid
+        centre = moment / area if area > 0 else mesh.points[nodes].mean(axis=0)
+        return nodes, centre * (1.0 if self.reference == "centroid" else np.array([0.0, 0.0, 1.0]))
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A three-dimensional body of one or more materials, not turning, with rigid interfaces.
+
+    mesh: SolidMesh, as read_mesh, box_mesh, ring_mesh or block_with_bore return it.
+    materials: of each region by name, or one for all; Elastic, or viscoelastic in shear as Maxwell.
+    interfaces: name -> name of a surface, or RigidSurface. Feet are an interface too, which the application
+        grounds. Interfaces share no node.
+    f_max: fixed-interface modes up to this frequency, Hz, join the static shapes; 0: none. They are taken at
+        the lowest of the moduli.
+    outputs: name -> (x, y, z), m: the nearest node; or name of a surface: its motion averaged over the area.
+        Rows (3, n) give x, y, z.
+    damping: ratio ζ of the elastic modes of the elastic regions, of the free body, or held at the interface
+        `held`.
+    moduli: real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: chosen
+        from each material's range (cms.modulus_levels).
+    attach: outputs at which loads act, whose static shapes then join the basis.
+    radiating: surfaces of the mesh that the superelement carries for the power they radiate.
+    inertia: rounds of cms.inertia_shapes of the static shapes at each modulus: one serves better than many
+        fixed-interface modes; with moduli=(G,), 0 is the paper's basis.
+
+    Viscoelastic regions, and elastic ones with ν of 0.45 or more, have the cure against locking that their
+    element allows: see fem.assemble_solid. Of 20-node bricks in rubber, `mesh.with_centres()` makes 27-node
+    ones, which are some five times as accurate there.
+
+    Raises ValueError for names that are not the mesh's, a region without material, interfaces that share a
+    node or lie on a line, a point away from the body, and values outside their range.
+    Reference: paper (13), (14), (21)-(25).
+    """
+
+    mesh: SolidMesh
+    materials: Mapping[str, Material] | Material
+    interfaces: Mapping[str, str | RigidSurface]
+    f_max: float
+    outputs: Mapping[str, Point | str] = field(default_factory=dict)
+    damping: float = 0.0
+    held: str | None = None
+    moduli: tuple[float, ...] | None = None
+    attach: tuple[str, ...] = ()
+    radiating: tuple[str, ...] = ()
+    inertia: int = 1
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.f_max < math.inf:
+            raise ValueError(f"f_max is {self.f_max}; it must be a frequency in Hz, 0 for no modes")
+        if not self.inertia >= 0:
+            raise ValueError(f"inertia is {self.inertia}; it must be a number of rounds, 0 or more")
+        if not 0 <= self.damping < 1:
+            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
+        if self.moduli is not None:
+            object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
+            if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
+                raise ValueError(f"moduli is {self.moduli}; it needs one or more positive shear moduli, Pa")
+        self._check_materials()
+        if not self.interfaces:
+            raise ValueError("interfaces is empty; a part needs at least one to be joined by")
+        if self.held is not None and self.held not in self.interfaces:
+            raise ValueError(f"held is {self.held!r}; the interfaces are {sorted(self.interfaces)}")
+        owner: dict[int, str] = {}
+        for name, face in self._faces.items():
+            p = self.mesh.points[face[0]]
+            spread = np.linalg.svd(p - p.mean(axis=0), compute_uv=False)
+            if len(p) < 3 or not spread[1] > 1e-9 * spread[0]:
+                raise ValueError(f"interfaces[{name!r}] is a point or a line; a rigid interface is a surface")
+            for node in face[0].tolist():
+                if owner.setdefault(node, name) != name:
+                    x, y, z = self.mesh.points[node]
+                    raise ValueError(
+                        f"interfaces {owner[node]!r} and {name!r} share the node at "
+                        f"({x:.6g}, {y:.6g}, {z:.6g}) m; keep them apart, or make them one RigidSurface"
+                    )
+        for name in self.outputs:
+            if name in self.interfaces:
+                raise ValueError(f"outputs has {name!r}, the name of an interface; choose another")
+        _ = self._rows
+        for name in self.attach:
+            if name not in self.outputs:
+                raise ValueError(f"attach has {name!r}; the outputs are {sorted(self.outputs)}")
+
+    def _check_materials(self) -> None:
+        regions = sorted(self.mesh.regions)
+        given = self.materials
+        if not isinstance(given, Mapping):
+            given = dict.fromkeys(regions, given)
+            object.__setattr__(self, "materials", given)
+        if sorted(given) != regions:
+            raise ValueError(f"materials are of {sorted(given)}; the mesh has the regions {regions}")
+        for name, material in given.items():
+            if not isinstance(material, Elastic) and not callable(getattr(material, "complex_modulus", None)):
+                raise ValueError(
+                    f"materials[{name!r}] is {material!r}; it must be Elastic or have complex_modulus(omega)"
+                )
+
+    @property
+    def _materials(self) -> Mapping[str, Material]:
+        assert isinstance(self.materials, Mapping)
+        return self.materials
+
+    @cached_property
+    def _faces(self) -> dict[str, tuple[NDArray[np.intp], Float]]:
+        found = {}
+        for name, surface in self.interfaces.items():
+            rigid = surface if isinstance(surface, RigidSurface) else RigidSurface(surface)
+            try:
+                found[name] = rigid.place(self.mesh)
+            except ValueError as error:
+                raise ValueError(f"interfaces[{name!r}]: {error}") from error
+        return found
+
+    @cached_property
+    def _rows(self) -> dict[str, Any]:
+        p = self.mesh.points
+        found: dict[str, Any] = {}
+        for name, place in self.outputs.items():
+            if isinstance(place, str):
+                try:
+                    found[name] = self.mesh.samples(place).mean_rows
+                except ValueError as error:
+                    raise ValueError(f"outputs[{name!r}]: {error}") from error
+                continue
+            at = np.asarray(place, dtype=np.float64)
+            if at.shape != (3,) or not np.all(np.isfinite(at)):
+                raise ValueError(f"outputs[{name!r}] is {place!r}; it must be (x, y, z), m, or a surface")
+            distance = np.linalg.norm(p - at, axis=1)
+            node = int(np.argmin(distance))
+            of = p[self.mesh.elements[np.any(self.mesh.elements == node, axis=1)]]
+            if not distance[node] <= float(np.ptp(of, axis=1).max()):
+                raise ValueError(
+                    f"outputs[{name!r}] is {place!r}, {distance[node]:.3g} m away from the nearest node at "
+                    f"{p[node].tolist()} m; it must lie in the body"
+                )
+            columns = 3 * node + np.arange(3)
+            found[name] = scipy.sparse.csr_matrix((np.ones(3), (np.arange(3), columns)), (3, 3 * len(p)))
+        return found
+
+    @property
+    def mass(self) -> float:
+        """Mass, kg."""
+        return sum(m.density * self.mesh.volume(name) for name, m in self._materials.items())
+
+    @cached_property
+    def _full_model(self) -> FullModel:
+        n = 3 * len(self.mesh.points)
+        M, E, bulk = (scipy.sparse.csr_matrix((n, n)) for _ in range(3))
+        rubbers: list[tuple[ViscoelasticSolid, Any]] = []
+        for name, elements in self.mesh.regions.items():
+            material = self._materials[name]
+            soft = not isinstance(material, Elastic) or material.nu >= LOCKING
+            unit = assemble_solid(self.mesh, elements, incompressible=soft)
+            M = M + material.density * unit.mass
+            if isinstance(material, Elastic):
+                E = E + unit.stiffness(material)
+                continue
+            bulk = bulk + material.K * unit.volumetric
+            same = [k for k, (other, _) in enumerate(rubbers) if other is material]
+            if same:
+                rubbers[same[0]] = (material, rubbers[same[0]][1] + unit.deviatoric)
+            else:
+                rubbers.append((material, unit.deviatoric))
+        interfaces = {}
+        for name, (nodes, reference) in self._faces.items():
+            dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
+            interfaces[name] = RigidInterface(
+                dofs, rigid_motion(self.mesh.points[nodes], reference), reference
+            )
+        return FullModel(
+            M,
+            E + bulk,
+            interfaces,
+            self._rows,
+            tuple(Viscoelastic(material, H) for material, H in rubbers),
+            E=E if rubbers else None,
+        )
+
+    def full_model(self) -> FullModel:
+        """The unreduced equations: sparse matrices, rigid interfaces, output rows."""
+        return self._full_model
+
+    @cached_property
+    def _basis(self) -> Basis:
+        return basis_of(
+            self._full_model,
+            f_max=self.f_max if self.f_max > 0 else None,
+            n_modes=None if self.f_max > 0 else 0,
+            moduli=self.moduli,
+            inertia=self.inertia,
+            attach=self.attach,
+        )
+
+    def basis(self) -> Basis:
+        """The shapes `superelement` takes, in the coordinates of `full_model`.
+
+        Raises ValueError if moduli cannot be chosen for a material.
+        """
+        return self._basis
+
+    def superelement(self) -> Superelement:
+        """The body reduced onto its interfaces: static shapes at each modulus, and modes up to f_max.
+
+        Raises ValueError if moduli cannot be chosen for a material.
+        """
+        element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
+        return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
+
+    def _radiation(self, name: str) -> Surface:
+        samples, rows = self.surface(name)
+        W = rows.T @ (samples.weights[:, None] * rows)
+        return Surface(samples.area, np.asarray(0.5 * (W + W.T)))
+
+    def stiffness(self, omega: float = 0.0) -> NDArray[np.complex128]:
+        """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
+
+        The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
+        Raises ValueError where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
+        """
+        model = self._full_model
+        shear = [complex(part.material.complex_modulus(omega)) for part in model.viscoelastic]
+        for G, part in zip(shear, model.viscoelastic, strict=True):
+            if not abs(G) > 1e-12 * getattr(part.material, "K", 0.0):
+                raise ValueError(
+                    f"material has |G*| = {abs(G):.3g} Pa at omega = {omega} rad/s: no stiffness "
+                    "in shear to solve with; give a material with G0 > 0, or omega > 0"
+                )
+        K = model.stiffness(shear).tocsr()
+        faces = list(model.interfaces.values())
+        at = np.concatenate([f.dofs for f in faces])
+        u = np.zeros((model.n, 6 * len(faces)), dtype=K.dtype)
+        u[at] = scipy.linalg.block_diag(*[f.T for f in faces])
+        inner = np.setdiff1d(np.arange(model.n), at)
+        if inner.size:
+            load = np.ascontiguousarray(K[inner] @ u)
+            u[inner] = -factorise(K[inner][:, inner]).solve(load)
+        S = u.T @ (K @ u)
+        return np.asarray(0.5 * (S + S.T), dtype=np.complex128)
+
+    def surface(self, name: str) -> tuple[SurfaceSamples, Float]:
+        """A surface's integration points, and rows (q, n) giving their outward normal displacement.
+
+        The rows act on the coordinates of `superelement`: with v = rows @ q̇ the radiated power of a plane
+        wave is ρ c Σ weights v². Raises ValueError for an unknown surface, or one not on the boundary.
+        """
+        samples = self.mesh.samples(name)
+        return samples, np.asarray(samples.normal_rows @ self._basis.Psi)
