@@ -22,6 +22,9 @@ QUICK = [
     "Flexible ring, stiff and free",
     "Distorted mesh",
     "Rigid rotor",
+    "Weight and a moving ground",
+    "Whirl over speed",
+    "Ring-down",
     "Sandwich cantilever",
 ]
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from verified import (
+    application,
     bearings,
     contacts,
     materials,
@@ -51,6 +52,10 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
     "Rings on a shaker": shaker.transmissibility,
+    "Weight and a moving ground": application.weight,
+    "Whirl over speed": application.whirl,
+    "Two domains": application.two_domains,
+    "Ring-down": application.ring_down,
 }
 
 

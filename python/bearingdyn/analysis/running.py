@@ -68,7 +68,7 @@ def run(
                 left if writer is None else min(left, CHUNK_STEPS),
                 NEVER if settling else decimate,
                 start=start,
-                progress=_from(progress, report.steps, total),
+                progress=part_of(progress, report.steps, total),
             )
             start = False
             kept.append(rows)
@@ -89,7 +89,7 @@ def run(
     return np.concatenate([np.zeros((0, model.channels)), *kept]), state, report
 
 
-def _from(progress: core.Progress | None, done: int, total: int) -> Callable[[int, int], object] | None:
+def part_of(progress: core.Progress | None, done: int, total: int) -> Callable[[int, int], object] | None:
     """Progress of one piece as progress of the whole."""
     if progress is None:
         return None

@@ -218,8 +218,19 @@ class BallBearing:
         return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(speed)
 
     def turned(self, angle: float) -> BallBearing:
-        """The bearing with its cage turned by `angle`, rad."""
-        return replace(self, angle0=self.angle0 + angle)
+        """The bearing as it stands with its cage at `angle`, rad, from now on called zero.
+
+        The shaft has turned by angle/cage_ratio and the balls have spun: waves and pits stand accordingly.
+        """
+        shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
+        # a wave's argument is order·(azimuth − shaft) on the inner race and order·spin on a ball
+        carried = {"inner": shaft, "outer": 0.0, "ball": -self.geometry.ball_spin(1.0) * shaft}
+        return replace(
+            self,
+            angle0=self.angle0 + angle,
+            waviness=tuple(replace(w, phase=w.phase - w.order * carried[w.body]) for w in self.waviness),
+            defects=tuple(replace(p, angle=p.angle + carried[p.body]) for p in self.defects),
+        )
 
     def kernel(self, series: RacewaySeries = RIGID) -> BearingKernel:
         """The bearing as the contact kernel takes it, with the relative raceway coefficients of `series`."""

@@ -13,7 +13,7 @@ from bearingdyn.cms.estimate import ReductionError, reduction_error
 from bearingdyn.cms.full import FullModel, RigidInterface
 from bearingdyn.cms.history import March, march
 from bearingdyn.cms.reduction import project, reduce, reduce_free_body
-from bearingdyn.cms.superelement import ComplexModulus, Raceway, Superelement, Viscoelastic
+from bearingdyn.cms.superelement import ComplexModulus, Raceway, Superelement, Surface, Viscoelastic
 
 __all__ = [
     "Basis",
@@ -25,6 +25,7 @@ __all__ = [
     "ReductionError",
     "RigidInterface",
     "Superelement",
+    "Surface",
     "Transfer",
     "Viscoelastic",
     "basis_of",

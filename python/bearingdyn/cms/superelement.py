@@ -102,6 +102,22 @@ class Raceway:
 
 
 @dataclass(frozen=True, eq=False)
+class Surface:
+    """A surface of a part: ∫ v_n² dA = q̇ᵀ W q̇ of the normal velocity. area: m²; W: (n, n) symmetric, m²."""
+
+    area: float
+    W: Float
+
+    def __post_init__(self) -> None:
+        if not 0 < self.area < math.inf:
+            raise ValueError(f"area is {self.area}; a surface has a positive area in m²")
+        n = np.shape(self.W)[0] if np.ndim(self.W) else 0
+        W = frozen("W", self.W, (n, n))
+        check_symmetry("W", W, 1.0)
+        object.__setattr__(self, "W", W)
+
+
+@dataclass(frozen=True, eq=False)
 class Superelement:
     """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
@@ -117,6 +133,7 @@ class Superelement:
     N: (n, n) skew, N s/m: the circulatory force Ω N x on the left-hand side, there when the damping C belongs
         to material that turns with the shaft; zero by default.
     raceways: name -> Raceway, where a bearing's balls may run on a flexible ring.
+    surfaces: name -> Surface, from which sound is radiated.
 
     Raises ValueError for a wrong shape, a matrix with non-finite entries or without its symmetry, an index
     out of range or used twice, or a name used twice.
@@ -131,6 +148,7 @@ class Superelement:
     viscoelastic: tuple[Viscoelastic, ...] = ()
     N: Float | None = None
     raceways: Mapping[str, Raceway] = field(default_factory=dict)
+    surfaces: Mapping[str, Surface] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) else 0
@@ -171,6 +189,11 @@ class Superelement:
                 raise ValueError(f"outputs[{name!r}] has shape {np.shape(rows)}; it must be (3 or 6, {n})")
             outputs[name] = frozen(f"outputs[{name!r}]", rows, (count, n))
         object.__setattr__(self, "outputs", outputs)
+
+        object.__setattr__(self, "surfaces", dict(self.surfaces))
+        for name, surface in self.surfaces.items():
+            if surface.W.shape != (n, n):
+                raise ValueError(f"surfaces[{name!r}].W has shape {surface.W.shape}; it must be ({n}, {n})")
 
         object.__setattr__(self, "viscoelastic", tuple(self.viscoelastic))
         for i, part in enumerate(self.viscoelastic):
