@@ -101,7 +101,7 @@ class Application(Plan):
     """
 
     def add(self, name: str, part: Part) -> None:
-        """Add a part under a name.
+        """Add a part under a name. One object may be added under several names; it is reduced once.
 
         Raises ValueError if the name is taken, reserved or holds a dot.
         """
@@ -111,7 +111,8 @@ class Application(Plan):
             )
         if name in self.parts or name in self.bearings or name in self.fits:
             raise ValueError(f"part {name!r} is there already; give each part and bearing its own name")
-        self.parts[name] = part.superelement()
+        twin = next((known for known, source in self.sources.items() if source is part), None)
+        self.parts[name] = part.superelement() if twin is None else self.parts[twin]
         self.sources[name] = part
 
     def connect(self, a: str, b: str) -> None:
