@@ -529,7 +529,7 @@ static int parse_channels(PyObject *keep, PyObject *items, npy_intp n, bd_channe
         if (!PyArg_ParseTuple(PyTuple_GET_ITEM(items, c), "iOii:channel", &kind, &row_in,
                               &channels[c].bearing, &channels[c].index))
             return -1;
-        if (kind < 0 || kind > BD_CHANNEL_LOADED) {
+        if (kind < 0 || kind > BD_CHANNEL_BRANCH_LOSS) {
             PyErr_Format(PyExc_ValueError, "channel kind %d is unknown", kind);
             return -1;
         }

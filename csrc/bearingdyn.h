@@ -202,7 +202,9 @@ typedef enum bd_channel_kind {
     BD_CHANNEL_ACCELERATION, /* row . a */
     BD_CHANNEL_FORCE,        /* bearing's force on coefficient `index` */
     BD_CHANNEL_BALL,         /* load of ball `index` */
-    BD_CHANNEL_LOADED        /* number of loaded balls */
+    BD_CHANNEL_LOADED,       /* number of loaded balls */
+    BD_CHANNEL_CONTACT_LOSS, /* power that the contacts of a bearing turn into heat, W */
+    BD_CHANNEL_BRANCH_LOSS   /* power that the branches of layer `index` turn into heat, W */
 } bd_channel_kind;
 
 typedef struct bd_channel_data {

@@ -134,6 +134,11 @@ bd_status bd_model_check(const bd_model_data *data)
                 return BD_BAD_VALUE;
             continue;
         }
+        if (channel->kind == BD_CHANNEL_BRANCH_LOSS) {
+            if (channel->index < 0 || channel->index >= data->n_layers)
+                return BD_BAD_VALUE;
+            continue;
+        }
         if (channel->bearing < 0 || channel->bearing >= data->n_bearings || channel->index < 0)
             return BD_BAD_VALUE;
         const bd_bearing_data *bearing = &data->bearings[channel->bearing];

@@ -23,6 +23,36 @@ static double quadratic(const bd_model *model, const double *A, const double *x,
     return sum;
 }
 
+double bd_contact_loss(const bd_bearing_data *data, const bd_bearing_work *balls)
+{
+    double loss = 0.0;
+    for (int j = 0; j < data->n_balls; j++) {
+        double s = fmax(balls->delta[j] + data->contact.h0, 0.0);
+        loss += (balls->force[j] - data->contact.kappa * s * sqrt(s)) * balls->rate[j];
+    }
+    return loss;
+}
+
+/* a branch is a spring 2 G and a dashpot 2 G tau in series, under the stress S; 0 if it is none */
+static double branch_square(const bd_layer *layer, int branch, const double *stress)
+{
+    const double *S = stress + layer->stress + (size_t)branch * (size_t)layer->padded;
+    double square = 0.0;
+    if (!(layer->modulus[branch] > 0.0))
+        return 0.0;
+    for (int r = 0; r < layer->rank; r++)
+        square += S[r] * S[r];
+    return square / (2.0 * layer->modulus[branch]);
+}
+
+double bd_branch_loss(const bd_layer *layer, const double *stress)
+{
+    double loss = 0.0;
+    for (int i = 0; i < layer->n_branches; i++)
+        loss += branch_square(layer, i, stress) / layer->tau[i];
+    return loss;
+}
+
 void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state, double t,
                      bd_energy *energy)
 {
@@ -50,19 +80,11 @@ void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state
                      work->load_factor[2 * k + 1] * model->loads[k].p_sin[i]) *
                     state->v[i];
 
-    /* a branch is a spring 2 G and a dashpot 2 G tau in series, under the stress S */
     for (int l = 0; l < model->n_layers; l++) {
         const bd_layer *layer = &model->layers[l];
-        for (int i = 0; i < layer->n_branches; i++) {
-            const double *S = state->stress + layer->stress + (size_t)i * (size_t)layer->padded;
-            double square = 0.0;
-            if (!(layer->modulus[i] > 0.0))
-                continue;
-            for (int r = 0; r < layer->rank; r++)
-                square += S[r] * S[r];
-            stored += 0.5 * square / (2.0 * layer->modulus[i]);
-            branch += square / (2.0 * layer->modulus[i] * layer->tau[i]);
-        }
+        for (int i = 0; i < layer->n_branches; i++)
+            stored += 0.5 * branch_square(layer, i, state->stress);
+        branch += bd_branch_loss(layer, state->stress);
     }
 
     for (int b = 0; b < model->n_bearings; b++) {
@@ -72,9 +94,9 @@ void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state
             double s = fmax(balls->delta[j] + data->contact.h0, 0.0);
             double elastic = data->contact.kappa * s * sqrt(s);
             indentation += 0.4 * elastic * s;
-            contact += (balls->force[j] - elastic) * balls->rate[j];
             turning += balls->force[j] * balls->turning[j];
         }
+        contact += bd_contact_loss(data, balls);
     }
 
     energy->stored = stored;

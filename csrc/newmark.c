@@ -225,18 +225,16 @@ static bd_status solve_step(const bd_model *model, bd_work *work, bd_state *stat
 static void record_row(const bd_model *model, const bd_work *work, const bd_state *state,
                        double *row)
 {
+    const double *const motion[] = {state->x, state->v, state->a};
     for (int c = 0; c < model->n_channels; c++) {
         const bd_channel *channel = &model->channels[c];
-        const double *from = channel->kind == BD_CHANNEL_DISPLACEMENT ? state->x
-                             : channel->kind == BD_CHANNEL_VELOCITY   ? state->v
-                                                                      : state->a;
         double value = 0.0;
         switch (channel->kind) {
         case BD_CHANNEL_DISPLACEMENT:
         case BD_CHANNEL_VELOCITY:
         case BD_CHANNEL_ACCELERATION:
             for (int i = 0; i < model->n_padded; i++)
-                value += channel->row[i] * from[i];
+                value += channel->row[i] * motion[channel->kind][i];
             break;
         case BD_CHANNEL_FORCE:
             value = state->g[model->bearing_slot[channel->bearing] + channel->index];
@@ -247,6 +245,13 @@ static void record_row(const bd_model *model, const bd_work *work, const bd_stat
         case BD_CHANNEL_LOADED:
             for (int j = 0; j < model->bearings[channel->bearing].data.n_balls; j++)
                 value += work->bearings[channel->bearing].force[j] > 0.0 ? 1.0 : 0.0;
+            break;
+        case BD_CHANNEL_CONTACT_LOSS:
+            value = bd_contact_loss(&model->bearings[channel->bearing].data,
+                                    &work->bearings[channel->bearing]);
+            break;
+        case BD_CHANNEL_BRANCH_LOSS:
+            value = bd_branch_loss(&model->layers[channel->index], state->stress);
             break;
         }
         row[c] = value;

@@ -62,6 +62,11 @@ void bd_load_factors(const bd_model *model, bd_work *work, double t);
 void bd_turn_bearings(const bd_model *model, bd_work *work);
 void bd_force_bearings(const bd_model *model, bd_work *work);
 
+/* Power that the contacts of a bearing, and the branches of a layer, turn into heat: at the state of the last
+ * evaluation, and at all branch stresses of a state. */
+double bd_contact_loss(const bd_bearing_data *data, const bd_bearing_work *balls);
+double bd_branch_loss(const bd_layer *layer, const double *stress);
+
 /* Stored energies and powers at the state, whose bearing quantities stand in work. */
 void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state, double t,
                      bd_energy *energy);

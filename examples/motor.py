@@ -121,7 +121,7 @@ def housing(bore_diameter: float) -> bd.Housing:
         bore_diameter=bore_diameter,
         bore_height=0.12,
         damping=ZETA_HOUSING,
-        f_max=15e3,
+        f_max=8e3,  # within 0.4 % of the unreduced pedestal to 5 kHz, as bd.reduction_error says
     )
 
 
@@ -131,12 +131,12 @@ def motor(design: Design, radial: float = 0.0) -> bd.Application:
     app.add("shaft", shaft())
     app.free("shaft.middle")
     layer = design.layer
-    bore = housing(2 * (RING[1] + design.thickness)).superelement()
+    pedestal = housing(2 * (RING[1] + design.thickness))  # both are alike, and it is reduced once
     for side in ("left", "right"):
         ring, house = f"{side}_ring", f"{side}_housing"
         app.add(f"{side}_inner", bd.RigidBody.ring(*INNER, rotating=True))
         app.add(ring, bd.RigidBody.ring(*RING))
-        app.add(house, _Ready(bore))
+        app.add(house, pedestal)
         app.connect(f"shaft.{side}", f"{side}_inner.centre")
         app.ground(f"{house}.feet")
         if layer is None:
@@ -151,16 +151,6 @@ def motor(design: Design, radial: float = 0.0) -> bd.Application:
     if radial:
         app.load("shaft.middle", (0.0, -radial, 0.0, 0.0, 0.0, 0.0))
     return app
-
-
-@dataclass(frozen=True)
-class _Ready:
-    """A part reduced already: both housings are alike, and reducing one is enough."""
-
-    element: bd.Superelement
-
-    def superelement(self) -> bd.Superelement:
-        return self.element
 
 
 INPUT = "shaft.middle.y"

@@ -22,6 +22,15 @@ def pair() -> Application:
     return app
 
 
+def test_one_part_under_two_names_is_reduced_once():
+    app = Application()
+    app.add("left", BODY)
+    app.add("right", BODY)
+    app.add("other", RigidBody(2.0, (0.01, 0.01, 0.015)))
+    assert app.parts["left"] is app.parts["right"]
+    assert app.parts["other"] is not app.parts["left"]
+
+
 def test_names_are_part_and_interface():
     assert pair().names() == ["shaft.left", "shaft.right", "shaft.end", "block.centre"]
 

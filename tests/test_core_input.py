@@ -154,7 +154,7 @@ def test_a_bad_load_is_refused(bad: Any) -> None:
 @pytest.mark.parametrize(
     "bad",
     [
-        (6, P, 0, 0),
+        (8, P, 0, 0),
         (-1, P, 0, 0),
         (0, P[:-1], 0, 0),
         (0, None, 0, 0),
@@ -166,6 +166,9 @@ def test_a_bad_load_is_refused(bad: Any) -> None:
         (4, None, 0, -1),
         (4, None, 0, 2**31),
         (5, None, 3, 0),
+        (6, None, 3, 0),
+        (7, None, 0, 99),
+        (7, None, 0, -1),
         [0, P, 0, 0],
         "0Pxx",
     ],

@@ -120,15 +120,15 @@ def test_each_round_of_inertia_shapes_adds_four_orders_of_frequency():
     # and `basis_of` spans just these shapes
     model = beam(viscoelastic=())
     dynamics = Dynamics(model, scipy.sparse.csr_matrix((1, model.n)))
-    exact = dynamics.solve(2 * math.pi * 500.0)[0].D
+    exact = dynamics.solve(2 * math.pi * 150.0)[0].D
     errors = []
     for rounds in (0, 1, 2):
         small = FullModel.of(project(model, basis_of(model, n_modes=0, inertia=rounds)))
-        errors.append(np.abs(Dynamics(small, np.zeros((1, small.n))).solve(2 * math.pi * 500.0)[0].D - exact))
+        errors.append(np.abs(Dynamics(small, np.zeros((1, small.n))).solve(2 * math.pi * 150.0)[0].D - exact))
     first = (
         math.pi**2 / 0.25**2 * math.sqrt(STEEL.E * 0.02**2 / 16 / STEEL.density)
     )  # of a pinned span, rad/s
-    ratio = (2 * math.pi * 500.0 / first) ** 4
+    ratio = (2 * math.pi * 150.0 / first) ** 4
     assert errors[1].max() < 2 * ratio * errors[0].max()
     assert errors[2].max() < 2 * ratio * errors[1].max() + 1e-12 * np.abs(exact).max()
 
@@ -155,6 +155,8 @@ def test_body_of_revolution_is_its_full_model_projected(body):
     R = np.vstack([f.T for f in full.interfaces.values()])
     assert full.n > 1000
     assert np.linalg.matrix_rank(R) == 6
+    for i, face in enumerate(full.interfaces.values()):  # the shapes move the faces as the model says
+        np.testing.assert_allclose(body.basis().Psi[face.dofs, 6 * i : 6 * i + 6], face.T, atol=1e-15)
     rigid = body.basis().Psi[:, :12] @ rigid_transfer([f.position for f in full.interfaces.values()])
     inertia = rigid.T @ (full.M @ rigid)
     np.testing.assert_allclose(np.diag(inertia)[:3], body.mass, rtol=1e-9)

@@ -11,7 +11,16 @@ import pytest
 import xarray
 
 from bearingdyn import results
-from bearingdyn.analysis import equilibrium, frequency_response, modes, transient
+from bearingdyn.analysis import (
+    campbell,
+    dissipation,
+    energy_shares,
+    equilibrium,
+    frequency_response,
+    mode_shapes,
+    modes,
+    transient,
+)
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
 from bearingdyn.parts import Layer, RigidBody
@@ -162,7 +171,14 @@ def test_every_analysis_carries_its_inputs(rotor, tmp_path):
     state = equilibrium(rotor)
     run = transient(state, speed=0.0, dt=1e-5, steps=20, record=["rotor.centre.y"], stream=tmp_path / "r.run")
     streamed = results.load(tmp_path / "r.run")
-    hashes = {data.attrs["inputs_hash"] for data in (modes(state), run, streamed)}
+    found = modes(state)
+    further = (
+        campbell(state, [0.0], count=3),
+        energy_shares(state, found),
+        mode_shapes(state, found),
+        dissipation(state, speed=0.0, dt=1e-5, steps=5),
+    )
+    hashes = {data.attrs["inputs_hash"] for data in (found, run, streamed, *further)}
     assert hashes == {frequency_response(state, [1.0], OUTPUTS, OUTPUTS).attrs["inputs_hash"]}
 
 

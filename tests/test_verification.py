@@ -18,7 +18,13 @@ QUICK = [
     "Balls with inertia",
     "Paired bearings",
     "Press fits",
+    "Rings under opposed loads",
+    "Flexible ring, stiff and free",
+    "Distorted mesh",
     "Rigid rotor",
+    "Weight and a moving ground",
+    "Whirl over speed",
+    "Ring-down",
     "Sandwich cantilever",
 ]
 

@@ -10,7 +10,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verified import bearings, contacts, materials, motion, peers, shaker, solids, structures
+from verified import (
+    application,
+    bearings,
+    contacts,
+    materials,
+    motion,
+    peers,
+    reduction,
+    rings,
+    shaker,
+    solids,
+    structures,
+)
 from verified.row import Row
 
 FAMILIES: dict[str, Callable[[], list[Row]]] = {
@@ -32,10 +44,18 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Sandwich cantilever": solids.sandwich,
     "Solids of elements": solids.bonded,
     "Housing in CalculiX": peers.calculix,
+    "Reduced parts": reduction.reduction,
     "Free shaft and ring": structures.free_bodies,
+    "Rings under opposed loads": rings.pinched_rings,
+    "Flexible ring, stiff and free": rings.stiff_rings,
+    "Distorted mesh": rings.distorted_mesh,
     "Rigid rotor": structures.rigid_rotor,
     "Two-disc rotor": structures.friswell,
     "Rings on a shaker": shaker.transmissibility,
+    "Weight and a moving ground": application.weight,
+    "Whirl over speed": application.whirl,
+    "Two domains": application.two_domains,
+    "Ring-down": application.ring_down,
 }
 
 

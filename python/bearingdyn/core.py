@@ -23,7 +23,16 @@ Model = _core.Model
 
 LAWS = {"constant": 0, "table": 1, "load": 2}
 LOAD_KINDS = {"constant": 0, "harmonic": 1, "rotating": 2, "sampled": 3}
-CHANNEL_KINDS = {"displacement": 0, "velocity": 1, "acceleration": 2, "force": 3, "ball": 4, "loaded": 5}
+CHANNEL_KINDS = {
+    "displacement": 0,
+    "velocity": 1,
+    "acceleration": 2,
+    "force": 3,
+    "ball": 4,
+    "loaded": 5,
+    "contact_loss": 6,
+    "branch_loss": 7,
+}
 ENERGIES = (
     "kinetic",
     "elastic",

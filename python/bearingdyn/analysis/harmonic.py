@@ -3,22 +3,82 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import core
-from bearingdyn.analysis.equilibrium import HOLD, Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.recovery import Input, Output, recovered, requested
+from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
-from bearingdyn.system import System, assemble, is_rotation
+from bearingdyn.system import System, assemble
 
 if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+QUANTITIES = {"displacement": 0, "velocity": 1, "acceleration": 2}
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """A system with its bearings linearised: K, C (coefs, coefs) on their raceway coefficients."""
+
+    system: System
+    K: Array
+    C: Array
+
+    def solve(
+        self,
+        omega: Array,
+        force: Array,
+        rows: Array,
+        speed: float,
+        progress: core.Progress | None = None,
+    ) -> Complex:
+        """Motions rows (k, n) under forces (i, n) e^{iωt}, (f, k, i); paper (20)."""
+        system = self.system
+        modulus = np.ones((omega.size, len(system.layers)), dtype=np.complex128)
+        for k, layer in enumerate(system.layers):
+            modulus[:, k] = layer.material.complex_modulus(omega)
+        # η0 sits in G*(ω) here, so C is the structure's own
+        x = np.zeros((omega.size, len(rows), len(force)), dtype=np.complex128)
+        for part in (omega > 0, omega == 0):
+            if part.any():
+                model = (system if omega[part][0] > 0 else _at_rest(system, force)).model([], relaxed=False)
+                x[part] = core.harmonic(
+                    model, omega[part], modulus[part], self.K, self.C, force, rows, speed, progress
+                )
+        return x
+
+
+def linear(source: Equilibrium | Application | System) -> Linear:
+    """What a harmonic analysis starts from.
+
+    Raises ValueError for bearings without an equilibrium.
+    """
+    if isinstance(source, Equilibrium):
+        return Linear(source.system, source.bearing_K, source.bearing_C)
+    system = source if isinstance(source, System) else assemble(source)
+    if system.bearings:
+        raise ValueError(
+            "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
+        )
+    return Linear(system, np.zeros((0, 0)), np.zeros((0, 0)))
+
+
+def frequencies(frequency: ArrayLike) -> Array:
+    """(f,) Hz. Raises ValueError for an empty list, or values that are negative or not finite."""
+    f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
+    if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f >= 0).all()):
+        raise ValueError("frequency must be a list of finite values of zero or more, in Hz")
+    return f
 
 
 def frequency_response(
@@ -31,7 +91,7 @@ def frequency_response(
     quantity: str = "displacement",
     progress: core.Progress | None = None,
 ) -> xarray.Dataset:
-    """Complex response at `outputs` to unit harmonic forces at `inputs`, zero-to-peak per N (or N m).
+    """Complex response at `outputs` to unit harmonic forces or ground motions at `inputs`, zero-to-peak.
 
     Parameters
     ----------
@@ -39,12 +99,18 @@ def frequency_response(
         Equilibrium, whose bearings are linearised; or an application or system without bearings.
     frequency
         (f,) Hz, ≥ 0, finite.
-    inputs, outputs
-        Channels, "shaft.left.y".
+    inputs
+        Channels: "shaft.left.y" is a force there, N (or N m); "ground.y" is a motion of the ground, all of
+        it together, in the quantity of the outputs: the response to it is the transmissibility.
+    outputs
+        Channels: "shaft.left.y" is the motion there, absolute where the ground moves. Forces: "left.force.y",
+        which bearing "left" passes from its inner ring to its outer (x, y, z); "ground.block.feet.y", which
+        the ground bears where it holds "block.feet" (with moments θx, θy, θz); "layer.inner.force.y", which
+        part "layer" puts on all it is joined to at its interface "inner".
     speed
         rad/s of the shaft, for gyroscopic forces; it is not the excitation frequency.
     quantity
-        "displacement", "velocity" or "acceleration".
+        "displacement", "velocity" or "acceleration", of motions.
 
     Returns a Dataset with response (frequency, output, input), complex.
 
@@ -64,38 +130,18 @@ def frequency_response(
     >>> frf["response"].dims, [f"{abs(h):.3e}" for h in frf["response"].values.ravel()]  # m/N
     (('frequency', 'output', 'input'), ['1.000e-06', '1.109e-06'])
     """
-    f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
-    if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f >= 0).all()):
-        raise ValueError("frequency must be a list of finite values of zero or more, in Hz")
-    powers = {"displacement": 0, "velocity": 1, "acceleration": 2}
-    if quantity not in powers:
-        raise ValueError(f"quantity is {quantity!r}; it must be one of {sorted(powers)}")
-    if isinstance(source, Equilibrium):
-        system, K, C = source.system, source.bearing_K, source.bearing_C
-    else:
-        system = source if isinstance(source, System) else assemble(source)
-        if system.bearings:
-            raise ValueError(
-                "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
-            )
-        K = C = np.zeros((0, 0))
-    system.check_speed(speed)
-    force = np.array([system.row(name) for name in inputs]).reshape(-1, system.n)
-    row = np.array([system.row(name) for name in outputs]).reshape(-1, system.n)
+    f = frequencies(frequency)
+    if quantity not in QUANTITIES:
+        raise ValueError(f"quantity is {quantity!r}; it must be one of {sorted(QUANTITIES)}")
+    state = linear(source)
+    state.system.check_speed(speed)
+    given = [Input.of(state.system, name) for name in inputs]
+    wanted = [Output.of(state.system, name) for name in outputs]
+    force = np.array([i.force for i in given]).reshape(-1, state.system.n)
 
     omega = 2 * np.pi * f
-    modulus = np.ones((f.size, len(system.layers)), dtype=np.complex128)
-    for k, layer in enumerate(system.layers):
-        modulus[:, k] = layer.material.complex_modulus(omega)
-    # η0 sits in G*(ω) here, so C is the structure's own
-    response = np.zeros((f.size, len(row), len(force)), dtype=np.complex128)
-    for part in (omega > 0, omega == 0):
-        if part.any():
-            model = (system if omega[part][0] > 0 else _at_rest(system, force)).model([], relaxed=False)
-            response[part] = core.harmonic(
-                model, omega[part], modulus[part], K, C, force, row, speed, progress
-            )
-    response *= ((1j * omega) ** powers[quantity])[:, None, None]
+    x = state.solve(omega, force, requested(wanted, state.system.n), speed, progress)
+    response = recovered(wanted, given, x, omega, speed, QUANTITIES[quantity], state.K, state.C)
 
     from bearingdyn.results import dataset, inputs_of
 
@@ -104,19 +150,32 @@ def frequency_response(
             "response": (
                 ("frequency", "output", "input"),
                 response,
-                _unit(quantity, [*outputs], [*inputs]),
+                _unit(quantity, wanted, given),
                 f"complex {quantity}, zero-to-peak, per unit force",
             ),
         },
-        {"analysis": "frequency response", "speed": speed, "quantity": quantity, **inputs_of(system.inputs)},
+        {
+            "analysis": "frequency response",
+            "speed": speed,
+            "quantity": quantity,
+            **inputs_of(state.system.inputs),
+        },
         {"frequency": (f, "Hz"), "output": (list(outputs), ""), "input": (list(inputs), "")},
     )
 
 
-def _unit(quantity: str, outputs: Sequence[str], inputs: Sequence[str]) -> str:
-    """Unit of the response; of its entries together where rotations or moments stand among them."""
-    turning = [any(is_rotation(name) for name in names) for names in (outputs, inputs)]
+def _unit(quantity: str, outputs: Sequence[Output], inputs: Sequence[Input]) -> str:
+    """Unit of the response; of its entries together where different ones stand among them."""
     time = {"displacement": "", "velocity": " s", "acceleration": " s²"}[quantity]
+    turning = any(o.turning for o in outputs), any(i.turning for i in inputs)
+    if any(o.is_force for o in outputs) or any(i.axis is not None for i in inputs):
+        rate = time.replace(" ", "/")
+        above = {
+            ("N m" if o.turning else "N") if o.is_force else ("rad" if o.turning else "m") + rate: None
+            for o in outputs
+        }
+        below = {"m" + rate if i.axis is not None else ("N m" if i.turning else "N"): None for i in inputs}
+        return f"({', '.join(above)})/({', '.join(below)})"
     motion, force = ("m, rad" if turning[0] else "m"), ("N, N m" if turning[1] else "N")
     if any(turning):
         return f"({motion})/({force}){' per' + time if time else ''}"

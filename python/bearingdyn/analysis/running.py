@@ -68,7 +68,7 @@ def run(
                 left if writer is None else min(left, CHUNK_STEPS),
                 NEVER if settling else decimate,
                 start=start,
-                progress=_from(progress, report.steps, total),
+                progress=part_of(progress, report.steps, total),
             )
             start = False
             kept.append(rows)
@@ -89,7 +89,7 @@ def run(
     return np.concatenate([np.zeros((0, model.channels)), *kept]), state, report
 
 
-def _from(progress: core.Progress | None, done: int, total: int) -> Callable[[int, int], object] | None:
+def part_of(progress: core.Progress | None, done: int, total: int) -> Callable[[int, int], object] | None:
     """Progress of one piece as progress of the whole."""
     if progress is None:
         return None
@@ -112,7 +112,7 @@ def digest(system: System, scheme: core.Scheme, state: Array) -> str:
 
     take(system.M, system.C, system.K, system.G, system.N, state)
     take([(t.L, t.material.G0, t.material.G, t.material.tau, t.material.eta0) for t in system.layers])
-    take([(core.kernel_tuple(t.bearing.kernel()), t.B) for t in system.bearings])
+    take([(core.kernel_tuple(t.kernel()), t.B) for t in system.bearings])
     take([(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in system.loads])
     take(scheme.dt, scheme.beta, scheme.gamma, scheme.tolerance, scheme.max_iterations, scheme.audit)
     take(*scheme.profile)

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     import xarray
+
+Array = NDArray[np.float64]
 
 WINDOWS = ("hann", "none")
 
@@ -20,21 +23,17 @@ def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarr
 
     Raises ValueError for an unknown channel or window, or fewer than four samples.
     """
-    if window not in WINDOWS:
-        raise ValueError(f"window is {window!r}; it must be one of {list(WINDOWS)}")
-    signal = _signal(result, channel)
+    check_window(window)
+    signal = signal_of(result, channel)
     n = signal.size
     if n < 4:
         raise ValueError(f"channel {channel!r} holds {n} samples; a spectrum needs four or more")
-    weight = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(n) / n) if window == "hann" else np.ones(n)
-    amplitude = 2.0 * np.abs(np.fft.rfft((signal - signal.mean()) * weight)) / weight.sum()
-    if n % 2 == 0:
-        amplitude[-1] /= 2.0
-    dt = float(result.attrs["dt"]) * int(result.attrs["decimate"])
+    amplitude = amplitudes(signal, window)
+    dt = sampling_time(result)
 
     from bearingdyn.results import dataset
 
-    unit = str(result["unit"].sel(channel=channel).item())
+    unit = unit_of(result, channel)
     return dataset(
         {"amplitude": ("frequency", amplitude, unit, f"{channel}, zero-to-peak")},
         {"analysis": "spectrum", "channel": channel, "window": window},
@@ -54,7 +53,7 @@ def orbit(result: xarray.Dataset, x: str, y: str) -> xarray.Dataset:
     """
     from bearingdyn.results import dataset
 
-    across, up = _signal(result, x), _signal(result, y)
+    across, up = signal_of(result, x), signal_of(result, y)
     return dataset(
         {
             "x": ("time", across - across.mean(), "m", f"{x} about its mean"),
@@ -65,8 +64,36 @@ def orbit(result: xarray.Dataset, x: str, y: str) -> xarray.Dataset:
     )
 
 
-def _signal(result: xarray.Dataset, channel: str) -> np.ndarray:
+def signal_of(result: xarray.Dataset, channel: str) -> Array:
+    """Samples (n,) of a recorded channel. Raises ValueError for an unknown one."""
     known = [str(c) for c in result["channel"].values]
     if channel not in known:
         raise ValueError(f"channel {channel!r} was not recorded; there are {known}")
     return np.asarray(result["record"].sel(channel=channel).values, dtype=np.float64)
+
+
+def unit_of(result: xarray.Dataset, channel: str) -> str:
+    """Unit of a recorded channel."""
+    return str(result["unit"].sel(channel=channel).item())
+
+
+def sampling_time(result: xarray.Dataset) -> float:
+    """Time between two samples of a record, s."""
+    return float(result.attrs["dt"]) * int(result.attrs["decimate"])
+
+
+def check_window(window: str) -> None:
+    """Refuse an unknown window: ValueError."""
+    if window not in WINDOWS:
+        raise ValueError(f"window is {window!r}; it must be one of {list(WINDOWS)}")
+
+
+def amplitudes(signal: Array, window: str) -> Array:
+    """One-sided amplitudes (..., n//2 + 1), zero-to-peak, of signals (..., n), each less its mean."""
+    n = signal.shape[-1]
+    weight = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(n) / n) if window == "hann" else np.ones(n)
+    centred = signal - signal.mean(axis=-1, keepdims=True)
+    amplitude = 2.0 * np.abs(np.fft.rfft(centred * weight)) / weight.sum()
+    if n % 2 == 0:
+        amplitude[..., -1] /= 2.0
+    return np.asarray(amplitude)

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.running import digest, run
+from bearingdyn.bearing.series import NET
 from bearingdyn.results import march_dataset
 from bearingdyn.system import QUANTITIES, System, is_rotation
 
@@ -56,7 +57,8 @@ def transient(
     record
         Channels: "shaft.left.y" (displacement), "shaft.left.y.velocity", "….acceleration"; of a bearing:
         "left.loaded" (number of loaded balls), "left.ball3" (its load, balls from 1), "left.force.x"
-        (force of the inner ring on the balls, x, y or z).
+        (force of the inner ring on the balls, x, y or z), "left.loss" (power its contacts turn into heat).
+        Motions are relative to the ground where `Application.base_motion` moves it.
     decimate
         Every how many steps a sample is kept; plain sampling, no filter.
     settle
@@ -112,8 +114,13 @@ def transient(
         raise ValueError("a stream goes on by itself; give resume or stream, not both")
     if resume is not None and initial:
         raise ValueError("resume goes on from its own state and initial sets another; give one of the two")
+    if isinstance(source, Equilibrium) and source.modulus != "relaxed":
+        raise ValueError(
+            f"the equilibrium has its layers at their {source.modulus} modulus; a march starts with relaxed "
+            f'ones: take equilibrium(app, modulus="relaxed")'
+        )
     system = source.system if isinstance(source, Equilibrium) else source
-    fastest = _checked_speed(speed)
+    fastest = checked_speed(speed)
     system.check_speed(fastest)
     modal, T = system.modal()
     channels, units = zip(*(_channel(modal, name) for name in record), strict=True) if record else ((), ())
@@ -171,7 +178,7 @@ def transient(
     return result
 
 
-def _checked_speed(speed: float | tuple[ArrayLike, ArrayLike]) -> float:
+def checked_speed(speed: float | tuple[ArrayLike, ArrayLike]) -> float:
     """The largest |speed|; ValueError where the profile is no profile."""
     if not isinstance(speed, tuple):
         return float(speed)
@@ -227,14 +234,18 @@ def _channel(system: System, name: str) -> tuple[Channel, str]:
     if head in bearings:
         which = bearings.index(head)
         ball = re.fullmatch(r"ball(\d+)", rest)
+        if rest == "loss":
+            return (core.CHANNEL_KINDS["contact_loss"], None, which, 0), "W"
         if rest == "loaded":
             return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
         if ball and 1 <= int(ball[1]) <= system.bearings[which].bearing.Z:
             return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
-        if rest in ("force.x", "force.y", "force.z"):
-            return (core.CHANNEL_KINDS["force"], None, which, "xyz".index(rest[-1])), "N"
+        series = system.bearings[which].series
+        term = NET["xyz".index(rest[-1])] if rest in ("force.x", "force.y", "force.z") else None
+        if term in series.terms:
+            return (core.CHANNEL_KINDS["force"], None, which, series.index(*term)), "N"
         raise ValueError(
-            f"channel {name!r}: bearing {head!r} offers loaded, ball1 … "
+            f"channel {name!r}: bearing {head!r} offers loaded, loss, ball1 … "
             f"ball{system.bearings[which].bearing.Z}, force.x, force.y and force.z"
         )
     place, _, quantity = name.rpartition(".")

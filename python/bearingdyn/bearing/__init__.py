@@ -11,6 +11,7 @@ from bearingdyn.bearing.hertz import (
 )
 from bearingdyn.bearing.kernel import BearingKernel, ConstantDamping, Damping, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.lines import fault_lines, waviness_lines
+from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.lubrication import Lubrication, lubricate
 from bearingdyn.bearing.mounting import Mounting, Seat
@@ -39,6 +40,7 @@ __all__ = [
     "Imperfections",
     "LoadDamping",
     "LoadDistribution",
+    "LooseFit",
     "Lubricant",
     "Lubrication",
     "Mounting",

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
@@ -23,6 +23,7 @@ from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
 from bearingdyn.bearing.minimum import minimum
+from bearingdyn.bearing.series import RIGID, RacewaySeries
 from bearingdyn.material import STEEL, Elastic
 
 STATIC_PRESSURE = 4.2e9
@@ -225,9 +226,27 @@ class BallBearing:
         loaded = abs(number("contact_angle", contact_angle, "must be a finite angle in rad"))
         return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(speed)
 
-    def kernel(self) -> BearingKernel:
-        """The bearing as the contact kernel takes it: five raceway coefficients, see `coefficients`."""
-        return self._kernel
+    def turned(self, angle: float) -> BallBearing:
+        """The bearing as it stands with its cage at `angle`, rad, from now on called zero.
+
+        The shaft has turned by angle/cage_ratio and the balls have spun: waves and pits stand accordingly.
+        """
+        shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
+        # a wave's argument is order·(azimuth − shaft) on the inner race and order·spin on a ball
+        carried = {"inner": shaft, "outer": 0.0, "ball": -self.geometry.ball_spin(1.0) * shaft}
+        return replace(
+            self,
+            angle0=self.angle0 + angle,
+            waviness=tuple(replace(w, phase=w.phase - w.order * carried[w.body]) for w in self.waviness),
+            defects=tuple(replace(p, angle=p.angle + carried[p.body]) for p in self.defects),
+        )
+
+    def kernel(self, series: RacewaySeries = RIGID) -> BearingKernel:
+        """The bearing as the contact kernel takes it, with the relative raceway coefficients of `series`."""
+        if series == RIGID:
+            return self._kernel
+        axial, order, sine = series.columns
+        return replace(self._kernel, axial=axial, order=order, sine=sine)
 
     @cached_property
     def _kernel(self) -> BearingKernel:
@@ -238,11 +257,12 @@ class BallBearing:
             x0, y0, e0 = 0.0, A - half, -half * (2 * A - half)
         else:
             x0, y0, e0 = A * math.sin(geometry.alpha0), A * math.cos(geometry.alpha0), 0.0
+        axial, order, sine = RIGID.columns
         return BearingKernel(
             Z=self.Z,
-            axial=np.array([0, 0, 1, 1, 1], np.intc),
-            order=np.array([1, 1, 0, 1, 1], np.intc),
-            sine=np.array([0, 1, 0, 0, 1], np.intc),
+            axial=axial,
+            order=order,
+            sine=sine,
             x0=x0,
             y0=y0,
             A=A,
@@ -273,16 +293,13 @@ class BallBearing:
             oversize=np.array(self.oversize),
         )
 
-    def coefficients(self) -> NDArray[np.float64]:
-        """(5, 6) matrix from q to the raceway coefficients, lengths in m.
+    def coefficients(self, series: RacewaySeries = RIGID) -> NDArray[np.float64]:
+        """(n, 6) matrix from q to the raceway coefficients, lengths in m.
 
-        Rows: radial cos ψ (x), radial sin ψ (y), axial mean (z), axial cos ψ (−R θy), axial sin ψ (+R θx).
+        Rows by default: radial cos ψ (x), radial sin ψ (y), axial mean (z), axial cos ψ (−R θy), axial
+        sin ψ (+R θx).
         """
-        B = np.zeros((5, 6))
-        B[0, 0] = B[1, 1] = B[2, 2] = 1.0
-        B[3, 4] = -self.arm
-        B[4, 3] = self.arm
-        return B
+        return series.rigid(self.arm)
 
     def relative(self, q: ArrayLike) -> NDArray[np.float64]:
         """Raceway coefficients (5,), m, of a relative motion q (6,), m and rad."""

@@ -24,8 +24,16 @@ _STEPS = 400
 _TOLERANCE = 1e-12
 
 
-def minimum(law: Law, load: Vector, radius: float) -> Vector:
-    """Coefficients z (n,) at which the gradient of the stored energy balances `load` (n,), from z = 0.
+class NoBalance(ArithmeticError):
+    """No balance was found; z (n,) is where the search ended."""
+
+    def __init__(self, message: str, z: Vector) -> None:
+        super().__init__(message)
+        self.z = z
+
+
+def minimum(law: Law, load: Vector, radius: float, start: Vector | None = None) -> Vector:
+    """Coefficients z (n,) at which the gradient of the stored energy balances `load` (n,).
 
     Where the energy is flat (a ring that rests on one or two balls) the coordinate stays where it is.
 
@@ -37,13 +45,15 @@ def minimum(law: Law, load: Vector, radius: float) -> Vector:
         (n,) generalised load, N.
     radius
         First size of the trust region, of the order of the expected displacement, m.
+    start
+        (n,) where the search begins; zero by default.
 
     Raises
     ------
-    ArithmeticError
-        If no balance is found; the message gives the residual.
+    NoBalance
+        An ArithmeticError: if no balance is found; the message gives the residual.
     """
-    z = np.zeros_like(load)
+    z = np.zeros_like(load) if start is None else start.copy()
     energy, g, H, held = law(z)
     r = g - load
     for _ in range(_STEPS):
@@ -68,9 +78,10 @@ def minimum(law: Law, load: Vector, radius: float) -> Vector:
         if gain > 1e-4 * promised or better:
             z, r = z + step, r_trial
             energy, g, H, held = trial
-    raise ArithmeticError(
+    raise NoBalance(
         f"no equilibrium within {_STEPS} Newton steps under the load {load.tolist()}: "
-        f"residual {residual:.3g} N; is the load within what the bearing can carry?"
+        f"residual {residual:.3g} N; is the load within what the bearing can carry?",
+        z,
     )
 
 

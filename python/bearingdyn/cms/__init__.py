@@ -13,7 +13,7 @@ from bearingdyn.cms.estimate import ReductionError, reduction_error
 from bearingdyn.cms.full import FullModel, RigidInterface
 from bearingdyn.cms.history import March, march
 from bearingdyn.cms.reduction import project, reduce, reduce_free_body
-from bearingdyn.cms.superelement import ComplexModulus, Superelement, Viscoelastic
+from bearingdyn.cms.superelement import ComplexModulus, Raceway, Superelement, Surface, Viscoelastic
 
 __all__ = [
     "Basis",
@@ -21,9 +21,11 @@ __all__ = [
     "Dynamics",
     "FullModel",
     "March",
+    "Raceway",
     "ReductionError",
     "RigidInterface",
     "Superelement",
+    "Surface",
     "Transfer",
     "Viscoelastic",
     "basis_of",

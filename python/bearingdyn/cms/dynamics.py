@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.superelement import Float, Index
+from bearingdyn.fem.eigen import Factors, order_of
 
 Complex = NDArray[np.complex128]
 
@@ -90,34 +91,21 @@ class Dynamics:
 
     def _sparse_solver(self, Z: Any) -> Any:
         """Solve without pivoting and refine once; where that fails (Z may be indefinite), pivot."""
-        options: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
         if self._order is None:
-            lu = scipy.sparse.linalg.splu(Z, permc_spec="MMD_AT_PLUS_A", **options)
-            self._order = np.argsort(lu.perm_c)
-            at = np.arange(Z.shape[0])
-        else:
-            at = self._order
-            lu = scipy.sparse.linalg.splu(Z[at][:, at].tocsc(), permc_spec="NATURAL", **options)
+            self._order = order_of(Z)
+        factors = Factors(Z, self._order)
 
         def solve(b: Any) -> Any:
-            b = b.astype(Z.dtype) if Z.dtype.kind == "c" or b.dtype.kind != "c" else b
-
-            def by(lu: Any, at: Index, b: Any) -> Any:
-                x = np.empty_like(b)
-                if b.dtype.kind == "c" and Z.dtype.kind != "c":
-                    real, imag = (lu.solve(np.ascontiguousarray(part[at])) for part in (b.real, b.imag))
-                    x[at] = real + 1j * imag
-                else:
-                    x[at] = lu.solve(np.ascontiguousarray(b[at]))
-                return x
-
-            x = by(lu, at, b)
-            x += by(lu, at, b - Z @ x)
-            scale = np.linalg.norm(b)
-            if not np.linalg.norm(b - Z @ x) <= RESIDUAL * scale:
-                pivoted, whole = scipy.sparse.linalg.splu(Z), np.arange(Z.shape[0])
-                x = by(pivoted, whole, b)
-                x += by(pivoted, whole, b - Z @ x)
+            if Z.dtype.kind == "c":
+                b = b.astype(np.complex128)
+            elif b.dtype.kind == "c":
+                return solve(b.real) + 1j * solve(b.imag)
+            x = factors.solve(b)
+            x += factors.solve(b - Z @ x)
+            if not np.linalg.norm(b - Z @ x) <= RESIDUAL * np.linalg.norm(b):
+                lu = scipy.sparse.linalg.splu(Z)
+                x = lu.solve(b)
+                x += lu.solve(b - Z @ x)
             return x
 
         return solve

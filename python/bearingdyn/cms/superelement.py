@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -9,6 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.bearing.series import RacewaySeries
 
 Float = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -79,6 +82,42 @@ class Viscoelastic:
 
 
 @dataclass(frozen=True, eq=False)
+class Raceway:
+    """A race of a flexible ring: its groove-centre displacement as Fourier coefficients in the azimuth.
+
+    series: which coefficients; arm: radius, m, at which tilts become axial motion.
+    rows: (len(series), n), the coefficients by the superelement's coordinates; a load of balls g acts as
+        rowsᵀ g.
+    """
+
+    series: RacewaySeries
+    arm: float
+    rows: Float
+
+    def __post_init__(self) -> None:
+        n = np.shape(self.rows)[-1] if np.ndim(self.rows) else 0
+        object.__setattr__(self, "rows", frozen("rows", self.rows, (len(self.series), n)))
+        if not 0 < self.arm < math.inf:
+            raise ValueError(f"arm is {self.arm}; it must be a positive radius in m")
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A surface of a part: ∫ v_n² dA = q̇ᵀ W q̇ of the normal velocity. area: m²; W: (n, n) symmetric, m²."""
+
+    area: float
+    W: Float
+
+    def __post_init__(self) -> None:
+        if not 0 < self.area < math.inf:
+            raise ValueError(f"area is {self.area}; a surface has a positive area in m²")
+        n = np.shape(self.W)[0] if np.ndim(self.W) else 0
+        W = frozen("W", self.W, (n, n))
+        check_symmetry("W", W, 1.0)
+        object.__setattr__(self, "W", W)
+
+
+@dataclass(frozen=True, eq=False)
 class Superelement:
     """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
@@ -93,6 +132,8 @@ class Superelement:
 
     N: (n, n) skew, N s/m: the circulatory force Ω N x on the left-hand side, there when the damping C belongs
         to material that turns with the shaft; zero by default.
+    raceways: name -> Raceway, where a bearing's balls may run on a flexible ring.
+    surfaces: name -> Surface, from which sound is radiated.
 
     Raises ValueError for a wrong shape, a matrix with non-finite entries or without its symmetry, an index
     out of range or used twice, or a name used twice.
@@ -106,6 +147,8 @@ class Superelement:
     outputs: Mapping[str, Float] = field(default_factory=dict)
     viscoelastic: tuple[Viscoelastic, ...] = ()
     N: Float | None = None
+    raceways: Mapping[str, Raceway] = field(default_factory=dict)
+    surfaces: Mapping[str, Surface] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) else 0
@@ -147,10 +190,21 @@ class Superelement:
             outputs[name] = frozen(f"outputs[{name!r}]", rows, (count, n))
         object.__setattr__(self, "outputs", outputs)
 
+        object.__setattr__(self, "surfaces", dict(self.surfaces))
+        for name, surface in self.surfaces.items():
+            if surface.W.shape != (n, n):
+                raise ValueError(f"surfaces[{name!r}].W has shape {surface.W.shape}; it must be ({n}, {n})")
+
         object.__setattr__(self, "viscoelastic", tuple(self.viscoelastic))
         for i, part in enumerate(self.viscoelastic):
             if part.H.shape != (n, n):
                 raise ValueError(f"viscoelastic[{i}].H has shape {part.H.shape}; it must be ({n}, {n})")
+
+        for name, raceway in self.raceways.items():
+            if name in interfaces or name in outputs:
+                raise ValueError(f"raceways has {name!r}, the name of an interface or output; choose another")
+            if raceway.rows.shape[1] != n:
+                raise ValueError(f"raceways[{name!r}].rows has {raceway.rows.shape[1]} columns, not {n}")
 
     @property
     def n(self) -> int:

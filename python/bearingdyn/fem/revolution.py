@@ -18,23 +18,11 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.fem.revolution_mesh import Float, Index, RevolutionMesh
+from bearingdyn.fem.revolution_mesh import Float, Index, RevolutionMesh, shape_functions
 
 AXIAL = (0, 2)  # components U, W of order 0
 TORSION = (1,)  # component V of order 0
 ALL = (0, 1, 2)
-
-
-def lagrange(x: Float) -> tuple[Float, Float]:
-    """Quadratic Lagrange functions of the nodes -1, 0, 1 and their derivatives, (points, 3) each."""
-    N = np.stack([0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)], axis=-1)
-    return N, np.stack([x - 0.5, -2 * x, x + 0.5], axis=-1)
-
-
-def shape_functions(xi: Float, eta: Float) -> tuple[Float, Float, Float]:
-    """Nine functions N, ∂N/∂ξ, ∂N/∂η at points (q,), (q, 9) each, numbered as RevolutionMesh.elements."""
-    (a, da), (b, db) = lagrange(xi), lagrange(eta)
-    return tuple((f[:, :, None] * g[:, None, :]).reshape(-1, 9) for f, g in ((a, b), (da, b), (a, db)))  # type: ignore[return-value]
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,13 +117,14 @@ def _element_matrices(
     xi, eta = np.repeat(x, 3), np.tile(x, 3)
     N, N_xi, N_eta = shape_functions(xi, eta)
 
-    corner = mesh.elements[:, [0, 8]]
-    (r0, r1), (z0, z1) = mesh.r[corner].T, mesh.z[corner].T
-    r = 0.5 * (r0 + r1)[:, None] + 0.5 * (r1 - r0)[:, None] * xi
+    nodes = np.stack([mesh.r[mesh.elements], mesh.z[mesh.elements]])
+    r, z = nodes @ N.T
+    (r_xi, z_xi), (r_eta, z_eta) = nodes @ N_xi.T, nodes @ N_eta.T
+    det = r_xi * z_eta - r_eta * z_xi
     around = 2 * np.pi if n == 0 else np.pi  # ∫cos² nφ dφ
-    dV = around * 0.25 * ((r1 - r0) * (z1 - z0))[:, None] * np.outer(w, w).ravel() * r
-    d_r = N_xi * (2 / (r1 - r0))[:, None, None]
-    d_z = N_eta * (2 / (z1 - z0))[:, None, None]
+    dV = around * det * np.outer(w, w).ravel() * r
+    d_r = (z_eta / det)[:, :, None] * N_xi - (z_xi / det)[:, :, None] * N_eta
+    d_z = (r_xi / det)[:, :, None] * N_eta - (r_eta / det)[:, :, None] * N_xi
     by_r = N / r[:, :, None]
 
     # Amplitudes of the strains ε_rr, ε_θθ, ε_zz, γ_rz, γ_rθ, γ_θz for U, V, W at each node.
@@ -149,9 +138,13 @@ def _element_matrices(
     B = B[..., list(components)].reshape(*d_r.shape[:2], 6, -1)
 
     trace = B[:, :, :3].sum(axis=2)
-    p = np.stack([np.ones_like(xi), xi, eta], axis=-1)
-    D = np.einsum("eq,qi,eqa->eia", dV, p, trace, optimize=True)
-    P = np.einsum("eq,qi,qj->eij", dV, p, p, optimize=True)
+    # Pressures are linear in r and z themselves: linear in ξ and η they lose an order where elements are
+    # distorted (Boffi & Gastaldi, Computing 69 (2002) 145-151).
+    size = np.sqrt(det.sum(axis=1, keepdims=True))
+    middle = [c.mean(axis=1, keepdims=True) for c in (r, z)]
+    p = np.stack([np.ones_like(r), (r - middle[0]) / size, (z - middle[1]) / size], axis=-1)
+    D = np.einsum("eq,eqi,eqa->eia", dV, p, trace, optimize=True)
+    P = np.einsum("eq,eqi,eqj->eij", dV, p, p, optimize=True)
     volumetric = D.transpose(0, 2, 1) @ np.linalg.solve(P, D)
 
     # e:e = Σ(ε_ii − ε_kk/3)² + ½Σγ², which is εᵀT2ε.

@@ -1,10 +1,11 @@
-"""Meshes of the half plane (r, z): 9-node rectangles, crowded where stresses are singular."""
+"""Meshes of the half plane (r, z): 9-node quadrilaterals; rectangles crowded where stresses are singular."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -37,13 +38,30 @@ class Rectangle:
             raise ValueError(f"z is {self.z}; a section needs z[0] < z[1], m")
 
 
+# The four sides of an element, each from end to end.
+SIDES = np.array([[0, 3, 6], [6, 7, 8], [8, 5, 2], [2, 1, 0]])
+
+
+def lagrange(x: Float) -> tuple[Float, Float]:
+    """Quadratic Lagrange functions of the nodes -1, 0, 1 and their derivatives, (points, 3) each."""
+    N = np.stack([0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)], axis=-1)
+    return N, np.stack([x - 0.5, -2 * x, x + 0.5], axis=-1)
+
+
+def shape_functions(xi: Float, eta: Float) -> tuple[Float, Float, Float]:
+    """Nine functions N, ∂N/∂ξ, ∂N/∂η at points (q,), (q, 9) each, numbered as RevolutionMesh.elements."""
+    (a, da), (b, db) = lagrange(xi), lagrange(eta)
+    return tuple((f[:, :, None] * g[:, None, :]).reshape(-1, 9) for f, g in ((a, b), (da, b), (a, db)))  # type: ignore[return-value]
+
+
 @dataclass(frozen=True, eq=False)
 class RevolutionMesh:
-    """9-node rectangles in (r, z).
+    """9-node quadrilaterals in (r, z), straight or curved.
 
     r, z: (nodes,) coordinates, m.
-    elements: (m, 9) nodes, number 3 i + j being the i-th in r and the j-th in z.
-    region: (m,) index of the rectangle each element lies in.
+    elements: (m, 9) nodes, number 3 i + j being the i-th in ξ and the j-th in η; ξ runs along r and η along
+        z in a mesh of rectangles, and ξ to η turns as r to z in any.
+    region: (m,) index of the region each element lies in.
     """
 
     r: Float
@@ -56,6 +74,23 @@ class RevolutionMesh:
         """Largest extent of the section, m."""
         return float(max(np.ptp(self.r), np.ptp(self.z)))
 
+    @cached_property
+    def edges(self) -> Index:
+        """Sides of the elements, (sides, 3) nodes from end to end, each once."""
+        return self._sides[0]
+
+    @cached_property
+    def outline(self) -> Index:
+        """Nodes on the surface of the body: on sides that belong to one element."""
+        edges, count = self._sides
+        return np.unique(edges[count == 1])
+
+    @cached_property
+    def _sides(self) -> tuple[Index, Index]:
+        every = self.elements[:, SIDES].reshape(-1, 3)
+        _, first, count = np.unique(every[:, 1], return_index=True, return_counts=True)
+        return every[first], count
+
     def nodes_on(self, r: tuple[float, float], z: tuple[float, float]) -> Index:
         """Nodes with r[0] <= r <= r[1] and z[0] <= z <= z[1]; a line is a rectangle without width."""
         e = SAME * self.size
@@ -67,15 +102,28 @@ class RevolutionMesh:
 
         Raises ValueError when the point lies outside the section.
         """
-        corners = self.elements[:, [0, 8]]
-        r0, r1 = self.r[corners].T
-        z0, z1 = self.z[corners].T
-        xi, eta = (2 * r - r0 - r1) / (r1 - r0), (2 * z - z0 - z1) / (z1 - z0)
-        distance = np.maximum(np.abs(xi), np.abs(eta))
-        e = int(np.argmin(distance))
-        if not distance[e] <= 1 + 1e-6:
+        R, Z = self.r[self.elements], self.z[self.elements]
+        e = 1e-6 * self.size
+        near = (R.min(axis=1) - e <= r) & (r <= R.max(axis=1) + e)
+        near &= (Z.min(axis=1) - e <= z) & (z <= Z.max(axis=1) + e)
+        found = np.flatnonzero(near)
+        at = np.zeros((found.size, 2))
+        point = np.array([r, z])
+        nodes = np.stack([R[found], Z[found]], axis=-1)
+        for _ in range(20):  # Newton; one step where the element is a parallelogram
+            N, N_xi, N_eta = shape_functions(at[:, 0], at[:, 1])
+            J = np.stack([np.einsum("ea,eac->ec", d, nodes) for d in (N_xi, N_eta)], axis=-1)
+            gap = point - np.einsum("ea,eac->ec", N, nodes)
+            step = (np.linalg.pinv(J) @ gap[:, :, None])[:, :, 0]
+            at = np.clip(at + step, -1.5, 1.5)
+            if np.abs(step).max(initial=0.0) < 1e-12:
+                break
+        distance = np.abs(at).max(axis=1) if found.size else np.ones(0)
+        best = int(np.argmin(distance)) if found.size else -1
+        if best < 0 or not distance[best] <= 1 + 1e-6:
             raise ValueError(f"the point r = {r}, z = {z} m lies outside the section")
-        return e, float(np.clip(xi[e], -1, 1)), float(np.clip(eta[e], -1, 1))
+        xi, eta = np.clip(at[best], -1, 1)
+        return int(found[best]), float(xi), float(eta)
 
 
 def _merge(values: Iterable[float], size: float) -> list[float]:
@@ -122,6 +170,21 @@ def _grid(
     return np.concatenate([*pieces, [cuts[-1]]])
 
 
+def _moved(lines: Float, fixed: Sequence[float], wanted: Iterable[float]) -> Float:
+    """Grid lines with the nearest of them moved to each wanted place; a fixed one gets a new neighbour."""
+    held = {float(v) for v in fixed}
+    for v in wanted:
+        k = int(np.argmin(np.abs(lines - v)))
+        if not lines[0] < v < lines[-1] or abs(lines[k] - v) <= SAME * (lines[-1] - lines[0]):
+            continue
+        if float(lines[k]) in held:
+            lines = np.sort(np.append(lines, v))
+        else:
+            lines[k] = v
+        held.add(float(v))
+    return lines
+
+
 EDGE = 0.02  # first step at a graded side over the thickness; chosen by the reference cases of theory.md §3.7
 
 
@@ -130,10 +193,12 @@ def revolution_mesh(
     refinement: float = 1.0,
     r_cuts: Iterable[float] = (),
     z_cuts: Iterable[float] = (),
+    z_near: Iterable[float] = (),
 ) -> RevolutionMesh:
     """Mesh a union of rectangles; grid lines run along all their sides, and along r_cuts and z_cuts, m.
 
     refinement: 1 is the default density; steps shrink with it, and faster where the mesh is graded.
+    z_near: the line nearest to each of these is moved there; nothing is graded towards it.
 
     Raises ValueError for rectangles that overlap, or a refinement outside 0.25...8.
     """
@@ -152,7 +217,7 @@ def revolution_mesh(
     r_lines = _merge([*r_ends, *(v for v in r_cuts if min(r_ends) < v < max(r_ends))], size)
     z_lines = _merge([*z_ends, *(v for v in z_cuts if min(z_ends) < v < max(z_ends))], size)
     R = _grid(r_lines, [(*q.r, q.graded) for q in rectangles], thin, refinement)
-    Z = _grid(z_lines, [(*q.z, q.graded) for q in rectangles], thin, refinement)
+    Z = _moved(_grid(z_lines, [(*q.z, q.graded) for q in rectangles], thin, refinement), z_lines, z_near)
 
     r_mid, z_mid = 0.5 * (R[1:] + R[:-1]), 0.5 * (Z[1:] + Z[:-1])
     owner = np.full((r_mid.size, z_mid.size), -1, dtype=np.intp)

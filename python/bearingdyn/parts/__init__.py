@@ -1,13 +1,26 @@
 """Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
 
 from bearingdyn.fem.beam import Section
+from bearingdyn.fem.quadrilaterals import quadrilaterals
+from bearingdyn.parts.flexible_bearing import FlexibleBearing
+from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.housing import Feet, Housing
 from bearingdyn.parts.imported import Imported, NodeSet, at_radius
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring, damping_sample
-from bearingdyn.parts.section import Cylinder, EndFace, Region, ViscoelasticSolid
+from bearingdyn.parts.section import (
+    Cylinder,
+    EndFace,
+    Groove,
+    Line,
+    MeshNodes,
+    Patch,
+    Region,
+    ViscoelasticSolid,
+    Where,
+)
 from bearingdyn.parts.shaft import Disc, Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
 
@@ -16,10 +29,16 @@ __all__ = [
     "Disc",
     "EndFace",
     "Feet",
+    "FlexibleBearing",
+    "FlexibleRing",
+    "Groove",
     "Housing",
     "Imported",
     "Layer",
+    "Line",
+    "MeshNodes",
     "NodeSet",
+    "Patch",
     "Region",
     "Revolved",
     "RevolvedModes",
@@ -30,6 +49,8 @@ __all__ = [
     "Shaft",
     "Solid",
     "ViscoelasticSolid",
+    "Where",
     "at_radius",
     "damping_sample",
+    "quadrilaterals",
 ]

@@ -48,7 +48,8 @@ class Housing:
     element_size: longest wanted side of an element, m (default: some 300 elements).
 
     Interfaces: "bore" (reference on the axis at mid-length) and "feet" (reference below it, on the base),
-    both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n).
+    both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n). Surfaces: "top",
+    "front" (at +z), "back", and "outside", all but the bore and the base.
 
     Raises ValueError for a bore that leaves no wall, a point outside, or values not positive and finite.
 
@@ -146,4 +147,5 @@ class Housing:
             damping=self.damping,
             held="feet",
             attach=("top", *self.points),
+            radiating=("outside", "top", "front", "back"),
         )

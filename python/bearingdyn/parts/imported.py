@@ -11,7 +11,7 @@ import scipy.sparse
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from bearingdyn.cms import RigidInterface, Superelement, reduce_free_body
+from bearingdyn.cms import FullModel, RigidInterface, Superelement, reduce
 from bearingdyn.fem.exchange import FEMatrices
 
 Float = NDArray[np.float64]
@@ -78,17 +78,14 @@ class Imported:
         x = self.matrices.rigid_motion((0.0, 0.0, 0.0))[:, 0]
         return float(x @ (self.matrices.M @ x))
 
+    def full_model(self) -> FullModel:
+        """The unreduced equations: sparse matrices, rigid interfaces, output rows."""
+        rows = {name: self._rows(name) for name in self.outputs}
+        return FullModel(self.matrices.M, self.matrices.K, self._faces(), rows)
+
     def superelement(self) -> Superelement:
         """The body reduced onto its interfaces and the fixed-interface modes up to f_max."""
-        return reduce_free_body(
-            self.matrices.M,
-            self.matrices.K,
-            self._faces(),
-            {name: self._rows(name) for name in self.outputs},
-            damping=self.damping,
-            held=self.held,
-            f_max=self.f_max,
-        )
+        return reduce(self.full_model(), f_max=self.f_max, damping=self.damping, held=self.held)
 
     def _points(self) -> Float:
         assert self.matrices.points is not None

@@ -1,45 +1,35 @@
-"""Bodies of revolution with rigid interfaces: rings, bonded samples, any rectangles in (r, z)."""
+"""Bodies of revolution with rigid interfaces and raceways: rings, bonded samples, any section in (r, z)."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.cms import (
     Basis,
     FullModel,
+    Raceway,
     Superelement,
     Viscoelastic,
-    inertia_shapes,
     modal_damping,
     modulus_levels,
-    orthogonalise,
 )
-from bearingdyn.fem.eigen import factorise, lowest_modes, rigid_transfer
+from bearingdyn.fem.eigen import lowest_modes
 from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
 from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
 from bearingdyn.material import Elastic
+from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
 from bearingdyn.parts.revolved_full import full_basis, full_model
-from bearingdyn.parts.section import Cylinder, EndFace, Face, Region, find_face, shape_moduli
+from bearingdyn.parts.revolved_shapes import ShapeMaker
+from bearingdyn.parts.section import Cylinder, EndFace, Groove, Patch, Region, Surface, shape_moduli
 
 Float = NDArray[np.float64]
-Index = NDArray[np.intp]
-
-# Coordinates (of x, y, z, θx, θy, θz) and signs of an interface's rigid shapes, for each copy of a
-# harmonic family. Order 1 turned a quarter wave carries y where it carried x, and −θx where it carried θy:
-# u = t + θ × ρ.
-FAMILIES: tuple[tuple[int, tuple[int, ...], tuple[tuple[tuple[int, ...], tuple[float, ...]], ...]], ...] = (
-    (0, AXIAL, (((2,), (1.0,)),)),
-    (0, TORSION, (((5,), (1.0,)),)),
-    (1, (0, 1, 2), (((0, 4), (1.0, 1.0)), ((1, 3), (1.0, -1.0)))),
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,35 +50,39 @@ class RevolvedModes:
 class Revolved:
     """A body of revolution about z, not turning, of one or more regions bonded where they touch.
 
-    regions: rings of rectangular section.
-    interfaces: name -> Cylinder or EndFace, each moving as a rigid body with six coordinates (x, y, z, θx,
-        θy, θz) about the point of the axis in the middle of the face. The rest of the surface is free.
-    outputs: name -> point (r, z, φ), m, m, rad; its rows (3, n) give x, y, z. Orders 0 and 1 are carried,
-        higher
-        ones are not: a rigid interface does not excite them, but a force at a point would.
+    regions: rings of rectangular section; or, with a mesh in `section`, a Patch for each of its regions.
+    interfaces: name -> Cylinder, EndFace, Line, Where or MeshNodes, each moving as a rigid body with six
+        coordinates (x, y, z, θx, θy, θz) about the point of the axis in the middle of the face.
+    outputs: name -> point (r, z, φ), m, m, rad; its rows (3, n) give x, y, z, in the orders that are
+        carried: 0 and 1, and those of the grooves.
     damping: ratio ζ of the free elastic modes of the elastic regions (the rubber then being only mass).
-    f_max: fixed-interface modes up to this frequency, Hz, join the static shapes; 0: none. They are taken
-        at the lowest of the moduli.
+    f_max: modes with the interfaces held, up to this frequency, Hz, join the static shapes; 0: none. They
+        are taken at the lowest of the moduli.
     moduli: real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: the
         relaxed modulus and |G*| at the fastest relaxation time of each material, and their geometric mean
         if they are more than a hundredfold apart. Each modulus after the
-        first adds up to five shapes for two interfaces.
-    refinement: mesh density; 1 gives layer stiffnesses within some 0.02 %.
+        first adds up to five shapes for two interfaces, and one for each coefficient of a groove.
+    refinement: mesh density; 1 gives layer stiffnesses within some 0.02 %. A mesh in `section` is taken as
+        it is.
+    grooves: name -> Groove, a face that carries balls by its Fourier orders. The rest of the surface is free.
+    section: a mesh of the section, as `quadrilaterals` makes it; None: the regions are meshed.
     inertia: rounds of cms.inertia_shapes of the static shapes at each modulus; 1 serves a layer or a sample
         better than many fixed-interface modes.
 
     Raises ValueError for regions that overlap, faces that are not part of the body or share a node, a
-    point outside the section, and values outside their range.
+    point outside the section, a mesh whose regions do not fit, and values outside their range.
     Reference: paper section 3.3; harmonics, Zienkiewicz & Taylor, The Finite Element Method, vol. 2, ch. 9.
     """
 
-    regions: tuple[Region, ...]
-    interfaces: Mapping[str, Cylinder | EndFace] = field(default_factory=dict)
+    regions: tuple[Region | Patch, ...]
+    interfaces: Mapping[str, Surface] = field(default_factory=dict)
     outputs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     damping: float = 0.0
     f_max: float = 0.0
     moduli: tuple[float, ...] | None = None
     refinement: float = 1.0
+    grooves: Mapping[str, Groove] = field(default_factory=dict)
+    section: RevolutionMesh | None = None
     inertia: int = 0
 
     def __post_init__(self) -> None:
@@ -99,46 +93,66 @@ class Revolved:
             raise ValueError(
                 f"f_max is {self.f_max}; it must be a frequency in Hz, not negative, 0 for no modes"
             )
-        if not self.inertia >= 0:
-            raise ValueError(f"inertia is {self.inertia}; it must be a number of rounds, 0 or more")
         if self.moduli is not None:
             object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
             if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
                 raise ValueError(f"moduli is {self.moduli}; it needs one or more positive shear moduli, Pa")
+        self._check_regions()
         _ = self.mesh  # regions that overlap, and faces that are none, are refused here
-        faces = self._faces
         owner: dict[int, str] = {}
-        for name, face in faces.items():
-            for node in face.nodes.tolist():
+        for name, nodes in self._boundaries.nodes():
+            for node in nodes.tolist():
                 if owner.setdefault(node, name) != name:
                     raise ValueError(
                         f"interfaces {owner[node]!r} and {name!r} share the circle "
                         f"r = {self.mesh.r[node]:g}, z = {self.mesh.z[node]:g} m; keep them apart"
                     )
         for name, (r, z, _) in self.outputs.items():
-            if name in self.interfaces:
+            if name in self.interfaces or name in self.grooves:
                 raise ValueError(f"outputs has {name!r}, the name of an interface; choose another")
             try:
                 self.mesh.locate(r, z)
             except ValueError as error:
                 raise ValueError(f"outputs[{name!r}]: {error}") from error
 
+    def _check_regions(self) -> None:
+        twice = sorted(set(self.interfaces) & set(self.grooves))
+        if twice:
+            raise ValueError(f"grooves has {twice[0]!r}, the name of an interface; choose another")
+        kind = Region if self.section is None else Patch
+        for k, q in enumerate(self.regions):
+            if not isinstance(q, kind):
+                where = "without a mesh in section" if self.section is None else "for a mesh in section"
+                raise ValueError(f"regions[{k}] is {q!r}; {where} it must be a {kind.__name__}")
+        if self.section is not None and int(self.section.region.max()) + 1 != len(self.regions):
+            raise ValueError(
+                f"section has {int(self.section.region.max()) + 1} regions and there are materials for "
+                f"{len(self.regions)}; give a Patch for each"
+            )
+
     @property
     def mass(self) -> float:
         """Mass, kg."""
-        return sum(q.mass for q in self.regions)
+        ring = self._harmonic(0, TORSION).mass
+        return float(np.array(self._density) @ ring.sum(axis=1))
 
     @cached_property
     def mesh(self) -> RevolutionMesh:
         """The mesh of the section."""
-        rectangles = [q.rectangle for q in self.regions]
-        r_cuts = [r for f in self.interfaces.values() if isinstance(f, EndFace) and f.r for r in f.r]
+        if self.section is not None:
+            return self.section
+        rectangles = [q.rectangle for q in self.regions if isinstance(q, Region)]
+        tracks = [g.surface for g in self.grooves.values()]
+        r_cuts = [
+            r for f in (*self.interfaces.values(), *tracks) if isinstance(f, EndFace) and f.r for r in f.r
+        ]
         z_cuts = [z for f in self.interfaces.values() if isinstance(f, Cylinder) and f.z for z in f.z]
-        return revolution_mesh(rectangles, self.refinement, r_cuts, z_cuts)
+        z_near = [z for f in tracks if isinstance(f, Cylinder) and f.z for z in f.z]
+        return revolution_mesh(rectangles, self.refinement, r_cuts, z_cuts, z_near)
 
     @cached_property
-    def _faces(self) -> dict[str, Face]:
-        return {name: find_face(self.mesh, name, surface) for name, surface in self.interfaces.items()}
+    def _boundaries(self) -> Boundaries:
+        return find_boundaries(self.mesh, self.interfaces, self.grooves)
 
     @cached_property
     def _harmonics(self) -> dict[tuple[int, tuple[int, ...]], Harmonic]:
@@ -158,24 +172,10 @@ class Revolved:
     def _density(self) -> list[float]:
         return [q.material.density for q in self.regions]
 
-    def _boundary(self, h: Harmonic) -> tuple[Index, Float]:
-        """Interface coordinates, without those removed on the axis, and their rigid shapes, a column each."""
-        faces = self._faces.values()
-        at = np.concatenate([h.coordinates(f.nodes) for f in faces])
-        R = scipy.linalg.block_diag(*[h.rigid_shapes(f.nodes, f.reference) for f in faces])
-        kept = np.isin(at, h.free)
-        return at[kept], R[kept]
-
-    def _constraint_shapes(self, h: Harmonic, shear: Sequence[complex]) -> tuple[Any, Any]:
-        """Static shapes (n, columns) of unit interface motions at given moduli, and their stiffness."""
-        K = h.stiffness(self._bulk, shear)
-        at, R = self._boundary(h)
-        inner = np.setdiff1d(h.free, at)
-        u = np.zeros((h.n, R.shape[1]), dtype=K.dtype)
-        u[at] = R
-        if inner.size:
-            u[inner] = -factorise(K[inner][:, inner]).solve(np.asarray(K[inner][:, at] @ R, dtype=K.dtype))
-        return u, u.T @ (K @ u)
+    def _shape_maker(self) -> ShapeMaker:
+        return ShapeMaker(
+            self._boundaries, self._bulk, self._density, self.f_max, self.mesh.size, self.inertia
+        )
 
     def stiffness(self, omega: float = 0.0) -> NDArray[np.complex128]:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
@@ -196,78 +196,54 @@ class Revolved:
                     "in shear to solve with; give a material with G0 > 0, or omega > 0"
                 )
             shear.append(G)
-        S = np.zeros((6 * len(self.interfaces),) * 2, dtype=np.complex128)
-        for order, components, copies in FAMILIES:
-            _, k = self._constraint_shapes(self._harmonic(order, components), shear)
-            for coordinates, signs in copies:
-                index, sign = self._place(coordinates, signs)
+        rigid = Boundaries(self._boundaries.faces, {})
+        S = np.zeros((rigid.n, rigid.n), dtype=np.complex128)
+        for order, components, copies in rigid.families():
+            h = self._harmonic(order, components)
+            _, k = self._shape_maker().constraint_shapes(h, shear, grooves=False)
+            for copy in range(copies):
+                index, sign = rigid.place(h, copy)
                 S[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (k + k.T)
         return S
 
-    def _place(self, coordinates: Iterable[int], signs: Iterable[float]) -> tuple[Index, Float]:
-        count = len(self.interfaces)
-        index = (6 * np.arange(count)[:, None] + np.array(list(coordinates))).ravel()
-        return index, np.tile(np.array(list(signs)), count)
-
     def _free_of_rigid_motion(self, n: int) -> Float:
         """Projector (n, n) that takes rigid motion out: what round-off leaves of its stiffness."""
-        R = np.zeros((n, 6))
-        transfer = rigid_transfer([(0.0, 0.0, f.reference) for f in self._faces.values()])
-        R[: len(transfer)] = transfer
-        Q = np.linalg.qr(R)[0]
+        Q = np.linalg.qr(self._boundaries.rigid_motion(n))[0]
         return np.asarray(np.eye(n) - Q @ Q.T)
 
-    def _shapes(self, h: Harmonic, levels: Sequence[Sequence[float]]) -> tuple[Float, int]:
-        """Basis (n, columns) of a family: constraint shapes, then internal ones; and the number of the first.
-
-        Internal are the differences of constraint shapes between moduli, which vanish on the interfaces,
-        and the fixed-interface modes. They are made modes of each other, of unit modal mass, and those
-        without energy of their own are dropped (torsion has none: it changes no volume, so its shape does
-        not depend on the modulus).
-        """
-        M = h.mass_matrix(self._density)
-        inner = np.setdiff1d(h.free, self._boundary(h)[0])
-        static, k = self._constraint_shapes(h, levels[0])
-        unit = 1.0 / np.sqrt(np.diag(k))
-        # Rigid motion of all interfaces has the same shape at every modulus: those of the first add nothing.
-        relative = slice(len(unit) // len(self.interfaces), None)
-        extra = [
-            ((self._constraint_shapes(h, level)[0] - static) * unit)[:, relative] for level in levels[1:]
-        ]
-        if self.inertia and inner.size:
-            for level in levels:
-                K = h.stiffness(self._bulk, level)
-                lu, shapes = factorise(K[inner][:, inner]), self._constraint_shapes(h, level)[0]
-                extra += inertia_shapes(lu.solve, K, M, shapes, inner, self.inertia)
-        K = h.stiffness(self._bulk, levels[0])
-        if self.f_max > 0:
-            frequency, phi = lowest_modes(K[inner][:, inner], M[inner][:, inner], f_max=self.f_max)
-            modes = np.zeros((h.n, frequency.size))
-            modes[inner] = phi / (2 * np.pi * frequency)
-            extra.append(modes)
-        internal = np.hstack(extra) if extra else np.zeros((h.n, 0))
-        _, internal = orthogonalise(internal, K, M)
-        return np.hstack([static, internal]), static.shape[1]
-
-    def _families(self) -> list[tuple[Harmonic, Float, int, Any]]:
+    def _families(self) -> list[tuple[Harmonic, Float, int, int]]:
         """Each family with its shapes, the number of constraint shapes among them, and its copies."""
         levels = shape_moduli(self.regions, self.moduli)
-        return [
-            (h, *self._shapes(h, levels), copies)
-            for h, copies in ((self._harmonic(n, components), copies) for n, components, copies in FAMILIES)
-        ]
+        found = []
+        for order, components, copies in self._boundaries.families():
+            h = self._harmonic(order, components)
+            found.append((h, *self._shape_maker().basis(h, levels), copies))
+        return found
 
     def full_model(self) -> FullModel:
-        """The unreduced equations of orders 0 and 1 (those that rigid interfaces excite), sparse."""
-        families = [(self._harmonic(order, components), copies) for order, components, copies in FAMILIES]
-        return full_model(families, self.regions, self._faces, self.outputs)
+        """The unreduced equations of orders 0 and 1 (those that rigid interfaces excite), sparse.
+
+        Raises ValueError for a body with grooves: a full model is joined by rigid interfaces only.
+        """
+        if self.grooves:
+            raise ValueError(
+                f"grooves are {sorted(self.grooves)}; an unreduced model has rigid interfaces only"
+            )
+        families = [
+            (self._harmonic(order, components), copies)
+            for (order, components), copies in RIGID_SHAPES.items()
+        ]
+        return full_model(families, self.regions, self._boundaries.faces, self.outputs)
 
     def basis(self) -> Basis:
         """The shapes `superelement` takes, in the coordinates of `full_model`."""
         model = self.full_model()
         materials = [part.material for part in model.viscoelastic]
         level = modulus_levels(materials, self.moduli)[0]
-        return full_basis(model, self._families(), level)
+        families = [
+            (h, Psi, fixed, RIGID_SHAPES[h.order, h.components]) for h, Psi, fixed, _ in self._families()
+        ]
+        return full_basis(model, families, level)
 
     def superelement(self) -> Superelement:
         """Reduced matrices with rigid interfaces, projections of the full model's (paper (21)-(23)).
@@ -280,10 +256,11 @@ class Revolved:
 
         Raises ValueError without an interface, or if moduli cannot be chosen for a material.
         """
-        if not self.interfaces:
+        if not self.interfaces and not self.grooves:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
         families = self._families()
-        n = sum(len(copies) * Psi.shape[1] for _, Psi, _, copies in families)
+        n = self._boundaries.n
+        n += sum(copies * (Psi.shape[1] - fixed) for _, Psi, fixed, copies in families)
         rubbers: list[Any] = []
         owner = np.full(len(self.regions), -1)
         for i, q in enumerate(self.regions):
@@ -297,7 +274,7 @@ class Revolved:
         M, K, E = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
         H = [np.zeros((n, n)) for _ in rubbers]
         rows = {name: np.zeros((3, n)) for name in self.outputs}
-        end = 6 * len(self.interfaces)
+        end = self._boundaries.n
         for h, Psi, fixed, copies in families:
             parts = [(M, h.mass_matrix(self._density)), (K, h.stiffness(bulk, shear))]
             parts += [(E, h.stiffness(np.where(owner < 0, bulk, 0.0), shear))]
@@ -306,8 +283,8 @@ class Revolved:
             ]
             reduced = [(full, Psi.T @ (A @ Psi)) for full, A in parts]
             whole = h.complete(Psi.copy())
-            for copy, (coordinates, signs) in enumerate(copies):
-                index, sign = self._place(coordinates, signs)
+            for copy in range(copies):
+                index, sign = self._boundaries.place(h, copy)
                 internal = np.arange(end, end + Psi.shape[1] - fixed)
                 index, sign = (
                     np.concatenate([index, internal]),
@@ -327,6 +304,10 @@ class Revolved:
             interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(self.interfaces)},
             outputs=rows,
             viscoelastic=tuple(Viscoelastic(m, P @ h @ P) for m, h in zip(rubbers, H, strict=True)),
+            raceways={
+                name: Raceway(t.series, t.arm, np.eye(n)[self._boundaries.starts[name] :][: len(t.series)])
+                for name, t in self._boundaries.tracks.items()
+            },
         )
 
     def modes(
@@ -351,19 +332,13 @@ class Revolved:
             shear.append(G)
         names = list(fixed)
         for name in names:
-            if name not in self._faces:
-                raise ValueError(f"fixed has {name!r}; the interfaces are {sorted(self._faces)}")
-        # A shift makes the stiffness of a free body definite; a tenth of the slowest shear wave's rate
-        # keeps digits.
-        rate = (
-            0.1
-            * min(math.sqrt(G / rho) for G, rho in zip(shear, self._density, strict=True))
-            / self.mesh.size
-        )
+            if name not in self.interfaces:
+                raise ValueError(f"fixed has {name!r}; the interfaces are {sorted(self.interfaces)}")
+        rate = self._shape_maker().slow_rate(shear)
         found: list[tuple[float, Float]] = []
         for components in (AXIAL, TORSION) if order == 0 else ((0, 1, 2),):
             h = self._harmonic(order, components)
-            held = [h.coordinates(self._faces[name].nodes) for name in names]
+            held = [h.coordinates(self._boundaries.faces[name].nodes) for name in names]
             free = np.setdiff1d(h.free, np.concatenate(held)) if held else h.free
             K, M = h.stiffness(self._bulk, shear)[free][:, free], h.mass_matrix(self._density)[free][:, free]
             frequency, phi = lowest_modes(K + rate**2 * M, M, n_modes=count)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bearingdyn.cms import Basis, FullModel, RigidInterface, Viscoelastic
 from bearingdyn.fem.revolution import Harmonic
 from bearingdyn.material import Elastic
-from bearingdyn.parts.section import Face, Region
+from bearingdyn.parts.section import Face, Patch, Region
 
 Float = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ Copies = Sequence[tuple[Sequence[int], Sequence[float]]]  # coordinates and sign
 
 def full_model(
     families: Sequence[tuple[Harmonic, Copies]],
-    regions: Sequence[Region],
+    regions: Sequence[Region | Patch],
     faces: Mapping[str, Face],
     outputs: Mapping[str, tuple[float, float, float]],
 ) -> FullModel:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +18,7 @@ from bearingdyn.cms import (
     FullModel,
     RigidInterface,
     Superelement,
+    Surface,
     Viscoelastic,
     basis_of,
     project,
@@ -93,6 +94,7 @@ class Solid:
     moduli: real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: chosen
         from each material's range (cms.modulus_levels).
     attach: outputs at which loads act, whose static shapes then join the basis.
+    radiating: surfaces of the mesh that the superelement carries for the power they radiate.
     inertia: rounds of cms.inertia_shapes of the static shapes at each modulus: one serves better than many
         fixed-interface modes; with moduli=(G,), 0 is the paper's basis.
 
@@ -114,6 +116,7 @@ class Solid:
     held: str | None = None
     moduli: tuple[float, ...] | None = None
     attach: tuple[str, ...] = ()
+    radiating: tuple[str, ...] = ()
     inertia: int = 1
 
     def __post_init__(self) -> None:
@@ -275,7 +278,13 @@ class Solid:
 
         Raises ValueError if moduli cannot be chosen for a material.
         """
-        return project(self._full_model, self._basis, damping=self.damping, held=self.held)
+        element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
+        return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
+
+    def _radiation(self, name: str) -> Surface:
+        samples, rows = self.surface(name)
+        W = rows.T @ (samples.weights[:, None] * rows)
+        return Surface(samples.area, np.asarray(0.5 * (W + W.T)))
 
     def stiffness(self, omega: float = 0.0) -> NDArray[np.complex128]:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.

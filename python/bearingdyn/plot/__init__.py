@@ -7,6 +7,7 @@ are halved and the upper ones returned; ``ax.figure`` is the whole.
 
 from bearingdyn.plot.bearing import bearing_spectrum, bearing_stiffness, film, load_distribution
 from bearingdyn.plot.material import isotherms, layer_stiffness, master, shifts
+from bearingdyn.plot.modes import campbell, mode_shape
 from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum
 from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
 from bearingdyn.plot.trade_off import trade_off
@@ -16,6 +17,7 @@ __all__ = [
     "ball_loads",
     "bearing_spectrum",
     "bearing_stiffness",
+    "campbell",
     "causality",
     "cole_cole",
     "film",
@@ -24,6 +26,7 @@ __all__ = [
     "layer_stiffness",
     "load_distribution",
     "master",
+    "mode_shape",
     "orbit",
     "shifts",
     "spectrum",

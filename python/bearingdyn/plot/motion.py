@@ -63,7 +63,7 @@ def frequency_response(
             if lower is not None:
                 lower.plot(f, _continuous_phase(value), **look)
         ax.set_yscale("log")
-        ax.set_ylabel(f"{quantity}, zero-to-peak, {unit}")
+        ax.set_ylabel(f"{'force' if _is_force(output) else quantity}, zero-to-peak, {unit}")
         bottom = lower or ax
         bottom.set_xlabel("frequency, Hz")
         _span(bottom, *(c["frequency"].values for c in curves.values()))
@@ -189,13 +189,27 @@ def _is_rotation(channel: str) -> bool:
     return channel.rpartition(".")[2] in ("θx", "θy", "θz", "rx", "ry", "rz")
 
 
+def _is_force(output: str) -> bool:
+    """Whether an output is a force or moment: on the ground, or through a bearing or interface."""
+    return output.startswith("ground.") or output.rpartition(".")[0].endswith(".force")
+
+
 def _cause(channel: str) -> str:
+    if channel.startswith("ground."):
+        return "motion"
     return "moment" if _is_rotation(channel) else "force"
 
 
 def _response_unit(quantity: str, output: str, input: str) -> str:
-    motion = "rad" if _is_rotation(output) else "m"
     rate = {"displacement": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
+    on_ground = input.startswith("ground.")
+    if _is_force(output):
+        force = "N m" if _is_rotation(output) else "N"
+        below = f"m{rate}" if on_ground else "N m" if _is_rotation(input) else "N"
+        return f"({force})/({below})"
+    motion = "rad" if _is_rotation(output) else "m"
+    if on_ground:
+        return f"({motion}{rate})/(m{rate})"
     return f"{f'({motion}{rate})' if rate else motion}/{'(N m)' if _is_rotation(input) else 'N'}"
 
 

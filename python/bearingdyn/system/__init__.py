@@ -1,6 +1,27 @@
 """An application as plain arrays: what the C core and the analyses take."""
 
-from bearingdyn.system.arrays import QUANTITIES, BearingTerm, LayerTerm, LoadTerm, System, is_rotation
+from bearingdyn.system.arrays import (
+    QUANTITIES,
+    BearingTerm,
+    LayerTerm,
+    LoadTerm,
+    PartTerm,
+    SpringTerm,
+    System,
+    component_of,
+    is_rotation,
+)
 from bearingdyn.system.assembly import assemble
 
-__all__ = ["QUANTITIES", "BearingTerm", "LayerTerm", "LoadTerm", "System", "assemble", "is_rotation"]
+__all__ = [
+    "QUANTITIES",
+    "BearingTerm",
+    "LayerTerm",
+    "LoadTerm",
+    "PartTerm",
+    "SpringTerm",
+    "System",
+    "assemble",
+    "component_of",
+    "is_rotation",
+]

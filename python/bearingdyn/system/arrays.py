@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS
-from bearingdyn.bearing import BallBearing
-from bearingdyn.cms import coupled_blocks
+from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
+from bearingdyn.bearing.series import RIGID, RacewaySeries
+from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.material import Maxwell
 
 Array = NDArray[np.float64]
@@ -46,16 +47,57 @@ class LayerTerm:
 
 @dataclass(frozen=True, eq=False)
 class BearingTerm:
-    """One bearing: B (n_coefs, n) gives its relative raceway coefficients, inner minus outer."""
+    """One bearing or loose fit: B (n_coefs, n) gives its relative coefficients, inner minus outer.
+
+    offset: m along z that the inner ring sits beyond the motion B x.
+    """
 
     name: str
-    bearing: BallBearing
+    bearing: BallBearing | LooseFit
     B: Array
+    series: RacewaySeries = RIGID
+    offset: float = 0.0
+
+    def kernel(self) -> BearingKernel:
+        """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves."""
+        kernel = self.bearing.kernel(self.series)
+        if self.offset == 0.0:
+            return kernel
+        # e0 = x0² + y0² − A² moves by offset (2 x0 + offset), without cancellation
+        shift = self.offset * (2.0 * kernel.x0 + self.offset)
+        return replace(kernel, x0=kernel.x0 + self.offset, e0=kernel.e0 + shift)
+
+
+@dataclass(frozen=True, eq=False)
+class PartTerm:
+    """One part: its own coordinates are place @ x, place (m, n).
+
+    rigid (m, 6): its coordinates in unit rigid motions x, y, z, θx, θy, θz of its first interface; NaN where
+    it holds itself.
+    """
+
+    name: str
+    element: Superelement
+    place: Array
+    rigid: Array
+
+
+@dataclass(frozen=True, eq=False)
+class SpringTerm:
+    """Six springs and dampers, N/m and N s/m, on the motion across @ x, across (6, n)."""
+
+    name: str
+    across: Array
+    stiffness: Array
+    damping: Array
 
 
 @dataclass(frozen=True, eq=False)
 class LoadTerm:
-    """One load: kind as in bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one."""
+    """One load: kind as in bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one.
+
+    part: the part it acts on, if one; own_cos, own_sin: the columns in the part's coordinates.
+    """
 
     kind: str
     omega: float
@@ -63,6 +105,9 @@ class LoadTerm:
     p_sin: Array
     time: Array
     value: Array
+    part: str = ""
+    own_cos: Array | None = None
+    own_sin: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +127,14 @@ class System:
     outputs: Mapping[str, Array]
     standstill: tuple[str, ...] = ()
     """Parts that turn with the shaft, but whose damping is written for the fixed frame."""
+    inertia: Array | None = None
+    """(n, 3) kg: −inertia @ ü is the force of a ground that moves with ü; NaN where a part holds itself."""
+    parts: tuple[PartTerm, ...] = ()
+    springs: tuple[SpringTerm, ...] = ()
+    turning: tuple[str, ...] = ()
+    """Parts that turn with the shaft."""
+    positions: Mapping[str, Array] = field(default_factory=dict)
+    """Where interfaces and points stand, (3,) m, from the first interface of the first part."""
 
     @property
     def n(self) -> int:
@@ -107,9 +160,9 @@ class System:
 
         Raises ValueError when the place or component does not exist.
         """
-        place, _, component = channel.rpartition(".")
+        place = channel.rpartition(".")[0]
         rows = self.rows(place)
-        component = ALIASES.get(component, component)
+        component = component_of(channel)
         if component not in COMPONENTS[: rows.shape[0]]:
             raise ValueError(
                 f"{channel!r}: {place} has {list(COMPONENTS[: rows.shape[0]])}, not {component!r}"
@@ -166,6 +219,9 @@ class System:
             bearings=tuple(replace(t, B=t.B @ T) for t in self.bearings),
             loads=tuple(replace(t, p_cos=T.T @ t.p_cos, p_sin=T.T @ t.p_sin) for t in self.loads),
             outputs={name: rows @ T for name, rows in self.outputs.items()},
+            inertia=None if self.inertia is None else T.T @ self.inertia,
+            parts=tuple(replace(t, place=t.place @ T) for t in self.parts),
+            springs=tuple(replace(t, across=t.across @ T) for t in self.springs),
         )
 
     def blocks(self) -> list[NDArray[np.intp]]:
@@ -173,17 +229,22 @@ class System:
         touched = [np.abs(layer.L).sum(axis=1) for layer in self.layers]
         return coupled_blocks(self.M, self.C, self.K, self.G, self.N, *(np.outer(t, t) for t in touched))
 
-    def modal(self) -> tuple[System, Array]:
-        """The system in modes of its relaxed stiffness and mass, block by block, and T with x = T q.
-
-        M is then exactly the identity and the relaxed stiffness exactly diagonal, which a long march wants.
-        """
-        K = self.stiffness()
+    def basis(self, modulus: str = "relaxed") -> tuple[Array, Array]:
+        """ω² (n,) and modes T (n, n), x = T q, of the structure without its bearings, block by block."""
+        K = self.stiffness(modulus)
         T = np.zeros((self.n, self.n))
         squares = np.zeros(self.n)
         for block in self.blocks():
             inside = np.ix_(block, block)
             squares[block], T[inside] = natural(K[inside], self.M[inside])
+        return squares, T
+
+    def modal(self) -> tuple[System, Array]:
+        """The system in modes of its relaxed stiffness and mass, block by block, and T with x = T q.
+
+        M is then exactly the identity and the relaxed stiffness exactly diagonal, which a long march wants.
+        """
+        squares, T = self.basis()
         modal = self.transformed(T)
         relaxed = np.zeros((self.n, self.n))
         for layer in modal.layers:
@@ -214,7 +275,7 @@ class System:
             K,
             self.N,
             layers,
-            [(core.kernel_tuple(t.bearing.kernel()), t.B) for t in self.bearings],
+            [(core.kernel_tuple(t.kernel()), t.B) for t in self.bearings],
             [(core.LOAD_KINDS[t.kind], t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels,
         )
@@ -247,10 +308,15 @@ def natural(K: Array, M: Array) -> tuple[Array, Array]:
     return squares, shapes
 
 
+def component_of(channel: str) -> str:
+    """Component of a channel "place.component": rx, ry, rz are θx, θy, θz."""
+    component = channel.rpartition(".")[2]
+    return ALIASES.get(component, component)
+
+
 def is_rotation(channel: str) -> bool:
     """Whether a channel "place.component" is a rotation."""
-    component = channel.rpartition(".")[2]
-    return ALIASES.get(component, component) in COMPONENTS[3:]
+    return component_of(channel) in COMPONENTS[3:]
 
 
 def static_modulus(layer: LayerTerm, modulus: str) -> float:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.application import GROUND, Application
-from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, System
+from bearingdyn.application import GRAVITY, GROUND, Application, HungFit
+from bearingdyn.bearing.series import RIGID
+from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System
 from bearingdyn.system.held import check_held
 from bearingdyn.system.origin import noted
 
@@ -23,7 +24,7 @@ def assemble(app: Application) -> System:
     """An application as arrays.
 
     Raises ValueError for an interface left loose, a body that nothing holds (named, with its direction), a
-    dead load on a layer without relaxed modulus.
+    dead load on a layer without relaxed modulus, gravity or base motion on a part that holds itself.
     """
     app.check_joints()
     index, n = _coordinates(app)
@@ -37,12 +38,18 @@ def assemble(app: Application) -> System:
         select[part][moving, place[moving]] = 1.0
 
     M, C, K, G, N, firm = (np.zeros((n, n)) for _ in range(6))
+    inertia = np.zeros((n, 3))
     layers: list[LayerTerm] = []
+    terms: list[PartTerm] = []
     outputs: dict[str, Array] = {}
     for part, element in app.parts.items():
         own = (element.M, element.C, element.K, element.G, element.N)
         for total, A in zip((M, C, K, G, N), own, strict=True):
             total += select[part].T @ np.asarray(A) @ select[part]
+        R = app.rigid_shapes(part)
+        rigid = np.full((element.n, 6), np.nan) if R is None else R
+        inertia += select[part].T @ (element.M @ rigid[:, :3])
+        terms.append(PartTerm(part, element, select[part], rigid))
         for term in element.viscoelastic:
             layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
@@ -52,24 +59,73 @@ def assemble(app: Application) -> System:
         for name in (*element.interfaces, *element.outputs):
             outputs[f"{part}.{name}"] = element.rows(name) @ select[part]
 
-    for support in app.supports.values():
-        rows = outputs[support.interface]
-        for total, values in ((K, support.stiffness), (firm, support.stiffness), (C, support.damping)):
-            if values is not None:
-                total += rows.T @ (values[:, None] * rows)
+    springs: list[SpringTerm] = []
+    loads = _loads(app, outputs, inertia)
+    for name, relative, stiffness, damping, offset in _springs(app, outputs):
+        spring = SpringTerm(name, relative, stiffness, damping)
+        for total in (K, firm):
+            total += relative.T @ (stiffness[:, None] * relative)
+        C += relative.T @ (damping[:, None] * relative)
+        springs.append(spring)
+        if offset.any():
+            pressed = (stiffness * offset) @ relative
+            loads += (LoadTerm("constant", 0.0, pressed, np.zeros(n), np.zeros(0), np.zeros(0)),)
 
     bearings = []
     for hung in app.bearings.values():
-        relative = outputs[hung.inner] - (outputs[hung.outer] if hung.outer != GROUND else 0.0)
-        bearings.append(BearingTerm(hung.name, hung.bearing, hung.bearing.coefficients() @ relative))
+        raceway = app.raceway(hung.outer)
+        series = RIGID if raceway is None else raceway.series
+        B = hung.bearing.coefficients(series) @ outputs[hung.inner]
+        if raceway is not None:
+            B = B - raceway.rows @ select[hung.outer.partition(".")[0]]
+        elif hung.outer != GROUND:
+            B = B - hung.bearing.coefficients() @ outputs[hung.outer]
+        bearings.append(BearingTerm(hung.name, hung.bearing, B, series, hung.offset))
+
+    for seat in app.fits.values():
+        contacts, hold = _loose(app, seat, select, outputs)
+        bearings.append(contacts)
+        K += hold
+        firm += hold
 
     turning = {name: app.parts[name] for name in app.parts if name in app.turning_parts()}
     standstill = tuple(
         name for name, e in turning.items() if e.viscoelastic or (np.any(e.C) and not np.any(e.N))
     )
-    system = System(M, C, K, G, N, tuple(layers), tuple(bearings), _loads(app, outputs), outputs, standstill)
+    system = System(
+        M,
+        C,
+        K,
+        G,
+        N,
+        tuple(layers),
+        tuple(bearings),
+        loads,
+        outputs,
+        standstill,
+        inertia,
+        tuple(terms),
+        tuple(springs),
+        tuple(turning),
+        app.positions(),
+    )
     check_held(system, firm)
     return noted(system, app)
+
+
+def _loose(
+    app: Application, seat: HungFit, select: Mapping[str, Array], outputs: Mapping[str, Array]
+) -> tuple[BearingTerm, Array]:
+    """A loose fit as contacts on the radial coefficients, ring less bore, and the springs of its hold."""
+    raceway = app.raceway(seat.ring)
+    assert raceway is not None  # the application checked
+    relative = raceway.rows @ select[seat.ring.partition(".")[0]]
+    if seat.bore != GROUND:
+        relative = relative - raceway.series.rigid(raceway.arm) @ outputs[seat.bore]
+    radial, series, held = seat.fit.split(raceway.series)
+    seat.fit.kernel(series)  # too few stations are refused here
+    springs = seat.fit.hold * relative[held].T @ relative[held]
+    return BearingTerm(seat.name, seat.fit, relative[radial], series), springs
 
 
 def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
@@ -111,21 +167,47 @@ def _factor(H: Array) -> Array:
     return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
 
 
-def _loads(app: Application, outputs: Mapping[str, Array]) -> tuple[LoadTerm, ...]:
+def _springs(
+    app: Application, outputs: Mapping[str, Array]
+) -> Iterator[tuple[str, Array, Array, Array, Array]]:
+    """Springs to the ground and between interfaces: name, rows (6, n) of the motion across, k, c, offset."""
+    zero = np.zeros(6)
+    for s in app.supports.values():
+        if not s.rigid:
+            k, c, offset = (zero if v is None else v for v in (s.stiffness, s.damping, s.offset))
+            yield f"{s.interface}–ground", outputs[s.interface], k, c, offset
+    for b in app.springs:
+        across = outputs[b.a] - (outputs[b.b] if b.b != GROUND else 0.0)
+        yield f"{b.a}–{b.b}", across, b.stiffness, b.damping, b.offset
+
+
+def _loads(app: Application, outputs: Mapping[str, Array], inertia: Array) -> tuple[LoadTerm, ...]:
     terms = []
     nothing = np.zeros(0)
     for load in app.loads:
-        rows = outputs[load.where]
-        force = load.vector[: rows.shape[0]] @ rows
+        if load.where in (GROUND, GRAVITY):
+            held = [part for part in app.parts if app.rigid_shapes(part) is None]
+            if held:
+                raise ValueError(
+                    f"part {held[0]!r} has no rigid motion of its own (no interface, or a stiffness that "
+                    f"holds it); gravity and base motion need parts that are free by themselves"
+                )
+            # a falling frame: parts in gravity g feel what they feel when the ground moves with −g
+            rows, force = inertia.T, inertia @ (load.vector if load.where == GRAVITY else -load.vector)
+        else:
+            rows = outputs[load.where]
+            force = load.vector[: rows.shape[0]] @ rows
         zero = np.zeros_like(force)
         c, s = math.cos(load.phase), math.sin(load.phase)
         if load.kind == "harmonic":
             terms.append(LoadTerm("harmonic", load.omega, c * force, -s * force, nothing, nothing))
         elif load.kind == "rotating":
             # u (cos(θ + φ), sin(θ + φ)) = cos θ · u (c, s) + sin θ · u (−s, c)
-            along, across = c * rows[0] + s * rows[1], -s * rows[0] + c * rows[1]
-            u = load.unbalance
-            terms.append(LoadTerm("rotating", 0.0, u * along, u * across, nothing, nothing))
+            turn = load.unbalance * np.array([[c, s], [-s, c]])
+            along, across = turn @ rows[:2]
+            part, _, place = load.where.partition(".")
+            own = turn @ app.parts[part].rows(place)[:2]
+            terms.append(LoadTerm("rotating", 0.0, along, across, nothing, nothing, part, *own))
         elif load.kind == "sampled":
             assert load.time is not None
             assert load.value is not None

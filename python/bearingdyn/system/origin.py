@@ -11,6 +11,6 @@ from bearingdyn.system.arrays import System
 
 def noted(system: System, app: Application) -> System:
     """The system with its application's parts, joints, bearings and loads as a text."""
-    # the reduced parts follow from their sources
-    held = {name: value for name, value in vars(app).items() if name != "parts"}
+    # the reduced parts, and what is kept of them, follow from their sources
+    held = {name: value for name, value in vars(app).items() if name != "parts" and name[0] != "_"}
     return replace(system, inputs=inputs.text(held))

@@ -1,0 +1,143 @@
+"""Natural frequencies over the speed of the shaft: the Campbell diagram."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.optimize
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.modes import modes
+from bearingdyn.application import Application
+from bearingdyn.system import System, assemble
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+# further modes followed, so that one that comes into the lowest `count` is known from where it came
+MARGIN = 12
+# likeness of two modes that an octave between their frequencies costs: it decides where shapes do not
+OCTAVE = 0.1
+# kinetic energy of the lateral motion, of the whole: below it a mode does not whirl, it turns or stretches
+LATERAL = 1e-8
+
+
+def campbell(
+    source: Equilibrium | Application | System,
+    speeds: ArrayLike,
+    count: int = 12,
+    *,
+    damped: bool = True,
+    modulus: str = "relaxed",
+) -> xarray.Dataset:
+    """Modes at each speed (rad/s), each followed from speed to speed by its shape.
+
+    The bearings keep the tangents of the equilibrium. Modes are followed from the highest speed down, where
+    gyroscopic forces have parted what standstill leaves double, by the modal assurance criterion with the
+    mass as weight. count: how many, the lowest at the lowest speed. damped, modulus: as in `modes`.
+
+    Returns a Dataset over (speed, mode): frequency (Hz, |λ|/2π), damping_ratio, eigenvalue (rad/s), whirl: +1
+    a circle with a shaft that turns from x to y, −1 one against it, 0 along a line, of the parts that turn
+    (all, if none does); likeness to the same mode at the next higher speed, 0 … 1.
+
+    Raises ValueError for speeds that are not finite, a count below 1, and as `modes`.
+    """
+    given = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
+    if given.ndim != 1 or given.size == 0 or not np.isfinite(given).all():
+        raise ValueError("speeds must be a list of finite values, in rad/s")
+    if not count >= 1:
+        raise ValueError(f"count is {count}; ask for one mode or more")
+    if isinstance(source, Application):
+        source = assemble(source)
+    system = source.system if isinstance(source, Equilibrium) else source
+
+    order = np.argsort(-np.abs(given), kind="stable")
+    values: list[Complex] = [np.zeros(0, dtype=np.complex128)] * given.size
+    shapes: list[Complex] = [np.zeros((0, 0), dtype=np.complex128)] * given.size
+    likeness = [np.zeros(0)] * given.size
+    above = None
+    for i in order:
+        pool = count + MARGIN * (1 if above is None else 2)
+        found = modes(source, pool, speed=float(given[i]), damped=damped, modulus=modulus)
+        value, shape = found["eigenvalue"].values, found["shape"].values
+        if above is None:
+            values[i], shapes[i], likeness[i] = value, shape, np.ones(value.size)
+        else:
+            mac = _assurance(system.M, shapes[above], shape)
+            with np.errstate(divide="ignore"):
+                apart = np.abs(np.log2(np.abs(values[above])[:, None] / np.abs(value)[None, :]))
+            score = mac - OCTAVE * np.minimum(np.nan_to_num(apart, nan=0.0), 10.0)
+            row, column = scipy.optimize.linear_sum_assignment(-score)
+            values[i], shapes[i] = value[column], shape[column]
+            likeness[i] = mac[row, column]
+            if row.size < len(values[above]):  # fewer modes swing here than above: drop those that ended
+                for j in order[: int(np.flatnonzero(order == i)[0])]:
+                    values[j], shapes[j], likeness[j] = values[j][row], shapes[j][row], likeness[j][row]
+        above = i
+    slowest = order[-1]
+    keep = np.argsort(np.abs(values[slowest]), kind="stable")[:count]
+    eigenvalue = np.array([v[keep] for v in values])
+    size = np.abs(eigenvalue)
+
+    from bearingdyn.results import dataset, inputs_of
+
+    over = ("speed", "mode")
+    return dataset(
+        {
+            "frequency": (over, size / (2 * np.pi), "Hz", "undamped natural frequency |λ|/2π"),
+            "damping_ratio": (
+                over,
+                np.divide(-eigenvalue.real, size, out=np.zeros_like(size), where=size > 0),
+                "1",
+                "−Re λ/|λ|",
+            ),
+            "eigenvalue": (over, eigenvalue, "rad/s", "λ of exp(λt)"),
+            "whirl": (
+                over,
+                np.array([whirl(system, s[keep]) for s in shapes]),
+                "1",
+                "+1 forward circle, −1 backward circle, 0 a line",
+            ),
+            "likeness": (
+                over,
+                np.array([a[keep] for a in likeness]),
+                "1",
+                "modal assurance criterion with the next higher speed",
+            ),
+        },
+        {
+            "analysis": "Campbell diagram",
+            "damped": int(damped),
+            "modulus": modulus,
+            **inputs_of(system.inputs),
+        },
+        {"speed": (given, "rad/s")},
+    )
+
+
+def whirl(system: System, shapes: Complex) -> Array:
+    """Direction (m,) in which shapes (m, n) e^{λt}, Im λ > 0, carry the parts that turn around: −1 … 1.
+
+    It is 2 Σ Im(x y*)/Σ(|x|² + |y|²) over the interfaces and points of those parts.
+    """
+    turning = set(system.turning)
+    rows = [r for name, r in system.outputs.items() if not turning or name.partition(".")[0] in turning]
+    x, y = (np.array([r[k] for r in rows]).reshape(-1, system.n) @ shapes.T for k in (0, 1))
+    lateral = (np.abs(x) ** 2 + np.abs(y) ** 2).sum(axis=0)
+    mass = np.abs(np.einsum("mi,ij,mj->m", shapes.conj(), system.M, shapes))
+    heavy = np.abs(system.M[:, :]).max()
+    turns = 2.0 * (x * y.conj()).imag.sum(axis=0)
+    seen = lateral * heavy > LATERAL * mass
+    return np.asarray(np.divide(turns, lateral, out=np.zeros_like(turns), where=seen))
+
+
+def _assurance(M: Array, a: Complex, b: Complex) -> Array:
+    """Modal assurance criterion (a, b) of shapes (a, n) and (b, n), the mass as weight."""
+    cross = np.abs(a.conj() @ M @ b.T) ** 2
+    own = [np.einsum("mi,ij,mj->m", s.conj(), M, s).real for s in (a, b)]
+    return np.asarray(cross / np.outer(*own))

@@ -1,0 +1,129 @@
+"""Sound power that vibrating surfaces would radiate as plane waves do: one number for a whole housing.
+
+ERP = ½ ρ c ∫ |v_n|² dA of the normal velocity's amplitude v_n. It has the radiation efficiency 1, which the
+surface of a machine reaches above its critical frequency and falls short of below: an upper estimate, and a
+fair measure to compare designs with, where one point of the surface is not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn import core
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.harmonic import frequencies, linear
+from bearingdyn.analysis.recovery import Input
+from bearingdyn.application import Application
+from bearingdyn.cms import Surface
+from bearingdyn.system import PartTerm, System
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = NDArray[np.float64]
+
+
+def radiated_power(
+    source: Equilibrium | Application | System,
+    frequency: ArrayLike,
+    inputs: Sequence[str],
+    surfaces: Sequence[str],
+    *,
+    speed: float = 0.0,
+    density: float = 1.204,
+    sound_speed: float = 343.2,
+    progress: core.Progress | None = None,
+) -> xarray.Dataset:
+    """Equivalent radiated power of surfaces ("housing.outside") under unit harmonic forces at `inputs`.
+
+    Parameters
+    ----------
+    source, frequency, inputs, speed
+        As in `frequency_response`; a "ground" input is a unit velocity of the ground.
+    surfaces
+        Surfaces of parts, by part and name.
+    density, sound_speed
+        Of the medium, kg/m³ and m/s; those of air at 20 °C.
+
+    Returns a Dataset over (frequency, surface, input): power, W per N², and mean_square, the squared
+    amplitude of the normal velocity averaged over the area, (m/s)² per N²; and area (surface), m².
+
+    Raises ValueError for an unknown surface or channel, a medium that is none, and as `frequency_response`.
+    """
+    f = frequencies(frequency)
+    for name, number in (("density", density), ("sound_speed", sound_speed)):
+        if not (number > 0 and np.isfinite(number)):
+            raise ValueError(f"{name} is {number}; it must be positive")
+    state = linear(source)
+    state.system.check_speed(speed)
+    found = [_surface(state.system, name) for name in surfaces]
+    given = [Input.of(state.system, name) for name in inputs]
+    force = np.array([i.force for i in given]).reshape(-1, state.system.n)
+
+    parts = {term.name: term for term, _ in found}
+    rows = np.vstack([np.zeros((0, state.system.n)), *(t.place for t in parts.values())])
+    omega = 2 * np.pi * f
+    x = state.solve(omega, force, rows, speed, progress)
+    rate = 1j * omega
+    at = 0
+    square = np.zeros((f.size, len(found), len(given)))
+    for term in parts.values():
+        own = x[:, at : at + len(term.place)]
+        at += len(term.place)
+        # per unit force the velocity is iω x; per unit velocity of the ground, whose acceleration is iω, iω
+        # iω x
+        velocity = own * np.stack([rate ** (1 if i.axis is None else 2) for i in given], axis=1)[:, None]
+        for i, one in enumerate(given):
+            if one.axis is not None:
+                velocity[:, :, i] += term.rigid[:, one.axis]
+        for k, (owner, surface) in enumerate(found):
+            if owner is term:
+                square[:, k] = np.einsum(
+                    "fai,ab,fbi->fi", velocity.conj(), surface.W, velocity, optimize=True
+                ).real
+    area = np.array([surface.area for _, surface in found])
+
+    from bearingdyn.results import dataset, inputs_of
+
+    over = ("frequency", "surface", "input")
+    return dataset(
+        {
+            "power": (
+                over,
+                0.5 * density * sound_speed * square,
+                "W/N²",
+                "equivalent radiated power, zero-to-peak input of one",
+            ),
+            "mean_square": (
+                over,
+                square / area[:, None],
+                "(m/s)²/N²",
+                "squared amplitude of the normal velocity, averaged over the area",
+            ),
+            "area": ("surface", area, "m²", "area of the surface"),
+        },
+        {
+            "analysis": "radiated power",
+            "speed": speed,
+            "density": density,
+            "sound_speed": sound_speed,
+            **inputs_of(state.system.inputs),
+        },
+        {"frequency": (f, "Hz"), "surface": (list(surfaces), ""), "input": (list(inputs), "")},
+    )
+
+
+def _surface(system: System, name: str) -> tuple[PartTerm, Surface]:
+    head, _, rest = name.partition(".")
+    for term in system.parts:
+        if term.name == head:
+            if rest not in term.element.surfaces:
+                raise ValueError(
+                    f"part {head!r} has no surface {rest!r}; it has {sorted(term.element.surfaces)}"
+                )
+            return term, term.element.surfaces[rest]
+    raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")

@@ -1,0 +1,95 @@
+"""The response of a rotor to its own unbalance, speed by speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.harmonic import QUANTITIES, linear
+from bearingdyn.analysis.recovery import Input, Output, recovered, requested
+from bearingdyn.application import Application
+from bearingdyn.system import System
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def unbalance_response(
+    source: Equilibrium | Application | System,
+    speeds: ArrayLike,
+    outputs: Sequence[str],
+    *,
+    quantity: str = "displacement",
+) -> xarray.Dataset:
+    """Synchronous response to all unbalances of an application, with the gyroscopic forces of each speed.
+
+    Parameters
+    ----------
+    source
+        Equilibrium, whose bearings are linearised; or an application or system without bearings. Its
+        unbalances are those of `Application.unbalance`, at their phases.
+    speeds
+        (s,) rad/s of the shaft, ≥ 0; the response has this frequency.
+    outputs
+        Channels of motions and forces, as in `frequency_response`.
+    quantity
+        "displacement", "velocity" or "acceleration", of motions.
+
+    Returns a Dataset with response (speed, output), complex, zero-to-peak: Re(response·e^{iΩt}), the shaft at
+    angle Ωt.
+
+    Raises ValueError for negative speeds, an application without unbalance, an unknown channel or quantity, a
+    damped part that would turn; ArithmeticError where the dynamic stiffness is singular.
+    """
+    given = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
+    if given.ndim != 1 or given.size == 0 or not (np.isfinite(given).all() and (given >= 0).all()):
+        raise ValueError("speeds must be a list of finite values of zero or more, in rad/s")
+    if quantity not in QUANTITIES:
+        raise ValueError(f"quantity is {quantity!r}; it must be one of {sorted(QUANTITIES)}")
+    state = linear(source)
+    system = state.system
+    system.check_speed(float(given.max()))
+    loads = [load for load in system.loads if load.kind == "rotating"]
+    if not loads:
+        raise ValueError("there is no unbalance; add one with app.unbalance(place, moment, phase)")
+    wanted = [Output.of(system, name) for name in outputs]
+    rows = requested(wanted, system.n)
+    inputs = [
+        Input(name, force, part=load.part, load=own)
+        for load in loads
+        for name, force, own in (("cos", load.p_cos, load.own_cos), ("sin", load.p_sin, load.own_sin))
+    ]
+    force = np.array([i.force for i in inputs])
+    # p_cos cos Ωt + p_sin sin Ωt = Re (p_cos − i p_sin) e^{iΩt}
+    phase = np.tile([1.0, -1j], len(loads))
+    response = np.zeros((given.size, len(outputs)), dtype=np.complex128)
+    for k, speed in enumerate(given):
+        if speed > 0.0:
+            omega = np.array([speed])
+            x = state.solve(omega, force, rows, float(speed), None)
+            unit = recovered(wanted, inputs, x, omega, float(speed), QUANTITIES[quantity], state.K, state.C)
+            response[k] = speed**2 * (unit[0] @ phase)
+
+    from bearingdyn.results import dataset, inputs_of
+
+    rate = {"displacement": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
+    units = [
+        ("N m" if o.turning else "N") if o.is_force else ("rad" if o.turning else "m") + rate for o in wanted
+    ]
+    made = dataset(
+        {
+            "response": (
+                ("speed", "output"),
+                response,
+                ", ".join(dict.fromkeys(units)),
+                f"complex {quantity}, zero-to-peak, at the frequency of the speed",
+            )
+        },
+        {"analysis": "unbalance response", "quantity": quantity, **inputs_of(system.inputs)},
+        {"speed": (given, "rad/s"), "output": (list(outputs), "")},
+    )
+    return made.assign_coords(unit=("output", units))

@@ -1,0 +1,147 @@
+"""A ball bearing by itself, its outer ring elastic: force, stiffness and loads of the balls at rest."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing.checks import vector
+from bearingdyn.bearing.minimum import minimum
+from bearingdyn.cms import Superelement
+from bearingdyn.parts.flexible_ring import FlexibleRing
+
+Float = NDArray[np.float64]
+
+
+class _State(NamedTuple):
+    z: Float
+    """(n,) coefficients of the raceway, m."""
+    g: Float
+    """(n,) force of the inner ring on the relative coefficients, N."""
+    K: Float
+    """(n, n) tangent of the balls, N/m."""
+    loads: Float
+
+
+@dataclass(frozen=True)
+class FlexibleBearing:
+    """A bearing whose outer ring is elastic, in a rigid housing at rest; rubber at its relaxed modulus.
+
+    As BallBearing: q (6,) is the motion of the inner ring, m and rad, here against the housing.
+
+    Raises ValueError for a ring made for another arm, or one that no rigid interface holds.
+    """
+
+    bearing: BallBearing
+    ring: FlexibleRing
+
+    def __post_init__(self) -> None:
+        if not math.isclose(self.bearing.arm, self.ring.arm, rel_tol=1e-9):
+            raise ValueError(
+                f"ring.arm is {self.ring.arm:.9g}; it must be the bearing's, {self.bearing.arm:.9g} m"
+            )
+        if self.ring.layer is None and self.ring.outside != "rigid":
+            raise ValueError(f"ring.outside is {self.ring.outside!r}, and nothing holds the ring")
+
+    @cached_property
+    def _element(self) -> Superelement:
+        return self.ring.superelement()
+
+    @cached_property
+    def raceway_stiffness(self) -> Float:
+        """Static stiffness (n, n) of the raceway's coefficients, the ring's outside held, N/m."""
+        element = self._element
+        K = element.stiffness().real
+        held = element.interfaces["outer"]
+        rows = element.raceways["raceway"].rows
+        at = np.flatnonzero(rows.any(axis=0))  # the coefficients are coordinates
+        rest = np.setdiff1d(np.arange(element.n), np.concatenate([held, at]))
+        S = K[np.ix_(at, at)]
+        if rest.size:
+            S = S - K[np.ix_(at, rest)] @ np.linalg.solve(K[np.ix_(rest, rest)], K[np.ix_(rest, at)])
+        return np.asarray(0.5 * (S + S.T))
+
+    @cached_property
+    def _relative(self) -> Float:
+        return self.bearing.coefficients(self._element.raceways["raceway"].series)
+
+    def _press(self, relative: Float, angle: float) -> tuple[float, Float, Float, Float]:
+        """Energy of the balls, force, tangent and loads at relative coefficients."""
+        from bearingdyn import core  # late: only here is the compiled kernel needed
+
+        b = self.bearing
+        kernel = b.kernel(self._element.raceways["raceway"].series)
+        shaft = angle / b.cage_ratio if b.cage_ratio else 0.0
+        g, K, _, loads = core.bearing_force(kernel, relative, 0 * relative, b.angle0 + angle, 0.0, shaft)
+        # ∫κ s^{3/2} ds = (2/5) F s with s = (F/κ)^{2/3}
+        return float(0.4 * (loads * (loads / kernel.kappa) ** (2 / 3)).sum()), g, K, loads
+
+    def _settle(self, q: ArrayLike, angle: float) -> _State:
+        """The raceway's shape at which the ring balances the balls, the inner ring held at q."""
+        own = self._relative @ vector("q", q, (6,), "(x, y, z, θx, θy, θz) of the inner ring")
+        S = self.raceway_stiffness
+
+        def stored(z: Float) -> tuple[float, Float, Float, float]:
+            energy, g, K, loads = self._press(own - z, angle)
+            return energy + 0.5 * float(z @ S @ z), S @ z - g, S + K, float(loads.sum())
+
+        # the first guess of a size; the trust region grows by itself
+        z = minimum(stored, np.zeros(len(S)), 1e-6)
+        _, g, K, loads = self._press(own - z, angle)
+        return _State(z, g, K, loads)
+
+    def raceway(self, q: ArrayLike, angle: float = 0.0) -> Float:
+        """Displacement (n,) of the raceway, m, coefficients as in RacewaySeries.up_to(ring.order)."""
+        return self._settle(q, angle).z
+
+    def force(self, q: ArrayLike, angle: float = 0.0) -> Float:
+        """Load (6,), N and N m, that holds the inner ring at q: +∇V, with the ring settled."""
+        return np.asarray(self._relative.T @ self._settle(q, angle).g)
+
+    def stiffness(self, q: ArrayLike, angle: float = 0.0) -> Float:
+        """Tangent stiffness (6, 6) ∂force/∂q, the ring following; N/m, N and N m."""
+        K = self._settle(q, angle).K
+        # balls and ring in series: K − K (S + K)⁻¹ K
+        series = K - K @ scipy.linalg.solve(self.raceway_stiffness + K, K, assume_a="pos")
+        return np.asarray(self._relative.T @ (0.5 * (series + series.T)) @ self._relative)
+
+    def ball_loads(self, q: ArrayLike, angle: float = 0.0) -> Float:
+        """Contact load (Z,) of each ball, N, balls in the order of their azimuth."""
+        return self._settle(q, angle).loads
+
+    def energy(self, q: ArrayLike, angle: float = 0.0) -> float:
+        """Energy stored in the contacts and the ring, J; force is its gradient."""
+        z = self._settle(q, angle).z
+        own = self._relative @ np.asarray(q, dtype=np.float64)
+        return self._press(own - z, angle)[0] + 0.5 * float(z @ self.raceway_stiffness @ z)
+
+    def displacement(self, load: ArrayLike, angle: float = 0.0) -> Float:
+        """Static equilibrium q (6,) of the inner ring under a load (6,), θz held, the housing fixed.
+
+        Raises ValueError on a wrong shape, ArithmeticError if no equilibrium is found.
+        """
+        f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
+        S, B = self.raceway_stiffness, self._relative
+        # tilts as lengths at the arm, so that all unknowns are of one kind
+        unit = np.diag([1.0, 1.0, 1.0, 1 / self.bearing.arm, 1 / self.bearing.arm])
+        J = np.hstack([B[:, :5] @ unit, -np.eye(len(S))])
+
+        def stored(x: Float) -> tuple[float, Float, Float, float]:
+            energy, g, K, loads = self._press(J @ x, angle)
+            z = x[5:]
+            gradient = J.T @ g
+            gradient[5:] += S @ z
+            hessian = J.T @ K @ J
+            hessian[5:, 5:] += S
+            return energy + 0.5 * float(z @ S @ z), gradient, hessian, float(loads.sum())
+
+        size = (float(np.linalg.norm(f)) / self.bearing.kappa) ** (2 / 3) + self.bearing.geometry.Pd / 2
+        x = minimum(stored, np.concatenate([unit @ f[:5], np.zeros(len(S))]), size or 1e-9)
+        return np.concatenate([unit @ x[:5], [0.0]])

@@ -1,0 +1,146 @@
+"""The outer ring that bends between the balls, alone or with its rubber (the paper's special CMS)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from bearingdyn.cms import Superelement
+from bearingdyn.fem.revolution_mesh import Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.layer import Layer
+from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.section import Cylinder, Groove, Line, Patch, Region, Surface, Where
+
+
+@dataclass(frozen=True)
+class FlexibleRing:
+    """An elastic outer ring, not turning, whose "raceway" carries the balls of one bearing.
+
+    With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
+    Without, the ring's own outside is "outer", held round by a rigid bore; or it is the raceway "outside",
+    as flexible as the raceway inside, and then only what carries that holds the ring.
+
+    r_inner: bore at the shoulders, or at the bottom of the groove if no groove_radius is given; r_outer,
+        width: m. The plane of the balls is at mid-width.
+    arm: radius, m, at which tilts become axial motion: that of the bearing to come, BallBearing.arm.
+    order: highest Fourier order in the azimuth; one more than the number of balls holds all they bend
+        alike. Bending falls off as order⁻⁴. The dent around each ball falls off as 1/order only: its sum
+        grows slowly without end, and Hertz's contact has it already, so that far higher orders do no good.
+    groove: axial width of the face that carries the balls, m; None: half of the ring's.
+    groove_radius: radius of the groove's section, m (fo·Dw): the section then has the groove cut into it;
+        None: a plain rectangle.
+    layer: rubber, its r_inner equal to r_outer here; its material, moduli and refinement are taken.
+    outside: "rigid" or "flexible", where there is no layer.
+    damping: ratio ζ of the ring's free elastic modes. refinement: mesh density.
+    f_max: modes up to this frequency, Hz, join the static shapes; 0: none. In rubber static shapes alone are
+        some 6 % off at 5 kHz; with three times the highest frequency of interest 0.2 % are left.
+
+    Raises ValueError for dimensions out of order, a groove that does not fit, or a layer that does not touch.
+    """
+
+    r_inner: float
+    r_outer: float
+    width: float
+    arm: float
+    order: int = 10
+    groove: float | None = None
+    groove_radius: float | None = None
+    layer: Layer | None = None
+    outside: Literal["rigid", "flexible"] = "rigid"
+    material: Elastic = STEEL
+    damping: float = 0.0
+    f_max: float = 0.0
+    refinement: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not self.r_inner > 0:
+            raise ValueError(f"r_inner is {self.r_inner}; a ring needs a positive inner radius, m")
+        if not self.r_inner < self.r_outer < math.inf:
+            raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
+        if not 0 < self.width < math.inf:
+            raise ValueError(f"width is {self.width}; it must be positive, m")
+        if self.groove is not None and not 0 < self.groove <= self.width:
+            raise ValueError(f"groove is {self.groove}; it must lie in 0...width = {self.width} m")
+        if self.groove_radius is not None:
+            half = 0.5 * self.track
+            if not self.groove_radius > half or not self.track < self.width:
+                raise ValueError(
+                    f"groove_radius is {self.groove_radius}; it must exceed half the groove's width, "
+                    f"{half} m, and the groove must be narrower than the ring"
+                )
+            if not self.depth < self.r_outer - self.r_inner:
+                raise ValueError(f"the groove is {self.depth:g} m deep and cuts the ring; make it narrower")
+        if self.outside not in ("rigid", "flexible"):
+            raise ValueError(f'outside is {self.outside!r}; it must be "rigid" or "flexible"')
+        if self.layer is not None:
+            if not math.isclose(self.layer.r_inner, self.r_outer, rel_tol=1e-9):
+                raise ValueError(
+                    f"layer.r_inner is {self.layer.r_inner}; a layer is bonded to the ring at "
+                    f"r_outer = {self.r_outer} m"
+                )
+            if self.outside != "rigid":
+                raise ValueError("outside is \"flexible\"; with a layer the ring's outside is the rubber's")
+        _ = self.body
+
+    @property
+    def track(self) -> float:
+        """Axial width of the face that carries the balls, m."""
+        return 0.5 * self.width if self.groove is None else self.groove
+
+    @property
+    def depth(self) -> float:
+        """Depth of the groove below the shoulders, m."""
+        if self.groove_radius is None:
+            return 0.0
+        return self.groove_radius - math.sqrt(self.groove_radius**2 - (0.5 * self.track) ** 2)
+
+    @cached_property
+    def body(self) -> Revolved:
+        """The ring, and its rubber, as a body of revolution."""
+        half, track = 0.5 * self.width, 0.5 * self.track
+        regions = [Region((self.r_inner, self.r_outer), (-half, half), self.material)]
+        face: Surface = Cylinder(self.r_inner, (-track, track))
+        outer = self.r_outer
+        if self.layer is not None:
+            outer, reach = self.layer.r_outer, 0.5 * self.layer.width
+            regions.append(Region((self.r_outer, outer), (-reach, reach), self.layer.material, graded=True))
+        section = None
+        if self.groove_radius is not None:
+            face = Where(
+                lambda r, z: (np.abs(z) <= track * (1 + 1e-9)) & (r <= self.r_inner + 1.01 * self.depth)
+            )
+            section = self._grooved([q.rectangle for q in regions], track)
+        grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0)}
+        interfaces: dict[str, Surface] = {}
+        if self.layer is None and self.outside == "flexible":
+            grooves["outside"] = Groove(Line((outer, -half), (outer, half)), outer, self.order, z=0.0)
+        else:
+            interfaces["outer"] = Cylinder(outer)
+        return Revolved(
+            tuple(regions) if section is None else tuple(Patch(q.material) for q in regions),
+            interfaces,
+            damping=self.damping,
+            f_max=self.f_max,
+            moduli=None if self.layer is None else self.layer.moduli,
+            refinement=self.refinement,
+            grooves=grooves,
+            section=section,
+        )
+
+    def _grooved(self, rectangles: list[Rectangle], track: float) -> RevolutionMesh:
+        """The mesh of the rectangles, the ring's lines bent so that the innermost follows the groove."""
+        radius = self.groove_radius or 0.0
+        mesh = revolution_mesh(rectangles, self.refinement, z_near=np.linspace(-track, track, 9))
+        z = np.clip(mesh.z, -track, track)
+        bottom = np.sqrt(radius**2 - z**2) - math.sqrt(radius**2 - track**2)
+        share = (self.r_outer - mesh.r) / (self.r_outer - self.r_inner)
+        return replace(mesh, r=mesh.r + np.maximum(share, 0.0) * bottom)
+
+    def superelement(self) -> Superelement:
+        """Reduced matrices: interface, raceway coefficients, internal modes; see Revolved.superelement."""
+        return self.body.superelement()

@@ -1,0 +1,140 @@
+"""Shapes of a body of revolution, order by order: static ones of its boundaries, and what joins them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from bearingdyn.cms import inertia_shapes, orthogonalise
+from bearingdyn.fem.eigen import factorise, lowest_modes
+from bearingdyn.fem.revolution import Harmonic
+from bearingdyn.parts.boundaries import Boundaries
+
+Float = NDArray[np.float64]
+
+ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it is rigid motion
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeMaker:
+    """What the shapes depend on besides the moduli.
+
+    bulk, density: of each region, Pa and kg/m³. f_max: limit of the modes, Hz. size: of the section, m.
+    inertia: rounds of inertia shapes.
+    """
+
+    boundaries: Boundaries
+    bulk: Sequence[float]
+    density: Sequence[float]
+    f_max: float
+    size: float
+    inertia: int = 0
+
+    def constraint_shapes(
+        self, h: Harmonic, shear: Sequence[complex], grooves: bool = True
+    ) -> tuple[Any, Any]:
+        """Static shapes (n, columns) of unit boundary motions at given moduli, and their stiffness.
+
+        Boundary motions are those of the interfaces and, unless they are left free, of the grooves: the
+        shape of least energy that has the groove's averages, which is what loads on the groove make.
+        """
+        K = h.stiffness(self.bulk, shear)
+        at, R = self.boundaries.held(h)
+        inner = np.setdiff1d(h.free, at)
+        L = self.boundaries.averages(h)[: None if grooves else 0, inner]
+        faces = R.shape[1]
+        u = np.zeros((h.n, faces + len(L)), dtype=K.dtype)
+        u[at, :faces] = R
+        if inner.size:
+            lu = self._held(h, K)
+            if faces:
+                u[inner, :faces] = -lu.solve(np.asarray(K[inner][:, at] @ R, dtype=K.dtype))
+            if len(L):
+                X = lu.solve(np.asarray(L.T, dtype=K.dtype, order="F"))
+                X = X @ np.linalg.inv(L @ X)
+                u[inner, :faces] -= X @ (L @ u[inner, :faces])
+                u[inner, faces:] = X
+        return u, u.T @ (K @ u)
+
+    def _held(self, h: Harmonic, K: Any) -> Any:
+        """Factors of a stiffness (n, n), the interfaces held or, where there are none, the grooves sprung."""
+        at, _ = self.boundaries.held(h)
+        inner = np.setdiff1d(h.free, at)
+        A = K[inner][:, inner]
+        if not at.size:
+            # Springs on the averages hold a free body; given averages, they change no shape.
+            L = self.boundaries.averages(h)[:, inner]
+            hold = abs(A).max() / (L**2).sum(axis=1).min()
+            A = A + hold * scipy.sparse.csr_matrix(L.T) @ scipy.sparse.csr_matrix(L)
+        return factorise(A)
+
+    def basis(self, h: Harmonic, levels: Sequence[Sequence[float]]) -> tuple[Float, int]:
+        """Basis (n, columns) of a family: constraint shapes, then internal ones; and the number of the first.
+
+        Internal are the differences of constraint shapes between moduli, which vanish on the boundaries,
+        and the modes with the interfaces held and the grooves free, less their motion there. They are made
+        modes of each other, of unit modal mass, and those
+        without energy of their own are dropped (torsion has none: it changes no volume, so its shape does
+        not depend on the modulus).
+        """
+        static, k = self.constraint_shapes(h, levels[0])
+        K, M = h.stiffness(self.bulk, levels[0]), h.mass_matrix(self.density)
+        scale = np.sum(np.abs(static) * (abs(K) @ np.abs(static)), axis=0)
+        moving = np.diag(k) > ROUND_OFF * scale
+        # Rigid motion of all boundaries has the same shape at every modulus: those of the first add nothing.
+        moving[: self.boundaries.held(h)[1].shape[1] // max(len(self.boundaries.faces), 1)] = False
+        unit = 1.0 / np.sqrt(np.diag(k)[moving])
+        extra = [(self.constraint_shapes(h, level)[0] - static)[:, moving] * unit for level in levels[1:]]
+        if self.inertia:
+            for level in levels:
+                extra += self._inertia_shapes(h, h.stiffness(self.bulk, level), M, level)
+        if self.f_max > 0:
+            extra.append(self._modes_beyond(h, K, M, levels[0], static))
+        internal = np.hstack(extra) if extra else np.zeros((h.n, 0))
+        _, internal = orthogonalise(internal, K, M)
+        return np.hstack([static, internal]), static.shape[1]
+
+    def _inertia_shapes(self, h: Harmonic, K: Any, M: Any, level: Sequence[float]) -> list[Float]:
+        """Answers (n, m), at rest on the boundaries, to the inertia of the constraint shapes at a modulus."""
+        inner = np.setdiff1d(h.free, self.boundaries.held(h)[0])
+        if not inner.size:
+            return []
+        static = self.constraint_shapes(h, level)[0]
+        lu = self._held(h, K)
+
+        def answer(load: Float) -> Float:
+            u = np.zeros((h.n, load.shape[1]))
+            u[inner] = lu.solve(load)
+            return self._beyond(h, u, static)[inner]
+
+        return inertia_shapes(answer, K, M, static, inner, self.inertia)
+
+    def _beyond(self, h: Harmonic, shapes: Float, static: Float) -> Float:
+        """Shapes (n, m) at rest on the interfaces, less the constraint shapes that move the grooves alike."""
+        faces = self.boundaries.held(h)[1].shape[1]
+        return np.asarray(shapes - static[:, faces:] @ (self.boundaries.averages(h) @ shapes))
+
+    def _modes_beyond(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float], static: Float) -> Float:
+        """Modes (n, m) with interfaces held and grooves free, less the constraint shapes they move by."""
+        at, _ = self.boundaries.held(h)
+        inner = np.setdiff1d(h.free, at)
+        shift = 0.0 if at.size else self.slow_rate(shear) ** 2
+        limit = math.sqrt(self.f_max**2 + shift / (2 * math.pi) ** 2)
+        K_i, M_i = K[inner][:, inner], M[inner][:, inner]
+        frequency, phi = lowest_modes(K_i + shift * M_i, M_i, f_max=limit)
+        squares = (2 * math.pi * frequency) ** 2 - shift
+        elastic = squares > 1e-6 * shift
+        modes = np.zeros((h.n, int(elastic.sum())))
+        modes[inner] = phi[:, elastic] / np.sqrt(squares[elastic])
+        return self._beyond(h, modes, static)
+
+    def slow_rate(self, shear: Sequence[float]) -> float:
+        """A tenth of the slowest shear wave's rate, 1/s: as a shift it holds a free body and keeps digits."""
+        speeds = [math.sqrt(G / rho) for G, rho in zip(shear, self.density, strict=True)]
+        return 0.1 * min(speeds) / self.size

@@ -1,0 +1,96 @@
+"""Figures of modes: over the speed, and on the parts."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bearingdyn.plot.frame import colour, finish, new_axes, style
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+# a mode that whirls at least as round as this is drawn as forward or backward
+ROUND = 0.1
+# of the size of the structure, by which the largest motion of a shape is drawn
+SWING = 0.1
+
+
+def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes | None = None) -> Axes:
+    """Natural frequencies by bd.campbell over the speed, in rpm; forward, backward and other modes apart.
+
+    orders: of the shaft speed, drawn as rays.
+    """
+    rpm = data["speed"].values * 30 / math.pi
+    order = np.argsort(rpm)
+    frequency, whirl = data["frequency"].values[order], data["whirl"].values[order]
+    rpm = rpm[order]
+    kinds = {"forward": (0, "-"), "backward": (1, "--"), "neither": (2, ":")}
+    with style():
+        ax = ax or new_axes()
+        named: set[str] = set()
+        for k in range(frequency.shape[1]):
+            turn = float(np.mean(whirl[:, k]))
+            kind = "forward" if turn > ROUND else "backward" if turn < -ROUND else "neither"
+            shade, dash = kinds[kind]
+            label = kind if kind not in named else None
+            named.add(kind)
+            ax.plot(rpm, frequency[:, k], color=colour(shade), linestyle=dash, label=label)
+        top = float(frequency.max(initial=0.0)) * 1.05
+        for each in orders:
+            ax.plot(rpm, each * rpm / 60, color="0.6", linewidth=0.7)
+            end = min(float(rpm[-1]), 60 * top / each)
+            ax.annotate(f"{each:g}×", (end, each * end / 60), ha="right", va="bottom", color="0.35")
+        ax.set_ylim(0.0, top)
+        ax.set_xlim(float(rpm[0]), float(rpm[-1]))
+        ax.set_xlabel("speed, rpm")
+        ax.set_ylabel("natural frequency, Hz")
+        finish(ax, "Campbell diagram", legend=True)
+    return ax
+
+
+def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis: str = "y") -> Axes:
+    """One mode by bd.mode_shapes, seen from the side: motion along `axis` over z, part by part, at rest in
+    grey.
+
+    The largest motion is drawn a tenth as long as the structure. Phases are turned so that it is real; what a
+    damped mode does a quarter period later is drawn thin.
+
+    Raises ValueError for a mode or an axis that is not there.
+    """
+    if axis not in ("x", "y"):
+        raise ValueError(f"axis is {axis!r}; a side view has 'x' or 'y' upwards")
+    count = data.sizes["mode"]
+    if not 0 <= mode < count:
+        raise ValueError(f"mode is {mode}; there are modes 0 to {count - 1}")
+    motion = data["motion"].values[mode]
+    up, along = (motion[:, "xyz".index(a)] for a in (axis, "z"))
+    z = data["position"].sel(axis="z").values
+    height = data["position"].sel(axis=axis).values
+    both = np.concatenate([up, along])
+    largest = both[int(np.argmax(np.abs(both)))]
+    size = max(float(np.ptp(z)), float(np.ptp(height)), 1e-3)
+    scale = SWING * size / largest if largest else 0.0
+    up, along = up * scale, along * scale
+    parts: dict[str, list[int]] = {}
+    for k, name in enumerate(data["place"].values):
+        parts.setdefault(str(name).partition(".")[0], []).append(k)
+    with style():
+        ax = ax or new_axes(width=6.8)
+        for k, (part, members) in enumerate(parts.items()):
+            at = np.array(sorted(members, key=lambda i: z[i]))
+            ax.plot(z[at] * 1e3, height[at] * 1e3, color="0.75", linewidth=0.8, marker=".", zorder=1)
+            for turn, width in ((1.0, 1.6), (-1j, 0.6)):
+                x, y = z[at] + (along[at] * turn).real, height[at] + (up[at] * turn).real
+                label = part if width > 1.0 else None
+                ax.plot(
+                    x * 1e3, y * 1e3, color=colour(k), linewidth=width, marker="o", markersize=3, label=label
+                )
+        ax.set_xlabel("z, mm")
+        ax.set_ylabel(f"{axis}, mm")
+        frequency = float(data["frequency"].values[mode])
+        finish(ax, f"Mode {mode + 1} at {frequency:.4g} Hz", legend=True)
+    return ax

@@ -1,0 +1,193 @@
+"""Flexible rings in applications: loose in a bore, at rest, over frequency and in time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import bearingdyn as bd
+from bearingdyn.bearing import LooseFit
+from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.parts import FlexibleBearing, FlexibleRing, Layer, Revolved, RigidBody
+from flexible_rings import (
+    B6305,
+    CUSHIONED,
+    LAYER,
+    LOAD,
+    LOOSE,
+    MM,
+    RING,
+    RUBBER,
+    STIFF,
+    audited,
+    hung,
+    loose,
+)
+
+
+def test_a_stiff_ring_drops_through_the_clearance_of_its_bore() -> None:
+    load, angle = (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0), -0.5 * math.pi
+    for clearance in (0.0, 20e-6, 50e-6):
+        stiff = replace(LOOSE, material=STIFF)
+        eq = bd.equilibrium(loose(clearance, stiff, kappa=3e15))
+        drop = -eq.displacement("rotor.centre")[1]
+        # the seat itself gives (3 kN/3e15)^⅔ = 0.01 µm
+        assert drop == pytest.approx(clearance / 2 - B6305.displacement(load, angle)[1], abs=2e-8)
+        expected = B6305.ball_loads(B6305.displacement(load, angle), angle)
+        np.testing.assert_allclose(eq.bearings["b"].loads, expected, rtol=1e-5, atol=0.01)
+
+
+def test_a_loose_flexible_ring_lets_one_ball_carry_more(capsys: pytest.CaptureFixture[str]) -> None:
+    """Direction of change.
+
+    In a bore larger than itself the ring rests on the line under the load and is pressed towards the bore's
+    flatter curve: beside the lowest ball the race recedes, the neighbours are relieved, the lowest ball
+    carries more, and the more the larger the bore. The shaft drops by more than half of the clearance.
+    """
+    load, angle = (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0), -0.5 * math.pi
+    rigid = B6305.displacement(load, angle)
+    peak = B6305.ball_loads(rigid, angle).max()
+    lines, sag, peaks = [f"rigid rings: {-rigid[1] * 1e6:.2f} µm, peak {peak:.1f} N"], [], []
+    clearances = np.array([0.0, 5e-6, 20e-6, 50e-6])
+    for clearance in clearances:
+        eq = bd.equilibrium(loose(clearance))
+        drop, Q = -eq.displacement("rotor.centre")[1], eq.bearings["b"].loads
+        lines.append(
+            f"{clearance * 1e6:4.0f} µm loose: {drop * 1e6:.2f} µm, peak {Q.max():.1f} N, "
+            f"{np.count_nonzero(eq.bearings['seat'].loads)} of 60 stations in contact"
+        )
+        sag.append(drop + rigid[1] - clearance / 2)
+        peaks.append(Q.max())
+        # the bore carries what the balls bring
+        np.testing.assert_allclose(eq.bearings["seat"].force, eq.bearings["b"].force, rtol=1e-6, atol=1e-3)
+    with capsys.disabled():
+        print("", *lines, sep="\n  ")
+    assert peaks[0] < peak
+    assert (np.diff(peaks) > 0).all()
+    assert peaks[2] > 1.05 * peak
+    assert (np.diff(sag) > 0).all()
+    assert sag[0] > 0
+
+
+def test_the_loose_seat_does_not_depend_on_its_springs() -> None:
+    one = bd.equilibrium(loose(20e-6))
+    for fit in ({"kappa": 3e14}, {"stations": 120}, {"hold": 1e9}):
+        other = bd.equilibrium(loose(20e-6, **fit))
+        y, wanted = (e.displacement("rotor.centre")[1] for e in (other, one))
+        # a tenth of a micrometre is the seat's own give
+        assert y == pytest.approx(wanted, abs=1.5e-7)
+        np.testing.assert_allclose(other.bearings["b"].loads, one.bearings["b"].loads, rtol=2e-3, atol=1.0)
+
+
+def test_energy_of_a_run_in_a_loose_seat_is_accounted_for() -> None:
+    ring = replace(LOOSE, damping=0.02, order=8)
+    missing, after, run = audited(bd.equilibrium(loose(20e-6, ring)), 1.25e-6, "seat.loaded")
+    assert abs(missing) < 1e-4 * after["energy_throughput"]
+    touching = run["record"].sel(channel="seat.loaded").values
+    assert touching.max() > touching.min() > 0  # the contact rolls with the balls
+
+
+def test_the_application_is_the_bearing_by_itself() -> None:
+    free = hung(RING)
+    free.supports.clear()
+    free.ground("ring.outer")
+    eq = bd.equilibrium(free)
+    brg = FlexibleBearing(B6305, RING)
+    # two minimisations of one energy, each to 1e-12 of the load
+    np.testing.assert_allclose(eq.displacement("rotor.centre"), brg.displacement(LOAD), rtol=1e-7, atol=1e-12)
+    state = eq.bearings["b"]
+    np.testing.assert_allclose(state.loads, brg.ball_loads(brg.displacement(LOAD)), rtol=1e-6)
+    np.testing.assert_allclose(state.force, LOAD[:3], rtol=1e-9, atol=1e-6)
+    x = state.series.index(0, 1, 0)
+    assert state.radial_stiffness == pytest.approx(0.5 * (state.K[x, x] + state.K[x + 1, x + 1]))
+
+
+def test_the_response_at_0_hz_is_the_tangent_and_the_stiffest_mode_softens() -> None:
+    eq = bd.equilibrium(hung(RING))
+    K = FlexibleBearing(B6305, RING).stiffness(eq.displacement("rotor.centre"))
+    K = K + np.diag([0, 0, 0, 1e4, 1e4, 1.0])
+    names = [f"rotor.centre.{c}" for c in ("x", "y", "z")]
+    response = bd.frequency_response(eq, [0.0, 500.0], names, names)["response"].values
+    np.testing.assert_allclose(response[0].real, np.linalg.inv(K)[:3, :3], rtol=1e-6, atol=1e-13)
+    assert np.isfinite(response).all()
+    soft, hard = (bd.modes(bd.equilibrium(hung(ring)))["frequency"].values[:6] for ring in (RING, None))
+    assert soft[5] < hard[5]  # the stiffest, which feels the ring most
+    # by the 0.7 % that the ring adds to the bearing's deflection, more or less
+    np.testing.assert_allclose(soft, hard, rtol=0.01)
+
+
+@pytest.mark.parametrize("ring", [replace(RING, damping=0.01), replace(CUSHIONED, damping=0.01, order=6)])
+def test_energy_of_a_run_on_a_flexible_ring_is_accounted_for(ring: FlexibleRing) -> None:
+    missing, after, run = audited(bd.equilibrium(hung(ring)), 2.5e-6, "b.force.z")
+    # the bound of the motor's audit; powers are summed by the trapezoidal rule, second order in dt
+    assert abs(missing) < 1e-4 * after["energy_throughput"]
+    record = run["record"]
+    assert record.sel(channel="b.loaded").values.min() >= 1
+    # forces on the rotor: mean of what the balls carry is the load, less the springs
+    assert record.sel(channel="b.force.y").values.mean() == pytest.approx(-2000.0, rel=0.02)
+
+
+def test_a_run_starts_at_its_equilibrium() -> None:
+    eq = bd.equilibrium(hung(CUSHIONED))
+    run = bd.transient(eq, speed=0.0, dt=5e-6, steps=400, record=["rotor.centre.y", "b.force.z"])
+    y, z = run["record"].values.T
+    # nothing moves: the equilibrium is known to 1e-12 of the load, over the softest stiffness 1e6 N/m
+    assert np.ptp(y) < 1e-13 + 1e-9 * abs(y[0])
+    assert z == pytest.approx(200.0, rel=1e-6)
+
+
+def test_bad_input_is_named() -> None:
+    for change, name in (
+        ({"r_inner": -1.0}, "r_inner"),
+        ({"r_outer": 27 * MM}, "r_outer"),
+        ({"width": math.nan}, "width"),
+        ({"arm": 0.0}, "arm"),
+        ({"order": 0}, "order"),
+        ({"groove": 20 * MM}, "groove"),
+        ({"groove_radius": 1 * MM}, "groove_radius"),
+        ({"groove_radius": 4.3 * MM, "groove": 8.5 * MM}, "deep"),
+        ({"outside": "loose"}, "outside"),
+        ({"layer": Layer(32 * MM, 35 * MM, 17 * MM, RUBBER)}, "layer.r_inner"),
+        ({"layer": LAYER, "outside": "flexible"}, "outside"),
+    ):
+        with pytest.raises(ValueError, match=name):
+            replace(RING, **change)
+    with pytest.raises(ValueError, match="arm"):
+        FlexibleBearing(B6305, replace(RING, arm=20 * MM))
+    with pytest.raises(ValueError, match="outside"):
+        FlexibleBearing(B6305, LOOSE)
+    app = hung(RING)
+    with pytest.raises(ValueError, match="carries a bearing already"):
+        app.bearing("c", B6305, inner="rotor.centre", outer="ring.raceway")
+    with pytest.raises(ValueError, match="raceway"):
+        app.connect("rotor.centre", "ring.raceway")
+    app = bd.Application()
+    app.add("rotor", RigidBody(1.0, (1e-3,) * 3))
+    app.add("ring", RING)
+    app.ground("ring.outer")
+    app.free("rotor.centre")
+    with pytest.raises(ValueError, match=r"arm at 0\.02"):
+        app.bearing("b", replace(B6305, arm=0.02), inner="rotor.centre", outer="ring.raceway")
+    with pytest.raises(ValueError, match=r"ring\.raceway carries no balls"):
+        app.check_joints()
+    app.free("ring.raceway")
+    app.check_joints()
+    app = loose(20e-6)
+    with pytest.raises(ValueError, match="in use already"):
+        app.fit("again", LooseFit(1e-5), ring="ring.outside", bore="ground")
+    with pytest.raises(ValueError, match="no flexible face"):
+        app.fit("again", LooseFit(1e-5), ring="rotor.centre", bore="ground")
+    with pytest.raises(ValueError, match="taken"):
+        app.fit("b", LooseFit(1e-5), ring="ring.outside", bore="ground")
+    with pytest.raises(ValueError, match="stations"):
+        bd.equilibrium(loose(20e-6, stations=12))
+    for wrong in ({"clearance": -1e-6}, {"kappa": 0.0}, {"hold": math.nan}, {"stations": 2}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            LooseFit(**{"clearance": 1e-5, **wrong})
+    with pytest.raises(ValueError, match="terms"):
+        RacewaySeries(((1, 0, 0), (0, 1, 0)))
+    with pytest.raises(ValueError, match="grooves"):
+        Revolved(RING.body.regions, {"raceway": RING.body.interfaces["outer"]}, grooves=RING.body.grooves)

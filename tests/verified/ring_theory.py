@@ -1,0 +1,61 @@
+"""A ring under radial loads by theory: thin and thick curved beams, and plane elasticity order by order."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+
+def thin_ring(P: float, E: float, I: float, R: float) -> tuple[float, float]:
+    """Change of the diameter along two opposed outward loads P and across them, m, bending alone.
+
+    Timoshenko, Strength of Materials, part 1, art. 80.
+    """
+    along, across = math.pi / 4 - 2 / math.pi, 0.5 - 2 / math.pi
+    return P * R**3 / (E * I) * along, P * R**3 / (E * I) * across
+
+
+def thick_ring(P: float, E: float, nu: float, a: float, b: float, width: float) -> tuple[float, float]:
+    """The same with curvature, hoop stretch and shear, rectangular section a < r < b.
+
+    Roark's Formulas for Stress and Strain, 7th ed., table 9.2, case 1, with α = e/R and β = 2F(1 + ν)e/R
+    for thick rings, F = 6/5.
+    """
+    R, h = 0.5 * (a + b), b - a
+    e = R - h / math.log(b / a)
+    k2 = 1 - e / R
+    k1 = k2 + 2 * 1.2 * (1 + nu) * e / R
+    unit = P * R**3 / (E * width * h**3 / 12)
+    return unit * (k1 * math.pi / 4 - 2 * k2**2 / math.pi), -unit * (k1 / 2 - k2 + 2 * k2**2 / math.pi)
+
+
+def annulus_compliance(n: int, E: float, nu: float, a: float, b: float) -> float:
+    """u_r at r = a, m, for the pressure cos nφ of 1 Pa there, plane stress, outside free; n = 0 or n ≥ 2.
+
+    Michell's solution: Barber, Elasticity, tables 8.1 and 9.1; n = 0: Lamé.
+    """
+    if n == 0:
+        return a / E * ((b**2 + a**2) / (b**2 - a**2) + nu)
+    mu, kappa = E / (2 * (1 + nu)), (3 - nu) / (1 + nu)
+
+    def radial(r: float) -> list[float]:
+        return [
+            -(n + 1) * (n - 2) * r**n,
+            -(n + 2) * (n - 1) * r**-n,
+            -n * (n - 1) * r ** (n - 2),
+            -n * (n + 1) * r ** (-n - 2),
+        ]
+
+    def shear(r: float) -> list[float]:
+        return [
+            n * (n + 1) * r**n,
+            -n * (n - 1) * r**-n,
+            n * (n - 1) * r ** (n - 2),
+            -n * (n + 1) * r ** (-n - 2),
+        ]
+
+    # lengths in units of a
+    ratio = b / a
+    c = np.linalg.solve([radial(1.0), shear(1.0), radial(ratio), shear(ratio)], [-1.0, 0.0, 0.0, 0.0])
+    return float(np.dot([kappa - n - 1, kappa + n - 1, -n, n], c)) * a / (2 * mu)
