@@ -25,7 +25,6 @@ import numpy as np
 
 import bearingdyn as bd
 from bearingdyn import plot
-from bearingdyn.analysis import envelope_spectrum
 
 sys.path.insert(0, "../examples")
 import fault_bench as bench
@@ -62,7 +61,7 @@ axes = plot.spectrum(spectra, lines, f_max=3e3)
 
 # %%
 band = (1e3, 6e3)  # Hz
-envelopes = {label: envelope_spectrum(run, bench.SENSOR, band) for label, run in runs.items()}
+envelopes = {label: bd.envelope_spectrum(run, bench.SENSOR, band) for label, run in runs.items()}
 axes = plot.spectrum(
     {label: envelopes[label] for label in ("spalled", "sound")}, bench.lines(harmonics=3), f_max=400.0
 )

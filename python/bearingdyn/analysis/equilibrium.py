@@ -22,6 +22,8 @@ class Equilibrium:
 
     Layers carry their relaxed modulus G0, or the instantaneous one if `modulus` says so. The free spin of
     shafts about z is left at zero.
+
+    x: m and rad. Reference: paper section 4.1, whose linearisation starts from this state.
     """
 
     system: System
@@ -87,6 +89,8 @@ def equilibrium(
 
     Raises ValueError where a body is free to move, ArithmeticError where no balance is found, which names the
     body that lost its support.
+
+    Returns an Equilibrium. Reference: J. J. Moré and D. C. Sorensen, SIAM J. Sci. Stat. Comput. 4 (1983) 553.
     """
     system = app if isinstance(app, System) else assemble(app)
     if not math.isfinite(angle):

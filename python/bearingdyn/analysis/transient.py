@@ -201,6 +201,8 @@ def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -
     time, by default as many as there are cores.
 
     Raises what the first failing case, in their order, raised, after all have ended.
+
+    Returns a list of Datasets as `transient` returns them.
     """
     from concurrent.futures import ThreadPoolExecutor
 

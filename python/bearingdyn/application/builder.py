@@ -98,6 +98,17 @@ class Application(Plan):
 
     An interface is named "part.interface" ("shaft.left"); a point that a part offers for output and loads
     is named in the same manner. Every interface must be joined, grounded, given a bearing, or declared free.
+
+    Names are checked at once, joints when the system is assembled; either way a ValueError names the part and
+    interface. Lengths, forces, masses in SI; vectors in the order (x, y, z, θx, θy, θz).
+
+    >>> import bearingdyn as bd
+    >>> app = bd.Application()
+    >>> app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
+    >>> app.ground("mass.centre", stiffness=[1e6] * 6)
+    >>> app.load("mass.centre", (0, -20.0, 0, 0, 0, 0))
+    >>> print(f"{bd.equilibrium(app).displacement('mass.centre')[1] * 1e6:.1f} µm")
+    -20.0 µm
     """
 
     def add(self, name: str, part: Part) -> None:
