@@ -19,7 +19,6 @@ import os
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -37,33 +36,23 @@ WORKERS = 2
 RANGES = {"thickness": (0.002, 0.006), "width": (0.012, 0.026), "G0": (5e5, 5e6, "log"), "loss": (0.2, 3.0)}
 
 
-@dataclass(frozen=True)
-class Reduced:
-    """A part reduced already."""
-
-    element: bd.Superelement
-
-    def superelement(self) -> bd.Superelement:
-        return self.element
-
-
 @functools.cache
-def shaft() -> Reduced:
+def shaft() -> bd.Superelement:
     """The shaft, reduced once in each process."""
-    return Reduced(motor.shaft().superelement())
+    return motor.shaft().superelement()
 
 
 @functools.lru_cache(maxsize=1)
-def housing(bore: float) -> Reduced:
+def housing(bore: float) -> bd.Superelement:
     """The housing, reduced where the bore is another than before."""
-    return Reduced(motor.housing(2 * bore).superelement())
+    return motor.housing(2 * bore).superelement()
 
 
 def build(case: dict[str, Any]) -> bd.Application:
     """The motor with the layer of this case on both sides."""
     bore, thickness, G0 = case["bore"], case["thickness"], case["G0"]
     rubber = bd.Maxwell(G0, [0.5 * G0, case["loss"] * G0], [1e-3, 5e-5], K=2e9, density=1150.0)
-    layer = Reduced(bd.Layer(bore - thickness, bore, case["width"], rubber).superelement())
+    layer = bd.Layer(bore - thickness, bore, case["width"], rubber)
     ring = bd.RigidBody.ring(motor.RING[0], bore - thickness, motor.RING[2])
     ball = motor.bearing("6305", clearance=10e-6, damping=motor.CONTACT_DAMPING)
     app = bd.Application()

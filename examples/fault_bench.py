@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 
 import motor
@@ -32,34 +31,24 @@ ORDERS = range(2, 41)  # of the waves
 WAVES = WavinessSpectrum(60e-9, exponent=1.5, order=2, scatter="rayleigh")
 
 
-@dataclass(frozen=True)
-class Reduced:
-    """A part reduced already: cases share it."""
-
-    element: bd.Superelement
-
-    def superelement(self) -> bd.Superelement:
-        return self.element
-
-
 @cache
-def shaft() -> Reduced:
+def shaft() -> bd.Superelement:
     """The shaft with its rotor."""
     rotor = bd.Disc.cylinder(0.15, 0.12, 0.03, d_inner=0.03)
     seats = {"left": 0.02, "right": 0.28}
     whole = bd.Shaft(
         [bd.Section(0.30, 0.03)], seats, {"middle": 0.15}, discs=[rotor], damping=0.005, f_max=12e3
     )
-    return Reduced(whole.superelement())
+    return whole.superelement()
 
 
 @cache
-def pedestal(outside: float) -> Reduced:
+def pedestal(outside: float) -> bd.Superelement:
     """A pedestal with a bore of this radius, m."""
     block = bd.Housing(
         0.12, 0.14, 0.025, bore_diameter=2 * outside, bore_height=0.08, damping=0.01, f_max=12e3
     )
-    return Reduced(block.superelement())
+    return block.superelement()
 
 
 def bench(layer: bd.Layer | None = None, defects: Sequence[bd.Pit] = ()) -> bd.Application:
@@ -67,15 +56,14 @@ def bench(layer: bd.Layer | None = None, defects: Sequence[bd.Pit] = ()) -> bd.A
     app = bd.Application()
     app.add("shaft", shaft())
     outside = RING[1] if layer is None else layer.r_outer
-    rubber = None if layer is None else Reduced(layer.superelement())
     for side in ("left", "right"):
         app.add(f"{side}_ring", bd.RigidBody.ring(*RING))
         app.add(f"{side}_housing", pedestal(outside))
         app.ground(f"{side}_housing.feet")
-        if rubber is None:
+        if layer is None:
             app.connect(f"{side}_ring.centre", f"{side}_housing.bore")
         else:
-            app.add(f"{side}_layer", rubber)
+            app.add(f"{side}_layer", layer)
             app.connect(f"{side}_ring.centre", f"{side}_layer.inner")
             app.connect(f"{side}_layer.outer", f"{side}_housing.bore")
         app.bearing(side, ball_bearing(side, defects), inner=f"shaft.{side}", outer=f"{side}_ring.centre")

@@ -162,3 +162,10 @@ def test_inputs_are_copied():
     vector[0], value[0] = 7.0, 7.0
     assert app.loads[0].vector[0] == 0.0
     assert app.loads[0].value[0] == 0.0
+
+
+def test_what_is_reduced_already_is_a_part():
+    app = Application()
+    element = SHAFT.superelement()
+    app.add("shaft", element)
+    assert app.parts["shaft"] is element

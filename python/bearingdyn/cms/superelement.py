@@ -211,6 +211,10 @@ class Superelement:
         """Number of coordinates."""
         return int(self.M.shape[0])
 
+    def superelement(self) -> Superelement:
+        """Itself: what is reduced already is added to an application as it is."""
+        return self
+
     def rows(self, name: str) -> Float:
         """Rows (6, n) or (3, n) giving the motion of an interface or output point.
 
