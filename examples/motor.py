@@ -121,7 +121,7 @@ def housing(bore_diameter: float) -> bd.Housing:
         bore_diameter=bore_diameter,
         bore_height=0.12,
         damping=ZETA_HOUSING,
-        f_max=8e3,  # within 0.4 % of the unreduced pedestal to 5 kHz, as bd.reduction_error says
+        f_max=10e3,  # within 0.4 % of the unreduced pedestal to 5 kHz, as bd.reduction_error says
     )
 
 
