@@ -116,6 +116,12 @@ def test_truncated_file_is_a_value_error(response, tmp_path):
         results.load(path)
 
 
+def test_a_file_of_several_results_asks_which(response, tmp_path):
+    results.save({"one": response, "two": response}, tmp_path / "both.nc")
+    with pytest.raises(ValueError, match=r"several results; name one of them: \['one', 'two'\]"):
+        results.load(tmp_path / "both.nc")
+
+
 def test_missing_group_is_named(response, tmp_path):
     results.save({"layer": response}, tmp_path / "r.nc")
     with pytest.raises(ValueError, match=r"group 'no layer' of .*r\.nc"):

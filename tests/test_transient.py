@@ -388,7 +388,7 @@ def test_progress_is_told_with_the_settling_counted(state):
         ({"settle": -5}, "settle is -5"),
         ({"decimate": 0}, "decimate is 0"),
         ({"speed": math.inf}, "speed is inf"),
-        ({"record": ["shaft.end"]}, "'shaft' is no interface"),
+        ({"record": ["shaft.end"]}, "'shaft.end' is a place; add"),
         ({"record": ["shaft.end.w"]}, "not 'w'"),
         ({"record": ["left.ball9"]}, "ball1 … ball8"),
         ({"record": ["left.ball0"]}, "ball1 … ball8"),

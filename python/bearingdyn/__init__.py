@@ -9,7 +9,13 @@ from __future__ import annotations
 
 from importlib import import_module
 
-ROOMS = ("bearing", "material", "plot", "study")
+ROOMS = {
+    "bearing": "bearing",
+    "catalogue": "bearing.catalogue",
+    "material": "material",
+    "plot": "plot",
+    "study": "study",
+}
 # the stub beside this file says the same to type checkers
 HOMES = {
     "analysis": (
@@ -109,8 +115,10 @@ __all__ = sorted(name for names in HOMES.values() for name in names)
 
 def __getattr__(name: str) -> object:
     """A room, or a public name out of the room it lives in."""
+    if name == "__version__":
+        return import_module(f"{__name__}.results").versions()["bearingdyn"]
     if name in ROOMS:
-        return import_module(f"{__name__}.{name}")
+        return import_module(f"{__name__}.{ROOMS[name]}")
     for home, names in HOMES.items():
         if name in names:
             value: object = getattr(import_module(f"{__name__}.{home}"), name)
@@ -120,4 +128,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, *ROOMS})
+    return sorted({*globals(), *__all__, *ROOMS, "__version__"})

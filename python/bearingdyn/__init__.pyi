@@ -37,6 +37,7 @@ from bearingdyn.bearing import (
     TabulatedDamping,
     Waviness,
 )
+from bearingdyn.bearing import catalogue as catalogue
 from bearingdyn.cms import (
     FullModel,
     Superelement,
@@ -105,6 +106,8 @@ from bearingdyn.results import (
     load,
     save,
 )
+
+__version__: str
 
 __all__ = [
     "MM_TONNE",

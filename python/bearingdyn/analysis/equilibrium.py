@@ -31,6 +31,14 @@ class Equilibrium:
     bearings: Mapping[str, BearingState]
     modulus: str = "relaxed"
 
+    def __repr__(self) -> str:
+        """One line; the matrices are in `system`."""
+        loaded = [
+            f"{name} {b.loads[b.loads > 0].size} of {b.loads.size}" for name, b in self.bearings.items()
+        ]
+        balls = f", balls loaded: {', '.join(loaded)}" if loaded else ""
+        return f"<Equilibrium of {self.system.n} coordinates, layers {self.modulus}{balls}>"
+
     def displacement(self, name: str) -> Array:
         """Static motion of an interface or point, (6,) or (3,), m and rad."""
         return self.system.rows(name) @ self.x

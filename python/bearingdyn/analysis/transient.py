@@ -12,8 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import core
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.running import digest, run
+from bearingdyn.application import Application
+from bearingdyn.bearing import ConstantDamping
 from bearingdyn.bearing.series import NET
 from bearingdyn.results import march_dataset
 from bearingdyn.system import QUANTITIES, System, is_rotation
@@ -28,7 +30,7 @@ UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}
 
 
 def transient(
-    source: Equilibrium | System,
+    source: Equilibrium | Application | System,
     *,
     speed: float | tuple[ArrayLike, ArrayLike],
     dt: float,
@@ -48,7 +50,8 @@ def transient(
     Parameters
     ----------
     source
-        Equilibrium: the march starts there, at rest, layers relaxed. A System starts from zero.
+        Equilibrium: the march starts there, at rest, layers relaxed. Of an Application the equilibrium is
+        found first. A System starts from zero.
     speed
         Speed of the shaft, rad/s: one number, or (times in s, speeds), linear between and held outside. Cage,
         unbalance and gyroscopic forces follow it; rotating loads also push along with its rate.
@@ -110,10 +113,14 @@ def transient(
     for name, value, least in (("steps", steps, 0), ("settle", settle, 0), ("decimate", decimate, 1)):
         if not value >= least or value % 1 != 0:
             raise ValueError(f"{name} is {value}; it must be a whole number of at least {least}")
+    if isinstance(record, str):
+        raise ValueError(f"record is {record!r}; give a list of channels, [{record!r}]")
     if resume is not None and stream is not None:
         raise ValueError("a stream goes on by itself; give resume or stream, not both")
     if resume is not None and initial:
         raise ValueError("resume goes on from its own state and initial sets another; give one of the two")
+    if isinstance(source, Application):
+        source = equilibrium(source)
     if isinstance(source, Equilibrium) and source.modulus != "relaxed":
         raise ValueError(
             f"the equilibrium has its layers at their {source.modulus} modulus; a march starts with relaxed "
@@ -171,7 +178,7 @@ def transient(
         place = f", worst in bearing {system.bearings[report.bearing].name!r}" if report.bearing >= 0 else ""
         raise core.SolverError(
             f"{report.text} in step {report.steps + 1} at t = {report.t:.6g} s (residual "
-            f"{report.residual:.3g} of the largest bearing force{place}); try a smaller dt",
+            f"{report.residual:.3g} of the largest bearing force{place}); {_remedy(system)}",
             report,
             result,
         )
@@ -192,6 +199,17 @@ def checked_speed(speed: float | tuple[ArrayLike, ArrayLike]) -> float:
     if not (np.isfinite(times).all() and np.isfinite(speeds).all() and (np.diff(times) > 0).all()):
         raise ValueError("speed: times must increase and all numbers be finite, in s and rad/s")
     return float(np.abs(speeds).max())
+
+
+def _remedy(system: System) -> str:
+    """What helps where Newton's iteration diverges."""
+    dampings = [getattr(term.bearing, "damping", None) for term in system.bearings]
+    if any(isinstance(d, ConstantDamping) and d.c > 0 for d in dampings):
+        return (
+            "a constant contact damping makes the force jump where a ball loses contact: give "
+            "damping=bd.LoadDamping(...) or bd.TabulatedDamping(...), or try a smaller dt"
+        )
+    return "try a smaller dt"
 
 
 def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -> list[xarray.Dataset]:
@@ -250,6 +268,8 @@ def _channel(system: System, name: str) -> tuple[Channel, str]:
             f"channel {name!r}: bearing {head!r} offers loaded, loss, ball1 … "
             f"ball{system.bearings[which].bearing.Z}, force.x, force.y and force.z"
         )
+    if rest.startswith(("ball", "force.")) or rest in ("loaded", "loss"):
+        raise ValueError(f"channel {name!r}: {head!r} is no bearing; there are {bearings}")
     place, _, quantity = name.rpartition(".")
     if quantity not in QUANTITIES:
         place, quantity = name, "displacement"

@@ -111,6 +111,10 @@ class Application(Plan):
     -20.0 µm
     """
 
+    def __repr__(self) -> str:
+        """The summary, or that there is nothing yet."""
+        return self.summary() if self.parts else "<Application without parts>"
+
     def add(self, name: str, part: Part) -> None:
         """Add a part under a name. One object may be added under several names; it is reduced once.
 

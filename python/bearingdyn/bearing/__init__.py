@@ -1,5 +1,6 @@
 """Ball bearings: internal geometry, Hertz contact, lubricant film, and the force law between the rings."""
 
+from bearingdyn.bearing import catalogue
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness
 from bearingdyn.bearing.geometry import Frequencies, Geometry
@@ -54,6 +55,7 @@ __all__ = [
     "Walther",
     "Waviness",
     "WavinessSpectrum",
+    "catalogue",
     "contact_modulus",
     "dent",
     "diameter_scatter",

@@ -206,6 +206,10 @@ class Superelement:
             if raceway.rows.shape[1] != n:
                 raise ValueError(f"raceways[{name!r}].rows has {raceway.rows.shape[1]} columns, not {n}")
 
+    def __repr__(self) -> str:
+        """One line instead of the matrices."""
+        return f"<Superelement of {self.n} coordinates, interfaces {list(self.interfaces)}>"
+
     @property
     def n(self) -> int:
         """Number of coordinates."""

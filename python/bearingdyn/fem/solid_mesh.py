@@ -98,6 +98,11 @@ class SolidMesh:
     surfaces: Mapping[str, Index] = field(default_factory=dict)
     numbers: Index | None = None
 
+    def __repr__(self) -> str:
+        """One line instead of the nodes."""
+        size = f"{len(self.elements)} elements of {self.elements.shape[1]} nodes, {len(self.points)} nodes"
+        return f"<SolidMesh of {size}, regions {list(self.regions)}, surfaces {list(self.surfaces)}>"
+
     def __post_init__(self) -> None:
         p, e = np.array(self.points, dtype=np.float64), np.array(self.elements, dtype=np.intp)
         if p.ndim != 2 or p.shape[1] != 3 or not np.all(np.isfinite(p)):

@@ -70,12 +70,15 @@ def load(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
         return _run_dataset(path)
     try:
         with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
-            return _complex(data.load())
+            found = _complex(data.load())
     except FileNotFoundError:
         raise ValueError(f"{os.fspath(path)}: no such file") from None
     except (OSError, KeyError) as error:
         place = f"group {group!r} of " if group else ""
         raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}") from None
+    if not group and not found.variables and groups(path):
+        raise ValueError(f"{os.fspath(path)} holds several results; name one of them: {groups(path)}")
+    return found
 
 
 def groups(path: str | os.PathLike[str]) -> list[str]:

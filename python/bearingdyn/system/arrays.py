@@ -8,6 +8,7 @@ property of time or frequency, not of the matrices.
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -136,6 +137,11 @@ class System:
     positions: Mapping[str, Array] = field(default_factory=dict)
     """Where interfaces and points stand, (3,) m, from the first interface of the first part."""
 
+    def __repr__(self) -> str:
+        """One line instead of the matrices."""
+        counts = f"{len(self.layers)} layers, {len(self.bearings)} bearings, {len(self.loads)} loads"
+        return f"<System of {self.n} coordinates, {counts}>"
+
     @property
     def n(self) -> int:
         """Number of coordinates."""
@@ -152,7 +158,9 @@ class System:
         Raises ValueError when there is none of that name.
         """
         if name not in self.outputs:
-            raise ValueError(f"{name!r} is no interface or point; there are {sorted(self.outputs)}")
+            near = difflib.get_close_matches(name, self.outputs, n=1)
+            meant = f"; did you mean {near[0]!r}?" if near else ";"
+            raise ValueError(f"{name!r} is no interface or point{meant} there are {sorted(self.outputs)}")
         return self.outputs[name]
 
     def row(self, channel: str) -> Array:
@@ -160,6 +168,8 @@ class System:
 
         Raises ValueError when the place or component does not exist.
         """
+        if channel in self.outputs:
+            raise ValueError(f"{channel!r} is a place; add what of it is meant, as {channel + '.y'!r}")
         place = channel.rpartition(".")[0]
         rows = self.rows(place)
         component = component_of(channel)

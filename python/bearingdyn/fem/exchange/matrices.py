@@ -44,6 +44,11 @@ class FEMatrices:
     nodes: Index | None = None
     dofs: Index | None = None
 
+    def __repr__(self) -> str:
+        """One line instead of the matrices."""
+        nodes = "" if self.points is None else f", {len(self.points)} nodes"
+        return f"<FEMatrices of {self.n} coordinates{nodes}>"
+
     @property
     def n(self) -> int:
         """Number of coordinates."""
