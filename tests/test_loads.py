@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -227,7 +228,7 @@ def test_force_through_layer_bearing_and_supports_is_that_of_the_bodies_between(
     ("inputs", "outputs", "message"),
     [
         (["ground.θx"], ["ring.centre.y"], "the ground moves along"),
-        (["shaft.end.y"], ["left.force.θx"], "a bearing offers"),
+        (["shaft.end.y"], ["left.force.θx"], "bearing 'left' offers"),
         (["shaft.end.y"], ["layer.middle.force.y"], r"'layer' has \['inner', 'outer'\]"),
         (["shaft.end.y"], ["axle.a.force.y"], "no bearing and no interface"),
         (["shaft.end.y"], ["layer.inner.force.w"], "not 'w'"),
@@ -389,3 +390,30 @@ def test_a_bearing_may_be_pressed_in_play():
     half = bearing.geometry.A * math.sin(bearing.geometry.alpha0)
     app.bearing("b", bearing, inner="rotor.centre", outer="ground", offset=0.9 * half)
     assert not equilibrium(app).bearings["b"].loads.any()
+
+
+def test_the_ground_bears_all_that_is_fastened_to_an_interface_it_holds():
+    """A ring with a bearing and a bush in it and a layer joined to it: the forces are those of Newton's law."""
+    app = Application()
+    app.add("rotor", RigidBody(2.0, (1e-2,) * 3))
+    app.add("ring", RigidBody(0.1, (1e-4,) * 3))
+    light = replace(RUBBER, density=1e-9)
+    app.add("layer", Layer(0.036, 0.039, 0.019, light, moduli=(1e6, 6e6), refinement=0.5))
+    app.add("sleeve", RigidBody(0.5, (1e-3,) * 3))
+    app.connect("ring.centre", "layer.inner")
+    app.connect("layer.outer", "sleeve.centre")
+    app.ground("ring.centre")
+    app.bearing("left", BEARING, inner="rotor.centre", outer="ring.centre")
+    app.spring("ring.centre", "rotor.centre", (1e6,) * 6, damping=(100.0,) * 6)
+    app.load("rotor.centre", (0, -300.0, 200.0, 0, 0, 0))
+    state = equilibrium(app)
+    f = np.array([30.0, 400.0])
+    motions = ["rotor.centre.y", "sleeve.centre.y"]
+    forces = ["ground.ring.centre.y", "ground.layer.inner.y"]
+    inputs = ["rotor.centre.y", "sleeve.centre.y", "ring.centre.y", "ground.y"]
+    found = frequency_response(state, f, inputs, motions + forces, quantity="acceleration").response
+    # Newton's law along y: the loads, less what they accelerate; the layer weighs nothing
+    a, force = found.sel(output=motions).values, found.sel(output=forces).values
+    borne = np.array([1.0, 1.0, 1.0, -0.1]) - (2.0 * a[:, 0] + 0.5 * a[:, 1])
+    # round-off of the tangents
+    np.testing.assert_allclose(force, np.stack([borne, borne], axis=1), rtol=1e-8)

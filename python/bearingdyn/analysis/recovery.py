@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.application import COMPONENTS, GROUND
 from bearingdyn.bearing.series import NET
-from bearingdyn.system import PartTerm, System, component_of
+from bearingdyn.system import PartTerm, SpringTerm, System, component_of
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -66,28 +66,41 @@ class Input:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """A motion, or a force through a bearing, a support or an interface, from the motions rows (k, n).
+    """A motion row @ x, or a force: the sum of what parts, springs and bearings put on something.
 
-    bearing: (first, pick): the bearing's first coefficient among all, and pick (coefs,) of its force.
-    part, index: the part whose coordinate `index` is balanced. spring: stiffness and damping of a support.
+    parts: a part, and which of its coordinates is balanced. springs: a spring, and the share (k,) of each of
+    its forces. bearings: the first coefficient of a bearing among all, its B, and the share (coefs,) of each
+    of its forces.
     """
 
     name: str
-    rows: Array
-    bearing: tuple[int, Array] | None = None
-    part: PartTerm | None = None
-    index: int = 0
-    spring: tuple[float, float] | None = None
+    row: Array | None = None
+    parts: tuple[tuple[PartTerm, int], ...] = ()
+    springs: tuple[tuple[SpringTerm, Array], ...] = ()
+    bearings: tuple[tuple[int, Array, Array], ...] = ()
 
     @property
     def is_force(self) -> bool:
         """Whether it is a force or moment."""
-        return self.bearing is not None or self.part is not None or self.spring is not None
+        return self.row is None
 
     @property
     def turning(self) -> bool:
         """Whether it is a rotation or moment."""
         return component_of(self.name) in COMPONENTS[3:]
+
+    @property
+    def rows(self) -> Array:
+        """Motions (k, n) that it is computed from."""
+        if self.row is not None:
+            return self.row[None]
+        return np.vstack(
+            [
+                *(term.place for term, _ in self.parts),
+                *(spring.across for spring, _ in self.springs),
+                *(B for _, B, _ in self.bearings),
+            ]
+        )
 
     @classmethod
     def of(cls, system: System, name: str) -> Output:
@@ -101,70 +114,106 @@ class Output:
         if not on_ground and not place.endswith(".force"):
             return cls(name, system.row(name))
         place = place.removeprefix(f"{GROUND}.") if on_ground else place.removesuffix(".force")
-        if on_ground:
-            for support in system.springs:
-                if support.name == f"{place}–{GROUND}" and component in COMPONENTS:
-                    k = COMPONENTS.index(component)
-                    law = (float(support.stiffness[k]), float(support.damping[k]))
-                    return cls(name, support.across[k], spring=law)
-            if place not in system.outputs or system.rows(place).any():
-                raise ValueError(f"{name!r}: {place!r} is no interface that the ground holds")
         first = 0
         for hung in system.bearings:
-            if hung.name == place:
-                if component not in COMPONENTS[:3]:
-                    raise ValueError(f"{name!r}: a bearing offers force.x, force.y and force.z")
-                pick, net = np.zeros(len(hung.B)), NET[COMPONENTS.index(component)]
-                if net in hung.series.terms:
-                    pick[hung.series.index(*net)] = 1.0
-                return cls(name, hung.B, (first, pick))
+            if hung.name == place and not on_ground:
+                term = NET[COMPONENTS.index(component)] if component in COMPONENTS[:3] else None
+                if term not in hung.series.terms:
+                    offered = [
+                        f"force.{c}" for c, t in zip("xyz", NET, strict=True) if t in hung.series.terms
+                    ]
+                    raise ValueError(f"{name!r}: bearing {place!r} offers {', '.join(offered)}")
+                return cls(name, bearings=((first, hung.B, np.eye(len(hung.B))[hung.series.index(*term)]),))
             first += len(hung.B)
         head, _, interface = place.partition(".")
-        for term in system.parts:
-            if term.name == head:
-                known = sorted(term.element.interfaces)
-                if interface not in known:
-                    raise ValueError(f"{name!r}: forces pass through interfaces; {head!r} has {known}")
-                if component not in COMPONENTS:
-                    raise ValueError(f"{name!r}: there are {list(COMPONENTS)}, not {component!r}")
-                index = term.element.interfaces[interface][COMPONENTS.index(component)]
-                return cls(name, term.place, part=term, index=int(index))
-        raise ValueError(
-            f"{name!r}: {place!r} is no bearing and no interface of the system; there are bearings "
-            f"{[b.name for b in system.bearings]} and parts {[t.name for t in system.parts]}"
-        )
+        owner = next((term for term in system.parts if term.name == head), None)
+        if owner is not None and interface not in owner.element.interfaces:
+            known = sorted(owner.element.interfaces)
+            raise ValueError(f"{name!r}: forces pass through interfaces; {head!r} has {known}")
+        if owner is None:
+            raise ValueError(
+                f"{name!r}: {place!r} is no bearing and no interface of the system; there are bearings "
+                f"{[b.name for b in system.bearings]} and parts {[t.name for t in system.parts]}"
+            )
+        if component not in COMPONENTS:
+            raise ValueError(f"{name!r}: there are {list(COMPONENTS)}, not {component!r}")
+        k = COMPONENTS.index(component)
+        if not on_ground:
+            return cls(name, parts=((owner, int(owner.element.interfaces[interface][k])),))
+        supports = [s for s in system.springs if s.name == f"{place}–{GROUND}"]
+        if supports:
+            return cls(name, springs=tuple((s, np.eye(6)[k]) for s in supports))
+        for joint in system.held:
+            if place in joint:
+                return cls._held(system, name, joint, k)
+        raise ValueError(f"{name!r}: {place!r} is no interface that the ground holds")
+
+    @classmethod
+    def _held(cls, system: System, name: str, joint: tuple[str, ...], k: int) -> Output:
+        """Component k of what all that is fastened to a joint of interfaces puts on the ground there."""
+        parts = [
+            (term, int(term.element.interfaces[rest][k]))
+            for term in system.parts
+            for head, _, rest in (interface.partition(".") for interface in joint)
+            if term.name == head
+        ]
+        # the force g on a relative motion J u of the joint pulls it by −Jᵀ g
+        springs = [(s, -s.ends[i][:, k]) for s in system.springs for i in joint if i in s.ends]
+        firsts = np.cumsum([0, *(len(b.B) for b in system.bearings)]).tolist()
+        bearings = [
+            (first, b.B, -b.ends[i][:, k])
+            for first, b in zip(firsts, system.bearings, strict=False)
+            for i in joint
+            if i in b.ends
+        ]
+        return cls(name, None, tuple(parts), tuple(springs), tuple(bearings))
 
     def force(
         self, x: Complex, omega: Array, speed: float, K: Array, C: Array, inputs: Sequence[Input]
     ) -> Complex:
         """Force (f, i) from the motions x (f, k, i), per unit force or ground acceleration."""
-        if self.bearing is not None:
-            first, pick = self.bearing
-            own = slice(first, first + len(pick))
-            stiff, damped = pick @ K[own, own], pick @ C[own, own]
-            return np.asarray(
-                np.einsum("k,fki->fi", stiff, x) + 1j * omega[:, None] * np.einsum("k,fki->fi", damped, x)
-            )
-        if self.spring is not None:
-            stiffness, damping = self.spring
-            return np.asarray((stiffness + 1j * omega[:, None] * damping) * x[:, 0])
-        assert self.part is not None
-        e, k = self.part.element, self.index
-        D = (
-            -(omega[:, None] ** 2) * e.M[k]
-            + 1j * omega[:, None] * (e.C[k] + speed * e.G[k])
-            + (e.K[k] + speed * np.asarray(e.N)[k])
-        )
-        for term in e.viscoelastic:
-            G = np.asarray(term.material.complex_modulus(omega))
-            D = D + 2.0 * G[:, None] * term.H[k]
-        force = -np.einsum("fk,fki->fi", D, x)
-        for i, given in enumerate(inputs):
-            if given.axis is not None:
-                force[:, i] -= e.M[k] @ self.part.rigid[:, given.axis]
-            elif given.part == self.part.name and given.load is not None:
-                force[:, i] += given.load[k]
-        return np.asarray(force)
+        total = np.zeros((omega.size, x.shape[2]), dtype=np.complex128)
+        at = 0
+
+        def taken(count: int) -> Complex:
+            nonlocal at
+            at += count
+            return x[:, at - count : at]
+
+        def sprung(stiff: Array, damped: Array, motion: Complex) -> Complex:
+            rates = stiff + 1j * omega[:, None] * damped
+            return np.asarray(np.einsum("fk,fki->fi", rates, motion))
+
+        for term, index in self.parts:
+            total += _balance(term, index, taken(len(term.place)), omega, speed, inputs)
+        for spring, share in self.springs:
+            total += sprung(share * spring.stiffness, share * spring.damping, taken(len(spring.across)))
+        for first, B, share in self.bearings:
+            own = slice(first, first + len(B))
+            total += sprung(share @ K[own, own], share @ C[own, own], taken(len(B)))
+        return total
+
+
+def _balance(
+    term: PartTerm, k: int, x: Complex, omega: Array, speed: float, inputs: Sequence[Input]
+) -> Complex:
+    """Force (f, i) that a part puts on what joins its coordinate k, from its motions (f, n, i)."""
+    e = term.element
+    D = (
+        -(omega[:, None] ** 2) * e.M[k]
+        + 1j * omega[:, None] * (e.C[k] + speed * e.G[k])
+        + (e.K[k] + speed * np.asarray(e.N)[k])
+    )
+    for soft in e.viscoelastic:
+        G = np.asarray(soft.material.complex_modulus(omega))
+        D = D + 2.0 * G[:, None] * soft.H[k]
+    force = -np.einsum("fk,fki->fi", D, x)
+    for i, given in enumerate(inputs):
+        if given.axis is not None:
+            force[:, i] -= e.M[k] @ term.rigid[:, given.axis]
+        elif given.part == term.name and given.load is not None:
+            force[:, i] += given.load[k]
+    return np.asarray(force)
 
 
 def requested(outputs: Sequence[Output], n: int) -> Array:
@@ -194,7 +243,7 @@ def recovered(
     ]
     at = 0
     for k, output in enumerate(outputs):
-        count = 1 if output.rows.ndim == 1 else len(output.rows)
+        count = len(output.rows)
         own = x[:, at : at + count]
         at += count
         if output.is_force:

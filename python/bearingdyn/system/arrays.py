@@ -50,7 +50,8 @@ class LayerTerm:
 class BearingTerm:
     """One bearing or loose fit: B (n_coefs, n) gives its relative coefficients, inner minus outer.
 
-    offset: m along z that the inner ring sits beyond the motion B x.
+    offset: m along z that the inner ring sits beyond the motion B x. ends: rows (n_coefs, 6) of the interface
+    at each end.
     """
 
     name: str
@@ -58,6 +59,7 @@ class BearingTerm:
     B: Array
     series: RacewaySeries = RIGID
     offset: float = 0.0
+    ends: Mapping[str, Array] = field(default_factory=dict)
 
     def kernel(self) -> BearingKernel:
         """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves."""
@@ -85,12 +87,16 @@ class PartTerm:
 
 @dataclass(frozen=True, eq=False)
 class SpringTerm:
-    """Six springs and dampers, N/m and N s/m, on the motion across @ x, across (6, n)."""
+    """Springs and dampers (k,), N/m and N s/m, on the motion across @ x, across (k, n).
+
+    ends: rows (k, 6) of the interface at each end.
+    """
 
     name: str
     across: Array
     stiffness: Array
     damping: Array
+    ends: Mapping[str, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +138,8 @@ class System:
     """(n, 3) kg: −inertia @ ü is the force of a ground that moves with ü; NaN where a part holds itself."""
     parts: tuple[PartTerm, ...] = ()
     springs: tuple[SpringTerm, ...] = ()
+    held: tuple[tuple[str, ...], ...] = ()
+    """Interfaces that the ground holds rigidly, those that are one joint together."""
     turning: tuple[str, ...] = ()
     """Parts that turn with the shaft."""
     positions: Mapping[str, Array] = field(default_factory=dict)

@@ -59,34 +59,35 @@ def assemble(app: Application) -> System:
         for name in (*element.interfaces, *element.outputs):
             outputs[f"{part}.{name}"] = element.rows(name) @ select[part]
 
-    springs: list[SpringTerm] = []
     loads = _loads(app, outputs, inertia)
-    for name, relative, stiffness, damping, offset in _springs(app, outputs):
-        spring = SpringTerm(name, relative, stiffness, damping)
-        for total in (K, firm):
-            total += relative.T @ (stiffness[:, None] * relative)
-        C += relative.T @ (damping[:, None] * relative)
+    springs: list[SpringTerm] = []
+    for spring, offset in _springs(app, outputs):
         springs.append(spring)
         if offset.any():
-            pressed = (stiffness * offset) @ relative
+            pressed = (spring.stiffness * offset) @ spring.across
             loads += (LoadTerm("constant", 0.0, pressed, np.zeros(n), np.zeros(0), np.zeros(0)),)
 
     bearings = []
     for hung in app.bearings.values():
         raceway = app.raceway(hung.outer)
         series = RIGID if raceway is None else raceway.series
-        B = hung.bearing.coefficients(series) @ outputs[hung.inner]
+        ends = {hung.inner: hung.bearing.coefficients(series)}
+        if raceway is None and hung.outer != GROUND:
+            ends[hung.outer] = -hung.bearing.coefficients()
+        B = _between(ends, outputs)
         if raceway is not None:
             B = B - raceway.rows @ select[hung.outer.partition(".")[0]]
-        elif hung.outer != GROUND:
-            B = B - hung.bearing.coefficients() @ outputs[hung.outer]
-        bearings.append(BearingTerm(hung.name, hung.bearing, B, series, hung.offset))
+        bearings.append(BearingTerm(hung.name, hung.bearing, B, series, hung.offset, ends))
 
     for seat in app.fits.values():
         contacts, hold = _loose(app, seat, select, outputs)
         bearings.append(contacts)
-        K += hold
-        firm += hold
+        springs.append(hold)
+
+    for spring in springs:
+        for total in (K, firm):
+            total += spring.across.T @ (spring.stiffness[:, None] * spring.across)
+        C += spring.across.T @ (spring.damping[:, None] * spring.across)
 
     turning = {name: app.parts[name] for name in app.parts if name in app.turning_parts()}
     standstill = tuple(
@@ -106,6 +107,7 @@ def assemble(app: Application) -> System:
         inertia,
         tuple(terms),
         tuple(springs),
+        _held(app),
         tuple(turning),
         app.positions(),
     )
@@ -113,19 +115,45 @@ def assemble(app: Application) -> System:
     return noted(system, app)
 
 
+def _between(ends: Mapping[str, Array], outputs: Mapping[str, Array]) -> Array:
+    """Relative motion (k, n) of interfaces, by the rows (k, 6) of each."""
+    return np.asarray(sum(rows @ outputs[name] for name, rows in ends.items()))
+
+
 def _loose(
     app: Application, seat: HungFit, select: Mapping[str, Array], outputs: Mapping[str, Array]
-) -> tuple[BearingTerm, Array]:
+) -> tuple[BearingTerm, SpringTerm]:
     """A loose fit as contacts on the radial coefficients, ring less bore, and the springs of its hold."""
     raceway = app.raceway(seat.ring)
     assert raceway is not None  # the application checked
     relative = raceway.rows @ select[seat.ring.partition(".")[0]]
-    if seat.bore != GROUND:
-        relative = relative - raceway.series.rigid(raceway.arm) @ outputs[seat.bore]
+    bore = {} if seat.bore == GROUND else {seat.bore: -raceway.series.rigid(raceway.arm)}
+    relative = relative + _between(bore, outputs)
     radial, series, held = seat.fit.split(raceway.series)
     seat.fit.kernel(series)  # too few stations are refused here
-    springs = seat.fit.hold * relative[held].T @ relative[held]
-    return BearingTerm(seat.name, seat.fit, relative[radial], series), springs
+    hold = SpringTerm(
+        f"{seat.name} (hold)",
+        relative[held],
+        np.full(len(held), seat.fit.hold),
+        np.zeros(len(held)),
+        {name: rows[held] for name, rows in bore.items()},
+    )
+    ends = {name: rows[radial] for name, rows in bore.items()}
+    return BearingTerm(seat.name, seat.fit, relative[radial], series, ends=ends), hold
+
+
+def _partners(app: Application) -> dict[str, str]:
+    """Which interface each connected one moves with."""
+    return {c.a: c.b for c in app.connections} | {c.b: c.a for c in app.connections}
+
+
+def _held(app: Application) -> tuple[tuple[str, ...], ...]:
+    """Joints that the ground holds rigidly."""
+    partner = _partners(app)
+    return tuple(
+        (name, partner[name]) if name in partner else (name,)
+        for name in (s.interface for s in app.supports.values() if s.rigid)
+    )
 
 
 def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
@@ -136,13 +164,10 @@ def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
         part, _, name = interface.partition(".")
         return part, app.parts[part].interfaces[name]
 
-    partner = {c.a: c.b for c in app.connections} | {c.b: c.a for c in app.connections}
-    for support in app.supports.values():
-        if support.rigid:
-            for interface in (support.interface, partner.get(support.interface)):
-                if interface is not None:
-                    part, index = places(interface)
-                    local[part][index] = -1
+    partner = _partners(app)
+    for interface in (name for joint in _held(app) for name in joint):
+        part, index = places(interface)
+        local[part][index] = -1
     count = 0
     for part, element in app.parts.items():
         for name, index in element.interfaces.items():
@@ -167,18 +192,17 @@ def _factor(H: Array) -> Array:
     return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
 
 
-def _springs(
-    app: Application, outputs: Mapping[str, Array]
-) -> Iterator[tuple[str, Array, Array, Array, Array]]:
-    """Springs to the ground and between interfaces: name, rows (6, n) of the motion across, k, c, offset."""
-    zero = np.zeros(6)
+def _springs(app: Application, outputs: Mapping[str, Array]) -> Iterator[tuple[SpringTerm, Array]]:
+    """Springs to the ground and between interfaces, and the offset (6,) where each is free of force."""
+    zero, one = np.zeros(6), np.eye(6)
     for s in app.supports.values():
         if not s.rigid:
             k, c, offset = (zero if v is None else v for v in (s.stiffness, s.damping, s.offset))
-            yield f"{s.interface}–ground", outputs[s.interface], k, c, offset
+            name = f"{s.interface}–{GROUND}"
+            yield SpringTerm(name, outputs[s.interface], k, c, {s.interface: one}), offset
     for b in app.springs:
-        across = outputs[b.a] - (outputs[b.b] if b.b != GROUND else 0.0)
-        yield f"{b.a}–{b.b}", across, b.stiffness, b.damping, b.offset
+        ends = {b.a: one} if b.b == GROUND else {b.a: one, b.b: -one}
+        yield SpringTerm(f"{b.a}–{b.b}", _between(ends, outputs), b.stiffness, b.damping, ends), b.offset
 
 
 def _loads(app: Application, outputs: Mapping[str, Array], inertia: Array) -> tuple[LoadTerm, ...]:
