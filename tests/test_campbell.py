@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from bearingdyn.analysis import campbell, energy_shares, equilibrium, modes
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
-from bearingdyn.parts import Layer, RigidBody
+from bearingdyn.parts import Layer, RigidBody, Section, Shaft
 from rotors import RUBBER, motor, oscillator
 from test_modes import friswell
 
@@ -65,6 +66,8 @@ def test_rigid_rotor_whirls_forward_and_backward_by_the_closed_form():
         at = np.argmin(np.abs(omega[0] - closed(speeds[0], sign)))
         wanted = [closed(speed, sign) for speed in speeds]
         np.testing.assert_allclose(omega[:, at], wanted, rtol=1e-9)
+        # a body that tilts about its centre: circles with the shaft and against it
+        np.testing.assert_allclose(found.whirl.values[:, at], sign, atol=1e-6)
 
 
 def test_layered_rotor_follows_damped_modes():
@@ -180,3 +183,19 @@ def without_parts():
 def test_layers_of_the_motor_take_part():
     shares = energy_shares(equilibrium(motor(RUBBER)), modes(equilibrium(motor(RUBBER)), damped=True))
     assert shares.dissipation.sel(part="layer (shear)").values.max() > 0.3
+
+
+def test_undamped_modes_of_a_damped_shaft_neither_grow_nor_decay():
+    """Of damping that turns, C and its circulatory Ω N go together."""
+    shaft = Shaft([Section(0.4, 0.02)], seats={"left": 0.0, "right": 0.4}, damping=0.02, f_max=3e3)
+    frequency = {}
+    for damping in (0.02, 0.0):
+        app = Application()
+        app.add("shaft", replace(shaft, damping=damping))
+        for seat in ("left", "right"):
+            app.ground(f"shaft.{seat}", stiffness=(1e7, 1e7, 1e7, 0, 0, 10.0))
+        found = modes(app, 8, speed=3000.0)
+        # round-off of eigenvalues up to 1e5 rad/s
+        assert np.abs(found.damping_ratio.values).max() < 1e-9
+        frequency[damping] = found.frequency.values
+    np.testing.assert_allclose(frequency[0.02], frequency[0.0], rtol=1e-9)

@@ -123,17 +123,26 @@ def campbell(
 def whirl(system: System, shapes: Complex) -> Array:
     """Direction (m,) in which shapes (m, n) e^{λt}, Im λ > 0, carry the parts that turn around: −1 … 1.
 
-    It is 2 Σ Im(x y*)/Σ(|x|² + |y|²) over the interfaces and points of those parts.
+    It is 2 Σ Im(x y*)/Σ(|x|² + |y|²) over the interfaces and points of those parts, and of their tilts θx, θy
+    where nothing moves aside, as in a rigid body that tilts about its centre.
     """
     turning = set(system.turning)
     rows = [r for name, r in system.outputs.items() if not turning or name.partition(".")[0] in turning]
-    x, y = (np.array([r[k] for r in rows]).reshape(-1, system.n) @ shapes.T for k in (0, 1))
-    lateral = (np.abs(x) ** 2 + np.abs(y) ** 2).sum(axis=0)
     mass = np.abs(np.einsum("mi,ij,mj->m", shapes.conj(), system.M, shapes))
-    heavy = np.abs(system.M[:, :]).max()
-    turns = 2.0 * (x * y.conj()).imag.sum(axis=0)
-    seen = lateral * heavy > LATERAL * mass
-    return np.asarray(np.divide(turns, lateral, out=np.zeros_like(turns), where=seen))
+    found = np.zeros(len(shapes))
+    for first, heavy in ((3, _tilting(system)), (0, float(np.abs(system.M).max()))):
+        both = [np.array([r[k] for r in rows if len(r) > k]) for k in (first, first + 1)]
+        x, y = (r.reshape(-1, system.n) @ shapes.T for r in both)
+        size = (np.abs(x) ** 2 + np.abs(y) ** 2).sum(axis=0)
+        turns = 2.0 * (x * y.conj()).imag.sum(axis=0)
+        np.divide(turns, size, out=found, where=size * heavy > LATERAL * mass)
+    return found
+
+
+def _tilting(system: System) -> float:
+    """The largest moment of inertia of a part about x or y of its first interface, kg m²; 0 if unknown."""
+    inertia = [np.einsum("ik,ij,jk->k", t.rigid[:, 3:5], t.element.M, t.rigid[:, 3:5]) for t in system.parts]
+    return float(np.nanmax(inertia, initial=0.0)) if inertia else 0.0
 
 
 def _assurance(M: Array, a: Complex, b: Complex) -> Array:

@@ -31,7 +31,8 @@ def modes(
 ) -> xarray.Dataset:
     """Natural modes about an equilibrium (bearings at their tangents), or of an application without bearings.
 
-    Undamped: layers at their "relaxed" or "instantaneous" modulus, gyroscopic forces at `speed` (rad/s).
+    Undamped: layers at their "relaxed" or "instantaneous" modulus, gyroscopic forces at `speed` (rad/s), no
+    damping, nor the circulatory force of damping that turns.
     Damped: (K, C, G, N) and every Maxwell branch as a state, so eigenvalues are those of the
     frequency-dependent problem itself.
 
@@ -55,7 +56,7 @@ def modes(
         squares, real = scipy.linalg.eigh(system.stiffness(modulus), system.M)
         values, shapes = 1j * np.sqrt(np.maximum(squares, 0.0)), real.astype(np.complex128)
     else:
-        values, shapes = _first_order(system.stiffness(modulus), np.zeros_like(system.C), system, speed)
+        values, shapes = _gyroscopic(system.stiffness(modulus), system.M, speed * system.G)
     order = np.argsort(np.abs(values), kind="stable")[:count]
     values, shapes = values[order], shapes[:, order]
 
@@ -102,17 +103,10 @@ def _swinging(
     return values[keep], shapes[:, keep]
 
 
-def _first_order(
-    K: Array, C: Array, system: System, speed: float
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    n = system.n
-    inverse = np.linalg.inv(system.M)
-    A = np.block(
-        [
-            [np.zeros((n, n)), np.eye(n)],
-            [-inverse @ (K + speed * system.N), -inverse @ (C + speed * system.G)],
-        ]
-    )
+def _gyroscopic(K: Array, M: Array, G: Array) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    n = len(K)
+    inverse = np.linalg.inv(M)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ K, -inverse @ G]])
     values, vectors = scipy.linalg.eig(A)
     return _swinging(values, vectors[:n])
 
