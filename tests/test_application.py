@@ -8,7 +8,9 @@ import pytest
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.fem.beam import Section
-from bearingdyn.parts import RigidBody, Shaft
+from bearingdyn.material import STEEL, Maxwell
+from bearingdyn.material.shift import WLF
+from bearingdyn.parts import FlexibleRing, Layer, RigidBody, Shaft
 
 BODY = RigidBody(2.0, (0.01, 0.01, 0.015))
 SHAFT = Shaft([Section(0.2, 0.02)], seats={"left": 0.02, "right": 0.18}, points={"end": 0.0}, f_max=3e3)
@@ -29,6 +31,28 @@ def test_one_part_under_two_names_is_reduced_once():
     app.add("other", RigidBody(2.0, (0.01, 0.01, 0.015)))
     assert app.parts["left"] is app.parts["right"]
     assert app.parts["other"] is not app.parts["left"]
+
+
+def test_a_twin_added_later_is_at_its_own_temperature():
+    rubber = Maxwell(
+        G0=1e6, G=[2e6], tau=[1e-3], K=2e9, density=1200.0, law=WLF(8.0, 120.0, 20.0), temperature=20.0
+    )
+    layer = Layer(0.036, 0.039, 0.019, rubber, refinement=0.5)
+    app = Application()
+    app.add("warm", layer)
+    app.temperature("warm", 60.0)
+    app.add("cool", layer)
+    materials = [app.parts[name].viscoelastic[0].material for name in ("warm", "cool")]
+    # WLF: log10 a_T = −8·40/160 = −2
+    assert [m.tau[0] for m in materials] == pytest.approx([1e-5, 1e-3], rel=1e-12)
+
+
+def test_a_flexible_ring_weighs_what_it_is_made_of():
+    app = Application()
+    app.add("ring", FlexibleRing(0.030, 0.036, 0.019, arm=0.026, order=3, refinement=0.5))
+    mass = STEEL.density * np.pi * (0.036**2 - 0.030**2) * 0.019
+    # its raceway's coordinates move along
+    assert app.mass("ring") == pytest.approx(mass, rel=1e-9)
 
 
 def test_names_are_part_and_interface():

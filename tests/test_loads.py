@@ -393,7 +393,7 @@ def test_a_bearing_may_be_pressed_in_play():
 
 
 def test_the_ground_bears_all_that_is_fastened_to_an_interface_it_holds():
-    """A ring with a bearing and a bush in it and a layer joined to it: the forces are those of Newton's law."""
+    """A ring that holds a bearing, a bush and a layer: Newton's law."""
     app = Application()
     app.add("rotor", RigidBody(2.0, (1e-2,) * 3))
     app.add("ring", RigidBody(0.1, (1e-4,) * 3))

@@ -127,7 +127,9 @@ class Application(Plan):
         if name in self.parts or name in self.bearings or name in self.fits:
             raise ValueError(f"part {name!r} is there already; give each part and bearing its own name")
         twin = next((known for known, source in self.sources.items() if source is part), None)
-        self.parts[name] = part.superelement() if twin is None else self.parts[twin]
+        # the twin's own, before a temperature was put on it
+        self.reduced[name] = part.superelement() if twin is None else self.reduced[twin]
+        self.parts[name] = self.reduced[name]
         self.sources[name] = part
 
     def connect(self, a: str, b: str) -> None:

@@ -19,6 +19,7 @@ class Plan:
 
     def __init__(self) -> None:
         self.parts: dict[str, Superelement] = {}
+        self.reduced: dict[str, Superelement] = {}
         self.sources: dict[str, Part] = {}
         self.connections: list[Connection] = []
         self.supports: dict[str, Support] = {}
@@ -70,14 +71,9 @@ class Plan:
                     )
 
     def mass(self, part: str) -> float | None:
-        """Mass by the rigid translation along y of a part with interfaces, kg; None without interfaces."""
-        element = self.parts[part]
-        if not element.interfaces:
-            return None
-        y = np.zeros(element.n)
-        for index in element.interfaces.values():
-            y[index[1]] = 1.0
-        return float(y @ element.M @ y)
+        """Mass by the rigid translation along y, kg; None for a part without rigid motion of its own."""
+        R = self.rigid_shapes(part)
+        return None if R is None else float(R[:, 1] @ self.parts[part].M @ R[:, 1])
 
     def raceway(self, name: str) -> Raceway | None:
         """The raceway of that name, "ring.raceway"; None where the name is no raceway."""

@@ -12,5 +12,9 @@ from bearingdyn.system.arrays import System
 def noted(system: System, app: Application) -> System:
     """The system with its application's parts, joints, bearings and loads as a text."""
     # the reduced parts, and what is kept of them, follow from their sources
-    held = {name: value for name, value in vars(app).items() if name != "parts" and name[0] != "_"}
+    held = {
+        name: value
+        for name, value in vars(app).items()
+        if name not in ("parts", "reduced") and name[0] != "_"
+    }
     return replace(system, inputs=inputs.text(held))
