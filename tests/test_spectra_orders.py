@@ -124,6 +124,13 @@ def test_tracked_orders_are_found_as_they_are_with_neighbours_an_order_apart():
     )
 
 
+def test_a_shaft_that_turns_backwards_has_the_phases_of_its_own_angle():
+    data = record(4000, 1e-3, speed=-100.0, v=lambda t: np.cos(-100.0 * t + 0.7))
+    found = track_orders(data, "v", [1.0], turns=4)
+    # splines through more than 60 samples a turn
+    np.testing.assert_allclose(found.amplitude.values[:, 0], np.exp(0.7j), rtol=1e-6)
+
+
 def test_a_growing_order_is_followed():
     """Amplitude rising with the speed squared, as an unbalance's force does."""
     data = record(28000, 5e-5, v=lambda t: np.gradient(angle(t), t) ** 2 * np.cos(angle(t)))

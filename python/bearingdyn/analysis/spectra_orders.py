@@ -106,6 +106,8 @@ def track_orders(
         basis = np.hstack([np.ones((length, 1)), np.cos(turned), -np.sin(turned)]) * weight[:, None]
         fit = np.linalg.lstsq(basis, even[piece] * weight, rcond=None)[0]
         found[i] = fit[1 : 1 + wanted.size] + 1j * fit[1 + wanted.size :]
+    if shaft_angle(result)[-1] < shaft_angle(result)[0]:
+        found = found.conj()  # the fit is over an angle that rises
     t = np.asarray(result["time"].values, dtype=np.float64)
     middle = np.interp(at[starts + length // 2], angle, t)
     speeds = np.atleast_1d(np.asarray(result.attrs["speed"], dtype=np.float64))
