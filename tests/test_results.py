@@ -230,6 +230,18 @@ def test_pyuff_reads_back_the_frequency_response(rotor, frequency, tmp_path):
     assert {s["orddenom_spec_data_type"] for s in sets} == {13}
 
 
+def test_forces_and_moving_ground_are_named_as_such(rotor, tmp_path):
+    inputs, outputs = ["ground.y", "rotor.centre.θx"], ["rotor.centre.y", "ground.layer.outer.y"]
+    H = frequency_response(rotor, [10.0, 20.0], inputs, outputs, quantity="velocity")
+    results.write_uff(H, tmp_path / "h.uff")
+    # specific data types: 9 reaction force, 11 velocity, 13 excitation force
+    sets = read_uff(tmp_path / "h.uff")
+    kinds = [(s["ordinate_spec_data_type"], s["orddenom_spec_data_type"]) for s in sets]
+    assert kinds == [(11, 11), (11, 13), (9, 11), (9, 13)]
+    units = [(s["ordinate_axis_units_lab"].strip(), s["orddenom_axis_units_lab"].strip()) for s in sets]
+    assert units == [("m/s", "m/s"), ("m/s", "N m"), ("N", "m/s"), ("N", "N m")]
+
+
 def test_pyuff_reads_back_a_transient(rotor, tmp_path):
     record = ["rotor.centre.y", "rotor.centre.x.velocity"]
     run = transient(

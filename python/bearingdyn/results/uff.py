@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 
 DIRECTIONS = {"x": 1, "y": 2, "z": 3, "θx": 4, "θy": 5, "θz": 6, "rx": 4, "ry": 5, "rz": 6}
 # specific data types of records 8 to 10
-TIME, FREQUENCY, FORCE, GENERAL = 17, 18, 13, 1
+TIME, FREQUENCY, REACTION, FORCE, GENERAL = 17, 18, 9, 13, 1
 MOTION = dict(zip(QUANTITIES, (8, 11, 12), strict=True))
+RATES = dict(zip(QUANTITIES, ("", "/s", "/s²"), strict=True))
+AXES = {8: "response", 9: "force", 11: "response", 12: "response", 13: "force"}
 TIME_RESPONSE, FREQUENCY_RESPONSE = 1, 4
 REAL, COMPLEX = 4, 6  # double precision
 WIDTH = 80
@@ -30,13 +32,16 @@ WIDTH = 80
 
 @dataclass(frozen=True, eq=False)
 class _Function:
-    """One function: its kind, the channels it is between, and its ordinate (n,), real or complex."""
+    """One function: its kind, the channels it is between, and its ordinate (n,), real or complex.
+
+    quantity and unit of the ordinate, and of what it is referred to.
+    """
 
     kind: int
     response: str
     reference: str
-    quantity: int
-    unit: str
+    quantity: tuple[int, str]
+    per: tuple[int, str]
     values: NDArray[np.generic]
 
 
@@ -73,27 +78,35 @@ def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
 def _functions(data: xarray.Dataset) -> Iterator[_Function]:
     if "response" in data and {"frequency", "output", "input"} <= set(data["response"].dims):
         H = data["response"].transpose("frequency", "output", "input")
-        quantity = MOTION.get(str(data.attrs.get("quantity")), GENERAL)
-        unit = str(H.attrs.get("units", ""))
-        for i, output in enumerate(H["output"].values):
-            for j, force in enumerate(H["input"].values):
-                yield _Function(
-                    FREQUENCY_RESPONSE, str(output), str(force), quantity, unit, H.values[:, i, j]
-                )
+        quantity = str(data.attrs.get("quantity"))
+        for i, output in enumerate(H["output"].values.astype(str)):
+            for j, given in enumerate(H["input"].values.astype(str)):
+                force = output.startswith("ground.") or ".force." in output
+                of = _quantity(output, REACTION if force else MOTION.get(quantity, GENERAL), quantity)
+                moved = given.startswith("ground.")
+                per = _quantity(given, MOTION.get(quantity, GENERAL) if moved else FORCE, quantity)
+                yield _Function(FREQUENCY_RESPONSE, output, given, of, per, H.values[:, i, j])
     elif "record" in data and {"time", "channel"} <= set(data["record"].dims):
         record = data["record"].transpose("time", "channel")
         units = {"m": 8, "rad": 8, "m/s": 11, "rad/s": 11, "m/s²": 12, "rad/s²": 12, "N": FORCE}
         for i, channel in enumerate(record["channel"].values):
             unit = str(data["unit"].values[i])
-            yield _Function(
-                TIME_RESPONSE, str(channel), "", units.get(unit, GENERAL), unit, record.values[:, i]
-            )
+            of = units.get(unit, GENERAL), unit
+            yield _Function(TIME_RESPONSE, str(channel), "", of, (0, "NONE"), record.values[:, i])
     else:
         raise ValueError(
             f"the result holds {[str(name) for name in data.data_vars]}; dataset 58 takes a frequency "
             f"response (frequency, output, input) or a transient (time, channel); choose channels by lists, "
             f'as in .sel(output=["housing.top.y"])'
         )
+
+
+def _quantity(channel: str, kind: int, quantity: str) -> tuple[int, str]:
+    """Specific data type of a channel in a frequency response, and its unit."""
+    turning = _split(channel)[1] > 3
+    if kind in (FORCE, REACTION):
+        return kind, "N m" if turning else "N"
+    return kind, ("rad" if turning else "m") + RATES.get(quantity, "")
 
 
 def _split(channel: str) -> tuple[str, int]:
@@ -140,10 +153,9 @@ def _dataset_58(
     def axis(kind: int, label: str, unit: str) -> str:
         return f"{kind:10d}{0:5d}{0:5d}{0:5d} {_ascii(label, 20)} {_ascii(unit, 20)}"
 
-    numerator, _, denominator = f.unit.partition("/") if f.reference else (f.unit, "", "NONE")
     yield axis(TIME if dim == "time" else FREQUENCY, dim, "s" if dim == "time" else "Hz")
-    yield axis(f.quantity, "response", numerator or "NONE")
-    yield axis(FORCE if f.reference else 0, "force" if f.reference else "NONE", denominator or "NONE")
+    for quantity, unit in (f.quantity, f.per):
+        yield axis(quantity, AXES.get(quantity, "response" if quantity else "NONE"), unit or "NONE")
     yield axis(0, "NONE", "NONE")
 
     columns = [np.real(f.values), np.imag(f.values)] if is_complex else [f.values]
