@@ -72,6 +72,23 @@ def test_a_loose_flexible_ring_lets_one_ball_carry_more(capsys: pytest.CaptureFi
     assert sag[0] > 0
 
 
+def test_the_hold_of_a_loose_seat_stores_its_share() -> None:
+    """Strain shares of an undamped mode, of unit modal mass: k |u|²/ω² of each spring."""
+    eq = bd.equilibrium(loose(20e-6))
+    found = bd.modes(eq, 8)
+    shares = bd.energy_shares(eq, found).strain
+    x, omega = found["shape"].values, 2 * math.pi * found.frequency.values
+    spring = next(s for s in eq.system.springs if s.name.startswith("rotor"))
+    stored = spring.stiffness @ np.abs(spring.across @ x.T) ** 2
+    # round-off of the slow modes' frequencies
+    np.testing.assert_allclose(
+        shares.sel(part=spring.name).values[2:], (stored / omega**2)[2:], rtol=1e-6, atol=1e-12
+    )
+    assert shares.sel(part="seat (hold)").max() > 1e-3
+    with pytest.raises(ValueError, match=r"bearing 'seat' offers force.x, force.y"):
+        bd.frequency_response(eq, [10.0], ["rotor.centre.z"], ["seat.force.z"])
+
+
 def test_the_loose_seat_does_not_depend_on_its_springs() -> None:
     one = bd.equilibrium(loose(20e-6))
     for fit in ({"kappa": 3e14}, {"stations": 120}, {"hold": 1e9}):
