@@ -21,6 +21,7 @@ from bearingdyn.fem import (
     beam,
     block_with_bore,
     check_matrices,
+    eigen,
     read_matrices,
     read_nodes,
     read_npz,
@@ -211,6 +212,20 @@ def test_an_indefinite_stiffness_is_named_with_its_place(block):
         check_matrices(buckled(block), block.M)
 
 
+def test_large_models_are_checked_as_small_ones_are(block, monkeypatch):
+    """Above some size matrices are eliminated in another order, here already at 36 coordinates."""
+    monkeypatch.setattr(eigen, "DISSECT", 20)
+    assert_same(check_matrices(block.K, block.M, block.points), block)
+    with pytest.raises(
+        ValueError, match=r"K is indefinite: 1 negative pivots, one at node \d+, [xyz]; a stress"
+    ):
+        check_matrices(buckled(block), block.M, block.points)
+    assert (eigen.pivots(block.K + scipy.sparse.eye(block.n)) > 0).all()
+    # pivots by the rows of the matrix: each block of a block-diagonal one keeps its own signs
+    signs = np.where(np.arange(block.n) % 3 == 0, -1.0, 2.0)
+    np.testing.assert_array_equal(eigen.pivots(scipy.sparse.diags(signs)), signs)
+
+
 def test_an_indefinite_mass_is_named(block):
     M = block.M.toarray()
     off = M - np.diag(np.diag(M))
@@ -297,10 +312,17 @@ def test_files_that_do_not_fit_are_named(block, tmp_path):
         (lambda: read_matrices(tmp_path / "few.sti"), "rows up to 36, while .* names 2"),
         (lambda: read_matrices(tmp_path / "bad.sti"), "not node.direction"),
         (lambda: read_nodes(tmp_path / "x.inp"), r"has no \*NODE block"),
-        (lambda: read_nodes(tmp_path / "y.inp"), "y.inp, line 2: '1, a, b' is no node"),
+        (lambda: read_nodes(tmp_path / "y.inp"), "y.inp: '1, a, b' is no node"),
     ):
         with pytest.raises(ValueError, match=message):
             call()
+
+
+def test_nodes_are_read_through_includes_and_blanks_are_zero(tmp_path):
+    (tmp_path / "nodes.inp").write_text("*NODE, NSET=all\n1, 1.0, 2.0, 3.0\n2, , 5.0\n")
+    (tmp_path / "model.inp").write_text("*HEADING\n*INCLUDE, INPUT=nodes.inp\n*NODE\n7, 1., 1., 1.,\n")
+    expected = {1: (1.0, 2.0, 3.0), 2: (0.0, 5.0, 0.0), 7: (1.0, 1.0, 1.0)}
+    assert read_nodes(tmp_path / "model.inp") == expected
 
 
 def test_labels_that_are_wrong_are_named(block):

@@ -390,7 +390,7 @@ def test_faults_of_a_mesh_are_named(tmp_path, what, message):
         (TET_INP.replace("\n10, 0,", "\n9, 0,"), r"\*NODE: node 9 is given twice; write a flat file"),
         (TET_INP.replace("\n7, S3", "\n7, S5"), r"\*SURFACE slope has the face 'S5'; it must be S1 to S4"),
         (TET_INP.replace("few, S1", "many, S1"), r"\*SURFACE floor names the element set many, not defined"),
-        (TET_INP.replace("\n3, 0, 1, 0", "\n3, 0, one, 0"), r"\*NODE: could not convert string to float"),
+        (TET_INP.replace("\n3, 0, 1, 0", "\n3, 0, one, 0"), r"\*NODE: '3, 0, one, 0' is no node"),
         (TET_INP + "*INSTANCE, NAME=i, PART=p\n0, 0, 1\n", "an instance is moved into the assembly"),
         (TET_INP + "*INCLUDE, INPUT=none.inp\n", r"\*INCLUDE names .*none.inp, which is not a file"),
     ],

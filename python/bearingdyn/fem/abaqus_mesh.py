@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.fem.input_file import blocks, fields, node
 from bearingdyn.fem.raw_mesh import RawMesh
 from bearingdyn.fem.solid_element import HEX20, TET10
 
@@ -53,7 +53,7 @@ def read_inp(path: Path) -> RawMesh:
     that names what there is not, and a line that is no data.
     """
     model = _Model()
-    for keyword, options, lines in _blocks(path):
+    for keyword, options, lines in blocks(path):
         try:
             _take(model, keyword, options, lines)
         except (ValueError, IndexError) as error:
@@ -91,68 +91,29 @@ def read_inp(path: Path) -> RawMesh:
     )
 
 
-def _blocks(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
-    """Keyword, options and data lines of each block, *INCLUDE followed."""
-    keyword, options, lines = "", {}, []  # type: ignore[var-annotated]
-    with path.open(encoding="utf-8", errors="replace") as file:
-        pending = ""
-        for raw in file:
-            line = raw.strip()
-            if not line or line.startswith("**"):
-                continue
-            if pending or line.startswith("*"):
-                pending += line
-                if pending.endswith(","):  # a keyword line goes on
-                    continue
-                if keyword:
-                    yield keyword, options, lines
-                keyword, options, lines = *_keyword(pending), []
-                pending = ""
-                if keyword == "INCLUDE":
-                    other = path.parent / options.get("INPUT", "")
-                    if not other.is_file():
-                        raise ValueError(f"*INCLUDE names {other}, which is not a file")
-                    yield from _blocks(other)
-                    keyword = ""
-            else:
-                lines.append(line)
-    if keyword:
-        yield keyword, options, lines
-
-
-def _keyword(line: str) -> tuple[str, dict[str, str]]:
-    first, *rest = line[1:].split(",")
-    pairs = (option.partition("=") for option in rest)
-    return " ".join(first.upper().split()), {k.strip().upper(): v.strip().strip('"') for k, _, v in pairs}
-
-
-def _fields(line: str) -> list[str]:
-    return [f.strip() for f in line.split(",") if f.strip()]
-
-
 def _take(model: _Model, keyword: str, options: dict[str, str], lines: list[str]) -> None:
     if keyword == "NODE":
         for line in lines:
-            number, *place = _fields(line)
-            if int(number) in model.nodes:
+            number, place = node(line)
+            if number in model.nodes:
                 raise ValueError(
                     f"node {number} is given twice; write a flat file of one part, without an assembly"
                 )
-            model.nodes[int(number)] = tuple(float(x) for x in (*place, "0", "0", "0")[:3])
+            model.nodes[number] = place
             if "NSET" in options:
-                model.nsets.setdefault(model.key(options["NSET"]), []).append(int(number))
+                model.nsets.setdefault(model.key(options["NSET"]), []).append(number)
     elif keyword == "ELEMENT":
         _take_elements(model, options, lines)
     elif keyword in ("NSET", "ELSET"):
         sets = model.nsets if keyword == "NSET" else model.elsets
         members = sets.setdefault(model.key(options[keyword]), [])
         for line in lines:
-            fields = _fields(line)
+            entries = fields(line)
             if "GENERATE" in options:
-                first, last, step = (*map(int, fields), 1)[:3]
+                first, last, step = (*map(int, entries), 1)[:3]
                 members.extend(range(first, last + 1, step))
                 continue
-            for one in fields:
+            for one in entries:
                 if one.isdigit():
                     members.append(int(one))
                 elif model.key(one) in sets:
@@ -165,7 +126,7 @@ def _take(model: _Model, keyword: str, options: dict[str, str], lines: list[str]
         name = model.key(options["NAME"])
         if options.get("TYPE", "ELEMENT").upper() == "NODE":
             model.of_nodes.add(name)
-        pairs = [_fields(line) for line in lines]
+        pairs = [fields(line) for line in lines]
         model.surfaces.setdefault(name, []).extend((p[0], p[1] if len(p) > 1 else "") for p in pairs)
     elif keyword == "SOLID SECTION":
         model.sections.append(model.key(options["ELSET"]))
@@ -180,7 +141,7 @@ def _take_elements(model: _Model, options: dict[str, str], lines: list[str]) -> 
         raise ValueError(f"elements of type {kind}; bricks C3D20 or tetrahedra C3D10 are read")
     rows: list[list[int]] = []
     if solid:
-        flat = [int(f) for line in lines for f in _fields(line)]
+        flat = [int(f) for line in lines for f in fields(line)]
         width = int(solid[1]) + 1
         if len(flat) % width:
             raise ValueError(f"type {kind} has {width - 1} nodes; the lines do not hold whole elements")
@@ -188,7 +149,7 @@ def _take_elements(model: _Model, options: dict[str, str], lines: list[str]) -> 
     else:
         open_row = False
         for line in lines:
-            numbers = [int(f) for f in _fields(line)]
+            numbers = [int(f) for f in fields(line)]
             if open_row:
                 rows[-1].extend(numbers)
             else:

@@ -82,6 +82,22 @@ def factorise(A: Any) -> Any:
     return Factors(A, elimination_order(A)) if A.shape[0] > DISSECT else _by_minimum_degree(A)
 
 
+def pivots(A: Any) -> Float:
+    """Pivots (n,) of a sparse symmetric matrix, by its rows.
+
+    As many are negative as eigenvalues are (Sylvester). −1 stands where rows were exchanged, which only a
+    pivot of zero makes necessary.
+
+    Raises RuntimeError for a singular matrix.
+    """
+    found = factorise(A)
+    lu, order = (found.lu, found.order) if isinstance(found, Factors) else (found, np.arange(A.shape[0]))
+    own = np.empty(len(order))
+    # without exchanged rows the factors are those of L D Lᵀ
+    own[order] = np.where(lu.perm_r == lu.perm_c, lu.U.diagonal()[lu.perm_c], -1.0)
+    return own
+
+
 def order_of(A: Any) -> NDArray[np.intp]:
     """Order of elimination (n,) for many matrices of one pattern, found once; see Factors."""
     return elimination_order(A) if A.shape[0] > DISSECT else np.argsort(_by_minimum_degree(A).perm_c)

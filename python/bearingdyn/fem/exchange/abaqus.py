@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.fem.exchange.matrices import FEMatrices, Points, check_matrices
 from bearingdyn.fem.exchange.text import columns, existing, symmetric_from, whole
+from bearingdyn.fem.input_file import blocks, node
 
 Index = NDArray[np.intp]
 
@@ -76,27 +77,15 @@ def _entries(path: Path) -> tuple[Index | None, Index, NDArray[np.float64]]:
 def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
     """Node number -> position of all *NODE blocks of an input file of Abaqus or CalculiX (.inp), in its unit.
 
+    *INCLUDE is followed.
+
     Raises ValueError for a file that is not there, without nodes, or with a line that is no node.
     """
     p = existing(path)
-    nodes: dict[int, tuple[float, float, float]] = {}
-    inside = False
-    with p.open(encoding="utf-8", errors="replace") as stream:
-        for count, line in enumerate(stream, 1):
-            text = line.strip()
-            if not text or text.startswith("**"):
-                continue
-            if text.startswith("*"):
-                inside = text[1:].split(",")[0].strip().upper() == "NODE"
-                continue
-            if not inside:
-                continue
-            try:
-                number, *rest = text.rstrip(",").split(",")
-                x, y, z = (float(v) for v in (*rest, "0", "0")[:3])
-                nodes[int(number)] = (x, y, z)
-            except ValueError as error:
-                raise ValueError(f"{p}, line {count}: {text!r} is no node: {error}") from error
+    try:
+        nodes = dict(node(line) for keyword, _, lines in blocks(p) if keyword == "NODE" for line in lines)
+    except ValueError as error:
+        raise ValueError(f"{p}: {error}") from error
     if not nodes:
         raise ValueError(f"{p} has no *NODE block; give the input file that holds the nodes")
     return nodes

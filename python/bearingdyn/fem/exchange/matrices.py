@@ -11,7 +11,7 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.fem.eigen import factorise, rigid_body_residual, rigid_transfer
+from bearingdyn.fem.eigen import pivots, rigid_body_residual, rigid_transfer
 from bearingdyn.fem.exchange.units import SI, Units
 
 Float = NDArray[np.float64]
@@ -340,17 +340,15 @@ def _check_units(model: FEMatrices, sound: tuple[float, float]) -> None:
 
 
 def _check_pivots(model: FEMatrices) -> None:
-    """K is positive semi-definite: the pivots' signs are those of its eigenvalues (Sylvester).
+    """K is positive semi-definite, by its pivots.
 
     A millionth of its diagonal is added, which lifts rigid motions, and what six digits leave of them,
     above zero.
     """
     try:
-        lu = factorise(model.K + SYMMETRY * scipy.sparse.diags(model.K.diagonal()))
+        pivot = pivots(model.K + SYMMETRY * scipy.sparse.diags(model.K.diagonal()))
     except RuntimeError as error:
         raise ValueError(f"K is singular beyond rigid motion ({error}); check the export") from error
-    # without exchanged rows the factors are those of L D Lᵀ; rows are exchanged only for a zero pivot
-    pivot = np.where(lu.perm_r == lu.perm_c, lu.U.diagonal()[lu.perm_c], -1.0)
     negative = np.flatnonzero(~(pivot > 0))
     if negative.size:
         raise ValueError(
