@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.analysis.recovery import Input, Output, recovered, requested
+from bearingdyn.analysis.recovery import RATES, Input, Output, recovered, requested
 from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
@@ -169,12 +169,9 @@ def _unit(quantity: str, outputs: Sequence[Output], inputs: Sequence[Input]) -> 
     time = {"displacement": "", "velocity": " s", "acceleration": " s²"}[quantity]
     turning = any(o.turning for o in outputs), any(i.turning for i in inputs)
     if any(o.is_force for o in outputs) or any(i.axis is not None for i in inputs):
-        rate = time.replace(" ", "/")
-        above = {
-            ("N m" if o.turning else "N") if o.is_force else ("rad" if o.turning else "m") + rate: None
-            for o in outputs
-        }
-        below = {"m" + rate if i.axis is not None else ("N m" if i.turning else "N"): None for i in inputs}
+        moved = "m" + RATES[quantity]
+        above = dict.fromkeys(o.unit(quantity) for o in outputs)
+        below = dict.fromkeys(moved if i.axis is not None else "N m" if i.turning else "N" for i in inputs)
         return f"({', '.join(above)})/({', '.join(below)})"
     motion, force = ("m, rad" if turning[0] else "m"), ("N, N m" if turning[1] else "N")
     if any(turning):

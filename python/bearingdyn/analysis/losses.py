@@ -13,7 +13,7 @@ from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.running import part_of
 from bearingdyn.analysis.transient import checked_speed
-from bearingdyn.system import System
+from bearingdyn.system import System, factor
 
 if TYPE_CHECKING:
     import xarray
@@ -23,8 +23,6 @@ Channel = tuple[int, Array | None, int, int]
 
 # steps whose powers are held at once
 PIECE = 2000
-# of the largest (scaled) eigenvalue of a damping matrix: below it is round-off
-RANK = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +48,9 @@ def dissipation(
 
     Viscous damping loses ẋᵀCẋ; the shear of a viscoelastic part, "layer (shear)", what the dashpots of its
     branches and its η0 lose; a bearing what its contacts lose. Powers are summed by the trapezoidal rule over
-    the last `steps` steps, as in the audit of `transient`, whose linear, branch and contact losses these are
-    parts of. A part whose damping turns with the shaft is reckoned by its motion in the fixed frame.
+    the last `steps` steps, without `settle` all but the first, as in the audit of `transient`, whose linear,
+    branch and contact losses these are parts of. A part whose damping turns with the shaft is reckoned by its
+    motion in the fixed frame.
 
     speed, dt, steps, settle, scheme, progress: as in `transient`.
 
@@ -135,8 +134,7 @@ def _sinks(system: System) -> list[Sink]:
     sinks = []
     layer = 0
     for part in system.parts:
-        factor = _factor(np.asarray(part.element.C))
-        sinks.append(Sink(part.name, factor.T @ part.place))
+        sinks.append(Sink(part.name, factor(np.asarray(part.element.C)).T @ part.place))
         for _ in part.element.viscoelastic:
             term = system.layers[layer]
             eta0 = float(getattr(term.material, "eta0", 0.0))
@@ -161,14 +159,3 @@ def _powers(sinks: list[Sink], sizes: list[int], rows: Array) -> Array:
         power[:, k] = own[:, 0] if sink.channel is not None else (own**2).sum(axis=1)
         at += size
     return power
-
-
-def _factor(C: Array) -> Array:
-    """F (n, rank) with C = F Fᵀ."""
-    scale = np.sqrt(np.maximum(np.diag(C), 0.0))
-    if not scale.any():
-        return np.zeros((len(C), 0))
-    scale[scale == 0.0] = 1.0
-    values, vectors = np.linalg.eigh(C / np.outer(scale, scale))
-    keep = values > RANK * values[-1]
-    return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))

@@ -9,8 +9,9 @@ import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.harmonic import linear
 from bearingdyn.application import Application
-from bearingdyn.system import System, assemble
+from bearingdyn.system import System
 
 if TYPE_CHECKING:
     import xarray
@@ -48,7 +49,7 @@ def modes(
     >>> bd.modes(app)["frequency"].values.round(2).tolist()  # √(k/m)/2π, three times each
     [112.54, 112.54, 112.54, 159.15, 159.15, 159.15]
     """
-    system = _linear(source)
+    system = source.linearised() if isinstance(source, Equilibrium) else linear(source).system
     system.check_speed(speed)
     if damped:
         values, shapes = _damped(system, speed)
@@ -83,17 +84,6 @@ def modes(
             **inputs_of(system.inputs),
         },
     )
-
-
-def _linear(source: Equilibrium | Application | System) -> System:
-    if isinstance(source, Equilibrium):
-        return source.linearised()
-    system = source if isinstance(source, System) else assemble(source)
-    if system.bearings:
-        raise ValueError(
-            "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
-        )
-    return system
 
 
 def _swinging(

@@ -15,6 +15,8 @@ from bearingdyn.system import PartTerm, SpringTerm, System, component_of
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+RATES = {"displacement": "", "velocity": "/s", "acceleration": "/s²"}
+
 
 @dataclass(frozen=True, eq=False)
 class Input:
@@ -88,6 +90,12 @@ class Output:
     def turning(self) -> bool:
         """Whether it is a rotation or moment."""
         return component_of(self.name) in COMPONENTS[3:]
+
+    def unit(self, quantity: str) -> str:
+        """Unit of a force, or of a motion's displacement, velocity or acceleration."""
+        if self.is_force:
+            return "N m" if self.turning else "N"
+        return ("rad" if self.turning else "m") + RATES[quantity]
 
     @property
     def rows(self) -> Array:

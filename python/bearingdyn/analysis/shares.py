@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.harmonic import linear
 from bearingdyn.application import Application
-from bearingdyn.system import System, assemble
+from bearingdyn.system import System
 
 if TYPE_CHECKING:
     import xarray
@@ -48,13 +49,7 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
 
     Raises ValueError for modes of another system, or bearings without an equilibrium.
     """
-    if isinstance(source, Application):
-        source = assemble(source)
-    system = source.system if isinstance(source, Equilibrium) else source
-    if system.bearings and not isinstance(source, Equilibrium):
-        raise ValueError(
-            "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
-        )
+    system = linear(source).system
     if not system.parts:
         raise ValueError("the system does not know its parts; pass an application or its equilibrium")
     shape, value = found["shape"].values, found["eigenvalue"].values
@@ -93,7 +88,7 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
 
 
 def _stores(
-    source: Equilibrium | System,
+    source: Equilibrium | Application | System,
     system: System,
     phi: Complex,
     value: Complex,

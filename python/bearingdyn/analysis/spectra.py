@@ -82,6 +82,12 @@ def sampling_time(result: xarray.Dataset) -> float:
     return float(result.attrs["dt"]) * int(result.attrs["decimate"])
 
 
+def speed_profile(result: xarray.Dataset) -> tuple[Array, Array]:
+    """Times, s, and speeds of the shaft, rad/s, linear in between; one of each where it is steady."""
+    speeds = np.atleast_1d(np.asarray(result.attrs["speed"], dtype=np.float64))
+    return np.atleast_1d(np.asarray(result.attrs.get("speed_time", [0.0]), dtype=np.float64)), speeds
+
+
 def check_window(window: str) -> None:
     """Refuse an unknown window: ValueError."""
     if window not in WINDOWS:

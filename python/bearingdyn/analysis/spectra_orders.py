@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.analysis.spectra import amplitudes, check_window, signal_of, unit_of
+from bearingdyn.analysis.spectra import amplitudes, check_window, signal_of, speed_profile, unit_of
 
 if TYPE_CHECKING:
     import xarray
@@ -22,8 +22,7 @@ PER_ORDER = 8
 def shaft_angle(result: xarray.Dataset) -> Array:
     """Angle of the shaft at every sample of a march, (n,), rad: the exact integral of its speed profile."""
     t = np.asarray(result["time"].values, dtype=np.float64)
-    speeds = np.atleast_1d(np.asarray(result.attrs["speed"], dtype=np.float64))
-    times = np.atleast_1d(np.asarray(result.attrs.get("speed_time", [0.0]), dtype=np.float64))
+    times, speeds = speed_profile(result)
     if speeds.size == 1:
         return np.asarray(speeds[0] * t)
     # as the core reckons: the first speed holds before the profile, the last after it
@@ -110,8 +109,6 @@ def track_orders(
         found = found.conj()  # the fit is over an angle that rises
     t = np.asarray(result["time"].values, dtype=np.float64)
     middle = np.interp(at[starts + length // 2], angle, t)
-    speeds = np.atleast_1d(np.asarray(result.attrs["speed"], dtype=np.float64))
-    times = np.atleast_1d(np.asarray(result.attrs.get("speed_time", [0.0]), dtype=np.float64))
 
     from bearingdyn.results import dataset
 
@@ -123,7 +120,7 @@ def track_orders(
                 unit_of(result, channel),
                 f"{channel}, complex, zero-to-peak",
             ),
-            "speed": ("time", np.interp(middle, times, speeds), "rad/s", "speed of the shaft"),
+            "speed": ("time", np.interp(middle, *speed_profile(result)), "rad/s", "speed of the shaft"),
         },
         {"analysis": "order tracking", "channel": channel, "turns": int(turns)},
         {"time": (middle, "s"), "order": (wanted, "1")},

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.spectra import amplitudes, check_window, sampling_time, signal_of, unit_of
+from bearingdyn.analysis.spectra import (
+    amplitudes,
+    check_window,
+    sampling_time,
+    signal_of,
+    speed_profile,
+    unit_of,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -84,8 +91,6 @@ def waterfall(
     pieces = np.lib.stride_tricks.sliding_window_view(signal, n)[::step]
     time = np.asarray(result["time"].values, dtype=np.float64)
     middle = time[: len(pieces) * step : step][: len(pieces)] + 0.5 * (n - 1) * dt
-    speeds = np.atleast_1d(np.asarray(result.attrs["speed"], dtype=np.float64))
-    times = np.atleast_1d(np.asarray(result.attrs.get("speed_time", [0.0]), dtype=np.float64))
 
     from bearingdyn.results import dataset
 
@@ -97,7 +102,7 @@ def waterfall(
                 unit_of(result, channel),
                 f"{channel}, zero-to-peak",
             ),
-            "speed": ("time", np.interp(middle, times, speeds), "rad/s", "speed of the shaft"),
+            "speed": ("time", np.interp(middle, *speed_profile(result)), "rad/s", "speed of the shaft"),
         },
         {"analysis": "waterfall", "channel": channel, "window": window, "length": n * dt},
         {"time": (middle, "s"), "frequency": (np.fft.rfftfreq(n, dt), "Hz")},

@@ -76,10 +76,7 @@ def unbalance_response(
 
     from bearingdyn.results import dataset, inputs_of
 
-    rate = {"displacement": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
-    units = [
-        ("N m" if o.turning else "N") if o.is_force else ("rad" if o.turning else "m") + rate for o in wanted
-    ]
+    units = [o.unit(quantity) for o in wanted]
     made = dataset(
         {
             "response": (

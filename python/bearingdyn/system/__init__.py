@@ -9,6 +9,7 @@ from bearingdyn.system.arrays import (
     SpringTerm,
     System,
     component_of,
+    factor,
     is_rotation,
 )
 from bearingdyn.system.assembly import assemble
@@ -23,5 +24,6 @@ __all__ = [
     "System",
     "assemble",
     "component_of",
+    "factor",
     "is_rotation",
 ]

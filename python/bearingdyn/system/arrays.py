@@ -33,6 +33,8 @@ ALIASES = {"rx": "θx", "ry": "θy", "rz": "θz"}
 SLOW = 1e-6
 # round-off left in φᵀKφ, as a share of |φ|ᵀ|K||φ|, and in the slow modes, as a share of the fastest of them
 ROUND_OFF, SLOW_ROUND_OFF = 1e-12, 1e-13
+# below this share of the largest (scaled) eigenvalue a matrix has none: rigid motions of a deviatoric one
+RANK = 1e-11
 # a test spring in N/m that stands for a bearing when free motions are sought: any stiff value serves
 TEST_SPRING = 1e8
 
@@ -324,6 +326,15 @@ def natural(K: Array, M: Array) -> tuple[Array, Array]:
     noise = np.maximum(noise, ROUND_OFF * np.sum(np.abs(shapes) * (np.abs(K) @ np.abs(shapes)), axis=0))
     squares[np.abs(squares) <= noise] = 0.0
     return squares, shapes
+
+
+def factor(A: Array) -> Array:
+    """L (n, rank) with A = L Lᵀ of a positive semi-definite matrix, what is only round-off left out."""
+    scale = np.sqrt(np.maximum(np.diag(A), 0.0))
+    scale[scale == 0.0] = 1.0
+    values, vectors = np.linalg.eigh(A / np.outer(scale, scale))
+    keep = values > RANK * values[-1]
+    return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
 
 
 def component_of(channel: str) -> str:

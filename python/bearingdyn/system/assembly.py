@@ -10,14 +10,11 @@ from numpy.typing import NDArray
 
 from bearingdyn.application import GRAVITY, GROUND, Application, HungFit
 from bearingdyn.bearing.series import RIGID
-from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System
+from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System, factor
 from bearingdyn.system.held import check_held
 from bearingdyn.system.origin import noted
 
 Array = NDArray[np.float64]
-
-# below this share of the largest (scaled) eigenvalue a deviatoric matrix has no strain: its rigid motions
-RANK = 1e-11
 
 
 def assemble(app: Application) -> System:
@@ -51,7 +48,7 @@ def assemble(app: Application) -> System:
         inertia += select[part].T @ (element.M @ rigid[:, :3])
         terms.append(PartTerm(part, element, select[part], rigid))
         for term in element.viscoelastic:
-            layers.append(LayerTerm(part, term.material, select[part].T @ _factor(term.H)))
+            layers.append(LayerTerm(part, term.material, select[part].T @ factor(term.H)))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
         if all(relaxed):
             deviatoric = (2.0 * G0 * t.H for G0, t in zip(relaxed, element.viscoelastic, strict=True))
@@ -181,15 +178,6 @@ def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
                 local[part][i] = count
                 count += 1
     return local, count
-
-
-def _factor(H: Array) -> Array:
-    """L (n, rank) with H = L Lᵀ, rigid motions left out."""
-    scale = np.sqrt(np.diag(H))
-    scale[scale == 0.0] = 1.0
-    values, vectors = np.linalg.eigh(H / np.outer(scale, scale))
-    keep = values > RANK * values[-1]
-    return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
 
 
 def _springs(app: Application, outputs: Mapping[str, Array]) -> Iterator[tuple[SpringTerm, Array]]:
