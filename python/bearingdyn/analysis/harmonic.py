@@ -11,19 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.analysis.recovery import RATES, Input, Output, recovered, requested
+from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
-from bearingdyn.system import System, assemble
+from bearingdyn.system import QUANTITIES, RATES, System, assemble
 
 if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-QUANTITIES = {"displacement": 0, "velocity": 1, "acceleration": 2}
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +130,7 @@ def frequency_response(
     """
     f = frequencies(frequency)
     if quantity not in QUANTITIES:
-        raise ValueError(f"quantity is {quantity!r}; it must be one of {sorted(QUANTITIES)}")
+        raise ValueError(f"quantity is {quantity!r}; it must be one of {list(QUANTITIES)}")
     state = linear(source)
     state.system.check_speed(speed)
     given = [Input.of(state.system, name) for name in inputs]
@@ -141,7 +139,7 @@ def frequency_response(
 
     omega = 2 * np.pi * f
     x = state.solve(omega, force, requested(wanted, state.system.n), speed, progress)
-    response = recovered(wanted, given, x, omega, speed, QUANTITIES[quantity], state.K, state.C)
+    response = recovered(wanted, given, x, omega, speed, QUANTITIES.index(quantity), state.K, state.C)
 
     from bearingdyn.results import dataset, inputs_of
 

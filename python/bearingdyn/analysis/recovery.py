@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from bearingdyn.application import COMPONENTS, GROUND
 from bearingdyn.bearing.series import NET
-from bearingdyn.system import PartTerm, SpringTerm, System, component_of
+from bearingdyn.system import RATES, PartTerm, SpringTerm, System, component_of
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-RATES = {"displacement": "", "velocity": "/s", "acceleration": "/s²"}
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,15 +18,13 @@ from bearingdyn.application import Application
 from bearingdyn.bearing import ConstantDamping
 from bearingdyn.bearing.series import NET
 from bearingdyn.results import march_dataset
-from bearingdyn.system import QUANTITIES, System, is_rotation
+from bearingdyn.system import QUANTITIES, RATES, System, is_rotation
 
 if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
 Channel = tuple[int, Array | None, int, int]
-
-UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}
 
 
 def transient(
@@ -273,7 +271,5 @@ def _channel(system: System, name: str) -> tuple[Channel, str]:
     place, _, quantity = name.rpartition(".")
     if quantity not in QUANTITIES:
         place, quantity = name, "displacement"
-    unit = UNITS[quantity]
-    if is_rotation(place):
-        unit = unit.replace("m", "rad", 1)
+    unit = ("rad" if is_rotation(place) else "m") + RATES[quantity]
     return (core.CHANNEL_KINDS[quantity], system.row(place), 0, 0), unit

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.analysis.harmonic import QUANTITIES, linear
+from bearingdyn.analysis.harmonic import linear
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.application import Application
-from bearingdyn.system import System
+from bearingdyn.system import QUANTITIES, System
 
 if TYPE_CHECKING:
     import xarray
@@ -49,7 +49,7 @@ def unbalance_response(
     if given.ndim != 1 or given.size == 0 or not (np.isfinite(given).all() and (given >= 0).all()):
         raise ValueError("speeds must be a list of finite values of zero or more, in rad/s")
     if quantity not in QUANTITIES:
-        raise ValueError(f"quantity is {quantity!r}; it must be one of {sorted(QUANTITIES)}")
+        raise ValueError(f"quantity is {quantity!r}; it must be one of {list(QUANTITIES)}")
     state = linear(source)
     system = state.system
     system.check_speed(float(given.max()))
@@ -71,7 +71,9 @@ def unbalance_response(
         if speed > 0.0:
             omega = np.array([speed])
             x = state.solve(omega, force, rows, float(speed), None)
-            unit = recovered(wanted, inputs, x, omega, float(speed), QUANTITIES[quantity], state.K, state.C)
+            unit = recovered(
+                wanted, inputs, x, omega, float(speed), QUANTITIES.index(quantity), state.K, state.C
+            )
             response[k] = speed**2 * (unit[0] @ phase)
 
     from bearingdyn.results import dataset, inputs_of

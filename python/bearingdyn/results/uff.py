@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.system import QUANTITIES
+from bearingdyn.system import QUANTITIES, RATES
 
 if TYPE_CHECKING:
     import xarray
@@ -23,7 +23,6 @@ DIRECTIONS = {"x": 1, "y": 2, "z": 3, "θx": 4, "θy": 5, "θz": 6, "rx": 4, "ry
 # specific data types of records 8 to 10
 TIME, FREQUENCY, REACTION, FORCE, GENERAL = 17, 18, 9, 13, 1
 MOTION = dict(zip(QUANTITIES, (8, 11, 12), strict=True))
-RATES = dict(zip(QUANTITIES, ("", "/s", "/s²"), strict=True))
 AXES = {8: "response", 9: "force", 11: "response", 12: "response", 13: "force"}
 TIME_RESPONSE, FREQUENCY_RESPONSE = 1, 4
 REAL, COMPLEX = 4, 6  # double precision

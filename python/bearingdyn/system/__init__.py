@@ -2,6 +2,7 @@
 
 from bearingdyn.system.arrays import (
     QUANTITIES,
+    RATES,
     BearingTerm,
     LayerTerm,
     LoadTerm,
@@ -16,6 +17,7 @@ from bearingdyn.system.assembly import assemble
 
 __all__ = [
     "QUANTITIES",
+    "RATES",
     "BearingTerm",
     "LayerTerm",
     "LoadTerm",

@@ -27,7 +27,9 @@ from bearingdyn.material import Maxwell
 
 Array = NDArray[np.float64]
 
+# of a motion; the order is the number of derivatives
 QUANTITIES = ("displacement", "velocity", "acceleration")
+RATES = dict(zip(QUANTITIES, ("", "/s", "/s²"), strict=True))
 ALIASES = {"rx": "θx", "ry": "θy", "rz": "θz"}
 # below this share of the largest eigenvalue of (K, M) its round-off may hide a slow mode
 SLOW = 1e-6
