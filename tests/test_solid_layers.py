@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -216,3 +217,19 @@ def test_block_on_a_shear_pad_slides_and_twists_at_its_formulae():
     np.testing.assert_allclose(
         found, exact, rtol=0.01
     )  # free edges: of the order t/a = 1/40, half of it in ω
+
+
+def test_a_layered_foot_held_at_one_face_is_reduced_without_a_warning():
+    """Rigid motion of one interface costs nothing, and a load on it needs no shape of its own."""
+    mesh = box_mesh([0, 0.03, 0.06], [0, 0.01, 0.015, 0.025], [0, 0.02, 0.04])
+    mesh = mesh.with_region("rubber", lambda p: (p[:, 1] > 0.01) & (p[:, 1] < 0.015))
+    materials = {"body": STEEL, "rubber": RUBBER}
+    outputs = {"sole": "y-", "top": "y+"}
+    foot = Solid(mesh, materials, {"base": "y-"}, f_max=1e3, outputs=outputs, attach=("sole", "top"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        element = foot.superelement()
+    x = np.zeros((element.n, 3))
+    x[:3] = np.eye(3)
+    # steel on rubber, 1:1e5: the static solution leaves 1e-11
+    np.testing.assert_allclose(x.T @ element.M @ x / foot.mass, np.eye(3), atol=1e-9)

@@ -267,8 +267,12 @@ def basis_of(
             K_c = 0.5 * (K_c + K_c.T)
         else:
             # Rigid motion of all interfaces has the same shape at every modulus: the first six add nothing.
-            extra.append(((static - Psi) / np.sqrt(np.diag(K_c)))[:, 0 if model.grounded else 6 :])
-        extra.append(points / np.sqrt(np.sum(points * (K @ points), axis=0)))
+            new = slice(0 if model.grounded else 6, None)
+            extra.append((static - Psi)[:, new] / np.sqrt(np.diag(K_c)[new]))
+        energy = np.sum(points * (K @ points), axis=0)
+        extra.append(
+            points[:, energy > 0.0] / np.sqrt(energy[energy > 0.0])
+        )  # none for a point on an interface
         extra += inertia_shapes(at.solve, K, model.M, static, at.inner, inertia)
     frequency, modes = held.modes(f_max, n_modes)
     internal = np.zeros((model.n, frequency.size))
