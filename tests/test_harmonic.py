@@ -179,7 +179,7 @@ def test_peaks_stand_at_the_damped_modes(state):
         ({"frequency": [-1.0]}, "zero or more"),
         ({"frequency": [np.nan]}, "finite"),
         ({"frequency": []}, "frequency must be"),
-        ({"inputs": ["body.centre"]}, "no interface"),
+        ({"inputs": ["body.centre"]}, "'body.centre' is a place"),
         ({"outputs": ["body.centre.w"]}, "not 'w'"),
         ({"quantity": "jerk"}, "quantity is 'jerk'"),
         ({"speed": np.nan}, "speed is nan"),
