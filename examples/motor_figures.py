@@ -1,0 +1,203 @@
+"""Figures of the motor, the paper's 6 to 10 and one more; motor_report.py gives them what they draw."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import motor
+import numpy as np
+import xarray
+
+import bearingdyn as bd
+from bearingdyn import plot
+from bearingdyn.plot.frame import DASHES, colour, finish, new_axes, style
+
+MODE_VIEW = (-45.0, 590.0)  # mm, along z
+TALL = (-135.0, 95.0)  # mm
+
+
+@dataclass(frozen=True)
+class Story:
+    """What was computed, each by the label of its design: the four designs, and the layer's three losses."""
+
+    dma: bd.DMAData
+    master: bd.MasterCurve
+    rubber: bd.Maxwell
+    designs: Mapping[str, motor.Design]
+    responses: Mapping[str, xarray.Dataset]
+    losses: Mapping[str, xarray.Dataset]
+    power: Mapping[str, np.ndarray]
+    bending: Mapping[str, motor.Bending]
+    runs: Mapping[str, xarray.Dataset]
+
+
+def draw(story: Story, out: Path) -> list[Path]:
+    """Draw everything; returns the files written."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    made: list[Path] = []
+
+    def keep(name: str, axes: Any) -> None:
+        path = out / f"{name}.png"
+        figure = np.ravel(np.asarray(axes, dtype=object))[0].figure
+        figure.savefig(path, dpi=130, bbox_inches="tight")
+        plt.close(figure)
+        made.append(path)
+
+    keep("rubber_isotherms", plot.isotherms(story.dma))
+    keep("rubber_master_curve", plot.master(story.master, story.rubber))
+    for output, name in (
+        ("shaft.end.y", "fig06_shaft_vertical"),
+        ("left_housing.top.y", "fig08_housing_vertical"),
+        ("left_housing.top.z", "fig09_housing_axial"),
+    ):
+        keep(name, plot.frequency_response(story.responses, output, motor.INPUT))
+    keep("fig06_08_09_loss_factor", loss_factors(story))
+    keep("fig07_modes", mode_shapes(story, ("no layer", "layer, high loss")))
+    keep("radiated_power", radiated_power(story))
+    orbits = {label: bd.orbit(r, "shaft.middle.x", "shaft.middle.y") for label, r in story.runs.items()}
+    keep("fig10_orbit", plot.orbit(orbits))
+    keep("velocity_spectra", velocity_spectra(story))
+    return made
+
+
+def loss_factors(story: Story) -> Any:
+    """The paper's figures 6, 8 and 9 for one layer and three loss factors."""
+    import matplotlib.pyplot as plt
+
+    outputs = {"shaft.end.y": "shaft, vertical", "left_housing.top.y": "housing, vertical"}
+    outputs["left_housing.top.z"] = "housing, axial"
+    with style():
+        figure, axes = plt.subplots(
+            len(outputs), 1, sharex=True, figsize=(6.8, 7.6), layout="constrained", squeeze=False
+        )
+    panels = axes[:, 0]
+    for k, (ax, (output, name)) in enumerate(zip(panels, outputs.items(), strict=True)):
+        plot.frequency_response(story.losses, output, motor.INPUT, ax)
+        ax.set_xlim(100.0, 6000.0)
+        _fit_height(ax)
+        ax.set_ylabel(f"{name}, m/N")
+        finish(ax, "The thick layer at three loss factors, |G*| at 1 kHz the same" if k == 0 else "", k == 0)
+        if k:
+            ax.get_legend().remove()
+            ax.set_title("", loc="left")
+        if ax is not panels[-1]:
+            ax.set_xlabel("")
+    return axes
+
+
+def _fit_height(ax: Any) -> None:
+    """A log axis over what its curves show in the range of frequencies drawn."""
+    low, high = ax.get_xlim()
+    shown = [
+        np.asarray(line.get_ydata())[(np.asarray(line.get_xdata()) >= low) & (line.get_xdata() <= high)]
+        for line in ax.get_lines()
+    ]
+    ax.set_ylim(0.6 * min(s.min() for s in shown), 1.8 * max(s.max() for s in shown))
+
+
+def radiated_power(story: Story) -> Any:
+    """Equivalent radiated power of both housings over frequency, by design."""
+    with style():
+        ax = new_axes(width=6.8, height=3.6)
+        for k, (label, power) in enumerate(story.power.items()):
+            frequency = story.responses[label]["frequency"].values
+            ax.plot(frequency, power, color=colour(k), linestyle=DASHES[k], label=label)
+        ax.set_xscale("log")
+        ax.set_yscale("log")
+        ax.set_xlim(100.0, float(frequency[-1]))
+        _fit_height(ax)
+        band = (float(motor.AUDIBLE[0]), float(motor.AUDIBLE[-1]))
+        ax.axvspan(*band, color="0.93", zorder=0, linewidth=0)
+        ax.set_xlabel("frequency, Hz")
+        ax.set_ylabel("equivalent radiated power, W/N²")
+        finish(ax, "Outside of both housings, vertical force at mid-shaft; grey: 1–5 kHz", legend=True)
+    return ax
+
+
+def mode_shapes(story: Story, labels: Sequence[str]) -> Any:
+    """The paper's figure 7: its four bending modes, a column for each design."""
+    import matplotlib.pyplot as plt
+
+    with style():
+        figure, axes = plt.subplots(
+            4, len(labels), sharex=True, sharey=True, figsize=(9.0, 9.6), layout="constrained"
+        )
+    chosen = paper_modes(story.bending[labels[0]])
+    for column, label in zip(axes.T, labels, strict=True):
+        found = story.bending[label]
+        for ax, k in zip(column, chosen, strict=True):
+            _parts_at_rest(ax, story.designs[label])
+            plot.mode_shape(found.shapes, k, ax)
+            ax.get_legend().remove()
+            frequency, zeta = found.modes["frequency"].values[k], found.modes["damping_ratio"].values[k]
+            share = found.of("strain", "layer")[k]
+            text = f"{label}: {frequency:.0f} Hz, ζ {100 * zeta:.2f} %"
+            ax.set_title(text + (f", {100 * share:.0f} % in layers" if share else ""), loc="left", pad=4.0)
+            ax.set_xlim(*MODE_VIEW)
+            ax.set_ylim(*TALL)
+            ax.set_aspect("equal")
+            ax.set_xlabel("z, mm" if ax is column[-1] else "")
+            ax.set_ylabel("y, mm" if column is axes.T[0] else "")
+    return axes
+
+
+def paper_modes(bare: motor.Bending) -> list[int]:
+    """Which of the bending modes without layer are the paper's four, each nearest in frequency."""
+    frequency = np.log(bare.modes["frequency"].values)
+    return [int(np.argmin(np.abs(frequency - np.log(f)))) for f in motor.PAPER_MODES]
+
+
+def _parts_at_rest(ax: Any, design: motor.Design) -> None:
+    """Side view of shaft, rings, layers and housings, mm, z from the left seat."""
+    from matplotlib.patches import Rectangle
+
+    def box(z: float, y: float, length: float, height: float, shade: str) -> None:
+        ax.add_patch(
+            Rectangle((1e3 * z, 1e3 * y), 1e3 * length, 1e3 * height, color=shade, linewidth=0, zorder=0)
+        )
+
+    house = motor.housing(motor.bore(design))
+    seats = motor.shaft().seats
+    for seat in (seats["left"], seats["right"]):
+        z = seat - motor.SEAT
+        for low, high in ((-house.bore_height, -motor.bore(design) / 2), (motor.bore(design) / 2, 0.08)):
+            box(z - house.length / 2, low, house.length, high - low, "0.90")
+        for inside, outside, width, shade in (
+            (motor.RING[1], motor.RING[1] + design.thickness, design.width, "#F5C9A8"),
+            (motor.RING[0], motor.RING[1], motor.RING[2], "0.80"),
+        ):
+            for low in (inside, -outside):
+                box(z - width / 2, low, width, outside - inside, shade)
+    z = -motor.SEAT
+    for section in motor.sections():
+        box(z, -section.d_outer / 2, section.length, section.d_outer, "0.84")
+        z += section.length
+
+
+def velocity_spectra(story: Story) -> Any:
+    """Velocity of shaft's end and housing's top in the transient, the multiples of the ball pass marked."""
+    import matplotlib.pyplot as plt
+
+    passing = motor.ball_pass()
+    channels = ("shaft.end.y.velocity", "left_housing.top.y.velocity", "left_housing.top.z.velocity")
+    with style():
+        figure, axes = plt.subplots(
+            len(channels), 1, sharex=True, figsize=(6.8, 8.4), layout="constrained", squeeze=False
+        )
+    for ax, channel in zip(axes[:, 0], channels, strict=True):
+        spectra = {label: bd.spectrum(run, channel) for label, run in story.runs.items()}
+        marks = {"ball pass": passing} | {f"{k}×": k * passing for k in (5, 10, 15, 20)}
+        plot.spectrum(spectra, marks if ax is axes[0, 0] else None, ax, f_max=5000.0)
+        if ax is not axes[0, 0]:
+            ax.get_legend().remove()
+            ax.set_title(ax.get_title(loc="left"), loc="left", pad=4.0)
+        if ax is not axes[-1, 0]:
+            ax.set_xlabel("")
+    return axes

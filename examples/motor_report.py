@@ -1,0 +1,338 @@
+"""The motor's story: what examples/motor.py computes, in tables and figures, and what each stage costs."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import motor
+import numpy as np
+import xarray
+
+import bearingdyn as bd
+
+MARCHED = ("no layer", "layer, high loss")
+SIDES = ("left", "right")
+FREQUENCY = np.geomspace(10.0, 6000.0, 6000)  # Hz; a step is a third of the sharpest peak's width
+STRAIN = 0.05  # static, above which the rubber is warned of
+
+
+@dataclass
+class Stages:
+    """Wall and CPU seconds of every stage, by name; a stage entered again adds up."""
+
+    seconds: dict[str, tuple[float, float]] = field(default_factory=dict)
+    began: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), time.process_time()))
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time what is done inside."""
+        wall, cpu = time.perf_counter(), time.process_time()
+        yield
+        before = self.seconds.get(name, (0.0, 0.0))
+        self.seconds[name] = (
+            before[0] + time.perf_counter() - wall,
+            before[1] + time.process_time() - cpu,
+        )
+
+    def table(self) -> None:
+        """Print them, and the whole."""
+        print(f"\n{'what it took':<44}{'wall':>8}{'CPU':>10}")
+        for name, (wall, cpu) in self.seconds.items():
+            print(f"  {name:<42}{wall:6.1f} s{cpu:8.1f} s")
+        whole = (time.perf_counter() - self.began[0], time.process_time() - self.began[1])
+        print(f"  {'all of it':<42}{whole[0]:6.1f} s{whole[1]:8.1f} s")
+
+
+@dataclass(frozen=True)
+class State:
+    """A design and its equilibria under the preload, and under the radial load as well."""
+
+    design: motor.Design
+    rest: bd.Equilibrium
+    loaded: bd.Equilibrium
+
+    @classmethod
+    def of(cls, design: motor.Design) -> State:
+        """Both equilibria; the parts are reduced and assembled once."""
+        app = motor.motor(design)
+        rest = bd.equilibrium(app)
+        app.load("shaft.middle", (0.0, -motor.RADIAL, 0.0, 0.0, 0.0, 0.0))
+        return cls(design, rest, bd.equilibrium(app))
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """What a design answers to a vertical force at mid-shaft.
+
+    still: static receptance (outputs,). response and power over FREQUENCY; audible: squared levels over
+    motor.AUDIBLE, by name.
+    """
+
+    still: np.ndarray
+    response: xarray.Dataset
+    power: np.ndarray
+    audible: Mapping[str, np.ndarray]
+
+    @classmethod
+    def of(cls, eq: bd.Equilibrium) -> Harmonic:
+        """Responses about a state."""
+        still = np.abs(motor.response(eq, np.zeros(1))["response"].values[0, :, 0])
+        return cls(still, motor.response(eq, FREQUENCY), motor.radiated(eq, FREQUENCY), squared(eq))
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A transient: settling steps, the record, the heat by part, and what the march took."""
+
+    settle: int
+    record: xarray.Dataset
+    heat: xarray.Dataset
+    seconds: float  # of the core that marched
+
+
+def describe_rubber(material: bd.Maxwell) -> None:
+    """What the fit gave."""
+    source = "epdm70 (measured)" if motor.MEASURED.exists() else "the shipped sample (made, not measured)"
+    fit = material.fit
+    print(f"rubber from {source}: five branches, {motor.BAND[0]:g}–{motor.BAND[1]:g} Hz, 20 °C")
+    if fit is not None:
+        print(
+            f"  error of the fit: G′ {100 * fit.storage_rms:.1f} % rms, "
+            f"tan δ {100 * fit.tan_delta_rms:.1f} % rms"
+        )
+
+
+def describe_layer(state: State) -> None:
+    """Stiffness of a layer against the bearing's, and its static strain under the radial load."""
+    design, loaded = state.design, state.loaded
+    layer, material = design.layer, design.rubber
+    assert layer is not None
+    assert material is not None
+    dynamic = abs(layer.stiffness(motor.ONE_KHZ)[0, 0])
+    relative = loaded.displacement("left_ring.centre") - loaded.displacement("left_housing.bore")
+    strain = float(np.max(layer.nominal_strain(relative)))
+    bearing_k = state.rest.bearings["left"].radial_stiffness
+    print(
+        f"  {design.label:<22}|k| at 1 kHz {dynamic / 1e6:5.1f} N/µm, {dynamic / bearing_k:.2f} of the "
+        f"bearing's {bearing_k / 1e6:.0f}; tan δ {float(material.loss_factor(motor.ONE_KHZ)):.2f}; "
+        f"G0 {material.G0 / 1e6:.1f} MPa; static strain {100 * strain:.1f} %"
+    )
+    if strain > STRAIN:
+        print(f"    warning: above {100 * STRAIN:g} %, where the measured rubber is no longer linear")
+
+
+def receptances(found: Mapping[str, Harmonic]) -> None:
+    """Static compliance, and the highest peak of the shaft's end."""
+    print("\nreceptance, vertical force at mid-shaft (zero-to-peak, per N)")
+    print(f"  {'':<24}{'mid y, static':>14}{'mid y, 10 Hz':>14}{'peak end y':>14}{'at':>9}")
+    for label, harmonic in found.items():
+        H = np.abs(harmonic.response["response"].values[:, :, 0])
+        peak = int(np.argmax(H[:, 0]))
+        print(
+            f"  {label:<24}{harmonic.still[3] * 1e9:11.2f} nm{H[0, 3] * 1e9:11.2f} nm"
+            f"{H[peak, 0] * 1e9:11.1f} nm{FREQUENCY[peak]:6.0f} Hz"
+        )
+
+
+def falls(bare: np.ndarray, layered: np.ndarray) -> tuple[float, float]:
+    """Change of squared levels, dB: of their mean, and the mean of the change."""
+    change = 10 * np.log10(layered / bare)
+    return float(10 * np.log10(layered.mean() / bare.mean())), float(change.mean())
+
+
+def squared(eq: bd.Equilibrium) -> dict[str, np.ndarray]:
+    """Squared velocity of the housing's two points, and what its surface radiates, over AUDIBLE, per N²."""
+    f = motor.AUDIBLE
+    H = motor.response(eq, f)["response"].values[:, :, 0]
+    points = {name: np.abs(2 * math.pi * f * H[:, k]) ** 2 for name, k in (("top y", 1), ("top z", 2))}
+    return points | {"ERP": motor.radiated(eq, f)}
+
+
+def levels(found: Mapping[str, Harmonic]) -> None:
+    """How much less the housing moves and radiates over 1–5 kHz."""
+    bare = found["no layer"].audible
+    print(f"\nhousing over {motor.AUDIBLE[0] / 1e3:g}–{motor.AUDIBLE[-1] / 1e3:g} kHz against no layer, dB")
+    print(f"  {'':<24}{'of the mean square':>27}{'mean of the curve':>30}")
+    print(f"  {'':<24}" + 2 * ("".join(f"{name:>9}" for name in bare) + "   "))
+    for label, harmonic in found.items():
+        if label == "no layer":
+            continue
+        pairs = [falls(bare[name], harmonic.audible[name]) for name in bare]
+        means, curves = ("".join(f"{pair[k]:>9.1f}" for pair in pairs) for k in (0, 1))
+        print(f"  {label:<24}{means}   {curves}")
+    print("  top y, z: velocity of the left housing's top; ERP: all the outside of both, as plane waves")
+
+
+def modes_table(bending: Mapping[str, motor.Bending]) -> None:
+    """Bending modes, without layer and with, paired by their order."""
+    bare = bending["no layer"].modes["frequency"].values
+    print("\nvertical bending modes: Hz, ζ, share of strain energy and of the loss in the layers")
+    print(f"  {'':<24}" + "".join(f"{k + 1:>10}" for k in range(bare.size)))
+    for label, found in bending.items():
+        rows = {
+            "Hz": found.modes["frequency"].values,
+            "ζ, %": 100 * found.modes["damping_ratio"].values,
+        }
+        if label != "no layer":
+            rows |= {
+                f"{word} in layers, %": 100 * found.of(kind, "layer")
+                for word, kind in (("strain", "strain"), ("loss", "dissipation"))
+            }
+        for k, (name, values) in enumerate(rows.items()):
+            cells = "".join(f"{v:>10.0f}" if name == "Hz" else f"{v:>10.2f}" for v in values)
+            print(f"  {label if k == 0 else '  ' + name:<24}" + cells)
+
+
+def papers_modes(eq: bd.Equilibrium) -> None:
+    """The peaks of the shaft's end without layer beside the paper's."""
+    print("\nbending modes without layer, Hz (paper / here / difference)")
+    for paper, here in zip(motor.PAPER_MODES, motor.bending_modes(eq), strict=True):
+        print(f"  {paper:6.0f} {here:8.1f} {100 * (here / paper - 1):+6.1f} %")
+
+
+def marched(label: str, eq: bd.Equilibrium) -> Settled:
+    """The transient and, beside it on another core, where its energy goes."""
+    from tqdm import tqdm
+
+    settle = motor.ring_down(eq)
+    total = settle + motor.STEPS
+    with (
+        ThreadPoolExecutor(1) as pool,
+        tqdm(total=total, desc=f"  {label}", unit="step", unit_scale=True, leave=False) as bar,
+    ):
+
+        def advance(done: int, _: int, bar: Any = bar) -> None:
+            bar.update(done - bar.n)
+
+        heat = pool.submit(motor.heat, eq, settle)
+        began = time.thread_time()
+        record = motor.run(eq, settle, progress=advance)
+        seconds = time.thread_time() - began
+        return Settled(settle, record, heat.result(), seconds)
+
+
+def transient_table(label: str, run: Settled, eq: bd.Equilibrium) -> None:
+    """What a transient showed: ring-down, orbit, contact loss by bearing, heat by part."""
+    result = run.record
+    data = {str(c): result["record"].sel(channel=c).values for c in result["channel"].values}
+    lines = bd.spectrum(result, "shaft.middle.y")
+    strongest = float(lines["frequency"].values[np.argmax(lines["amplitude"].values)])
+    slow, rate = motor.slowest(eq)
+    print(
+        f"  {label}\n"
+        f"    ring-down    slowest mode {slow:.0f} Hz, ζ {100 * rate / (2 * math.pi * slow):.3f} %: "
+        f"{run.settle} steps, {run.settle * motor.STEP:.2f} s, thrown away\n"
+        f"    orbit        {np.ptp(data['shaft.middle.x']) * 1e6:.3f} × "
+        f"{np.ptp(data['shaft.middle.y']) * 1e6:.3f} µm about ({data['shaft.middle.x'].mean() * 1e6:.1f}, "
+        f"{data['shaft.middle.y'].mean() * 1e6:.1f}) µm; strongest line {strongest:.0f} Hz\n"
+        f"    shaft's end  {np.std(data['shaft.end.y.velocity']) * 1e3:.3f} mm/s rms"
+    )
+    for side in SIDES:
+        found = bd.contact_statistics(result, side)
+        counts = ", ".join(
+            f"{int(n)} for {100 * share:.0f} %"
+            for n, share in zip(found["count"].values, found["loaded"].values, strict=True)
+            if share > 0
+        )
+        print(
+            f"    {side + ' balls':<12} unloaded {100 * float(found['free'].mean()):.1f} % of the time, at "
+            f"most {1e3 * float(found['longest'].max()):.2f} ms at once; peak "
+            f"{float(found['peak'].max()) / 1e3:.2f} kN; loaded: {counts}"
+        )
+    power = 1e3 * run.heat["power"].values
+    parts = zip(run.heat["part"].values, power, strict=True)
+    print(f"    heat         {power.sum():.3f} mW: " + ", ".join(f"{p} {w:.3f}" for p, w in parts))
+    total = run.settle + motor.STEPS
+    print(f"    cost         {1e6 * run.seconds / total:.2f} µs a step, {total} steps")
+
+
+def harmonic_part(states: Mapping[str, State], clock: Stages) -> tuple[dict[str, Harmonic], dict[str, Any]]:
+    """The paper's section 4.1: responses and modes of every design, in tables."""
+    print(
+        f"\nlayers ({motor.PRELOAD:g} N axial, shared by both bearings; {motor.RADIAL / 1e3:g} kN radial for "
+        f"the strain)"
+    )
+    bare = states["no layer"].rest
+    axial = [bare.bearings[side].g[2] for side in SIDES]
+    print(f"  axial load of the bearings: {axial[0]:.1f} and {axial[1]:.1f} N")
+    for state in states.values():
+        if state.design.layer is not None:
+            describe_layer(state)
+    with clock.stage("harmonic responses and radiated power"):
+        harmonics = {label: Harmonic.of(state.rest) for label, state in states.items()}
+    receptances(harmonics)
+    levels(harmonics)
+    with clock.stage("damped modes, their shapes and energies"):
+        bending = {label: motor.bending(state.rest) for label, state in states.items()}
+        papers_modes(bare)
+    modes_table(bending)
+    return harmonics, bending
+
+
+def transient_part(states: Mapping[str, State], clock: Stages) -> dict[str, Settled]:
+    """The paper's section 4.2: the march at speed without layer and with."""
+    print(
+        f"\n{motor.SPEED * 30 / math.pi:.0f} rpm, {motor.RADIAL / 1e3:g} kN: {motor.STEPS} steps of "
+        f"{motor.STEP * 1e6:g} µs, {1 / (motor.STEPS * motor.STEP):g} Hz resolution; ball pass "
+        f"{motor.ball_pass():.1f} Hz; thrown away before: the ring-down to {100 * motor.REMAINS:g} % of the "
+        f"slowest mode"
+    )
+    runs = {}
+    for label in MARCHED:
+        with clock.stage(f"transient and its heat, {label}"):
+            runs[label] = marched(label, states[label].loaded)
+        transient_table(label, runs[label], states[label].loaded)
+    return runs
+
+
+def main() -> int:
+    """Run everything; returns the exit code."""
+    out = motor.ROOT / "out"
+    out.mkdir(exist_ok=True)
+    clock = Stages()
+    with clock.stage("rubber: master curve and fit"):
+        low, dma, master = motor.rubber()
+    describe_rubber(low)
+    four, losses = motor.designs(low), motor.loss_designs(low)
+    with clock.stage("housings reduced, one for each bore"):
+        for design in four:
+            motor.pedestal(motor.bore(design))
+    with clock.stage("other parts, assembly and equilibria"):
+        states = {design.label: State.of(design) for design in (*four, losses[-1])}
+    harmonics, bending = harmonic_part(states, clock)
+    runs = transient_part(states, clock)
+
+    stored = {f"response/{label}": found.response for label, found in harmonics.items()}
+    stored |= {f"transient/{label}": run.record for label, run in runs.items()}
+    stored |= {f"heat/{label}": run.heat for label, run in runs.items()}
+    with clock.stage("result file"):
+        bd.save(
+            {name.replace(", ", "_").replace(" ", "_"): data for name, data in stored.items()},
+            out / "motor.nc",
+        )
+    with clock.stage("figures"):
+        import motor_figures
+
+        # the first two losses are the thick layers of the four, under another name
+        same = zip(losses, (four[1].label, four[2].label, losses[2].label), strict=True)
+        story = motor_figures.Story(
+            dma,
+            master,
+            low,
+            designs={design.label: design for design in four},
+            responses={design.label: harmonics[design.label].response for design in four},
+            losses={design.label: harmonics[known].response for design, known in same},
+            power={design.label: harmonics[design.label].power for design in four},
+            bending={design.label: bending[design.label] for design in four},
+            runs={label: run.record for label, run in runs.items()},
+        )
+        made = motor_figures.draw(story, out)
+    clock.table()
+    print(f"\nwrote {out / 'motor.nc'} and {len(made)} figures to {out}")
+    return 0
