@@ -16,7 +16,8 @@ from bearingdyn import plot
 from bearingdyn.plot.frame import DASHES, colour, finish, new_axes, style
 
 MODE_VIEW = (-45.0, 590.0)  # mm, along z
-TALL = (-135.0, 95.0)  # mm
+TALL = (-130.0, 90.0)  # mm
+SWING = 70.0  # mm, as which the largest motion of a mode is drawn
 
 
 @dataclass(frozen=True)
@@ -61,8 +62,7 @@ def draw(story: Story, out: Path) -> list[Path]:
     keep("fig06_08_09_loss_factor", loss_factors(story))
     keep("fig07_modes", mode_shapes(story, ("no layer", "layer, high loss")))
     keep("radiated_power", radiated_power(story))
-    orbits = {label: bd.orbit(r, "shaft.middle.x", "shaft.middle.y") for label, r in story.runs.items()}
-    keep("fig10_orbit", plot.orbit(orbits))
+    keep("fig10_orbit", orbit(story))
     keep("velocity_spectra", velocity_spectra(story))
     return made
 
@@ -74,22 +74,27 @@ def loss_factors(story: Story) -> Any:
     outputs = {"shaft.end.y": "shaft, vertical", "left_housing.top.y": "housing, vertical"}
     outputs["left_housing.top.z"] = "housing, axial"
     with style():
-        figure, axes = plt.subplots(
+        _, axes = plt.subplots(
             len(outputs), 1, sharex=True, figsize=(6.8, 7.6), layout="constrained", squeeze=False
         )
     panels = axes[:, 0]
-    for k, (ax, (output, name)) in enumerate(zip(panels, outputs.items(), strict=True)):
-        plot.frequency_response(story.losses, output, motor.INPUT, ax)
+    found = {label.removeprefix("layer, "): data for label, data in story.losses.items()}
+    for ax, (output, name) in zip(panels, outputs.items(), strict=True):
+        plot.frequency_response(found, output, motor.INPUT, ax)
         ax.set_xlim(100.0, 6000.0)
         _fit_height(ax)
         ax.set_ylabel(f"{name}, m/N")
-        finish(ax, "The thick layer at three loss factors, |G*| at 1 kHz the same" if k == 0 else "", k == 0)
-        if k:
-            ax.get_legend().remove()
-            ax.set_title("", loc="left")
+        _retitle(ax, "The thick layer at three loss factors, |G*| at 1 kHz the same", ax is panels[0])
         if ax is not panels[-1]:
             ax.set_xlabel("")
     return axes
+
+
+def _retitle(ax: Any, title: str, first: bool) -> None:
+    """A title over the first panel of several; the others have neither that nor a legend."""
+    ax.set_title(title if first else "", loc="left", fontsize=10, pad=22.0 if first else 4.0)
+    if not first:
+        ax.get_legend().remove()
 
 
 def _fit_height(ax: Any) -> None:
@@ -122,30 +127,73 @@ def radiated_power(story: Story) -> Any:
 
 
 def mode_shapes(story: Story, labels: Sequence[str]) -> Any:
-    """The paper's figure 7: its four bending modes, a column for each design."""
+    """The paper's figure 7: its four bending modes, a column for each design.
+
+    Grey: at rest, rubber orange. Blue: the shaft; green: the housings' feet, bores and tops; orange squares:
+    the outer rings.
+    """
     import matplotlib.pyplot as plt
 
     with style():
-        figure, axes = plt.subplots(
-            4, len(labels), sharex=True, sharey=True, figsize=(9.0, 9.6), layout="constrained"
+        _, axes = plt.subplots(
+            4, len(labels), sharex=True, sharey=True, figsize=(9.4, 8.2), layout="constrained"
         )
     chosen = paper_modes(story.bending[labels[0]])
     for column, label in zip(axes.T, labels, strict=True):
         found = story.bending[label]
         for ax, k in zip(column, chosen, strict=True):
             _parts_at_rest(ax, story.designs[label])
-            plot.mode_shape(found.shapes, k, ax)
-            ax.get_legend().remove()
+            _parts_in_motion(ax, found.shapes.isel(mode=k))
             frequency, zeta = found.modes["frequency"].values[k], found.modes["damping_ratio"].values[k]
             share = found.of("strain", "layer")[k]
             text = f"{label}: {frequency:.0f} Hz, ζ {100 * zeta:.2f} %"
-            ax.set_title(text + (f", {100 * share:.0f} % in layers" if share else ""), loc="left", pad=4.0)
+            finish(ax)
+            ax.set_title(
+                text + (f", {100 * share:.0f} % of strain energy in layers" if share else ""),
+                loc="left",
+                fontsize=9,
+            )
             ax.set_xlim(*MODE_VIEW)
             ax.set_ylim(*TALL)
             ax.set_aspect("equal")
             ax.set_xlabel("z, mm" if ax is column[-1] else "")
             ax.set_ylabel("y, mm" if column is axes.T[0] else "")
     return axes
+
+
+def _parts_in_motion(ax: Any, shape: xarray.Dataset) -> None:
+    """Shaft, rings and housings in a mode, its largest motion SWING long, turned so that it is real."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    motion = shape["motion"]
+    lateral = motion.sel(component=["y", "z"]).values
+    turn = SWING / lateral.ravel()[np.argmax(np.abs(lateral))]
+    names = [str(p) for p in shape["place"].values]
+    z = 1e3 * shape["position"].sel(axis="z").values
+    y = 1e3 * shape["position"].sel(axis="y").values
+    dy, dz = ((motion.sel(component=c).values * turn).real for c in "yz")
+
+    along = np.array(sorted((i for i, n in enumerate(names) if n.startswith("shaft.")), key=lambda i: z[i]))
+    # y′ = −θx, and mm of drawing per mm of z as for the motion itself
+    slope = -(motion.sel(component="θx").values[along] * turn).real / 1e3
+    curve = CubicHermiteSpline(z[along], dy[along], slope)
+    fine = np.linspace(z[along][0], z[along][-1], 500)
+    ends = 1e3 * (np.cumsum([s.length for s in motor.sections()]) - motor.SEAT)
+    radius = (
+        500
+        * np.array([s.d_outer for s in motor.sections()])[
+            np.minimum(np.searchsorted(ends, fine), len(ends) - 1)
+        ]
+    )
+    ax.fill_between(
+        fine, curve(fine) - radius, curve(fine) + radius, color=colour(0), alpha=0.35, linewidth=0
+    )
+    ax.plot(fine, curve(fine), color=colour(0), linewidth=1.2)
+    for side in ("left", "right"):
+        at = [names.index(f"{side}_housing.{place}") for place in ("feet", "bore", "top")]
+        ax.plot(z[at] + dz[at], y[at] + dy[at], color=colour(2), linewidth=1.4, marker="o", markersize=3)
+        ring = names.index(f"{side}_ring.centre")
+        ax.plot(z[ring] + dz[ring], y[ring] + dy[ring], color=colour(1), marker="s", markersize=5)
 
 
 def paper_modes(bare: motor.Bending) -> list[int]:
@@ -181,6 +229,17 @@ def _parts_at_rest(ax: Any, design: motor.Design) -> None:
         z += section.length
 
 
+def orbit(story: Story) -> Any:
+    """The paper's figure 10: the orbit of mid-shaft, its mean, which is the static deflection, taken off."""
+    orbits = {}
+    for label, run in story.runs.items():
+        x, y = (1e6 * float(run["record"].sel(channel=f"shaft.middle.{c}").mean()) for c in "xy")
+        orbits[f"{label}, about ({x:.1f}, {y:.1f}) µm"] = bd.orbit(run, "shaft.middle.x", "shaft.middle.y")
+    with style():
+        ax = new_axes(width=6.8, height=3.8)
+    return plot.orbit(orbits, ax)
+
+
 def velocity_spectra(story: Story) -> Any:
     """Velocity of shaft's end and housing's top in the transient, the multiples of the ball pass marked."""
     import matplotlib.pyplot as plt
@@ -188,7 +247,7 @@ def velocity_spectra(story: Story) -> Any:
     passing = motor.ball_pass()
     channels = ("shaft.end.y.velocity", "left_housing.top.y.velocity", "left_housing.top.z.velocity")
     with style():
-        figure, axes = plt.subplots(
+        _, axes = plt.subplots(
             len(channels), 1, sharex=True, figsize=(6.8, 8.4), layout="constrained", squeeze=False
         )
     for ax, channel in zip(axes[:, 0], channels, strict=True):
@@ -197,7 +256,7 @@ def velocity_spectra(story: Story) -> Any:
         plot.spectrum(spectra, marks if ax is axes[0, 0] else None, ax, f_max=5000.0)
         if ax is not axes[0, 0]:
             ax.get_legend().remove()
-            ax.set_title(ax.get_title(loc="left"), loc="left", pad=4.0)
+            ax.set_title(ax.get_title(loc="left"), loc="left", fontsize=10, pad=4.0)
         if ax is not axes[-1, 0]:
             ax.set_xlabel("")
     return axes

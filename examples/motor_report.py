@@ -18,6 +18,11 @@ import bearingdyn as bd
 
 MARCHED = ("no layer", "layer, high loss")
 SIDES = ("left", "right")
+VELOCITIES = {
+    "shaft's end y": "shaft.end.y.velocity",
+    "housing's top y": "left_housing.top.y.velocity",
+    "z": "left_housing.top.z.velocity",
+}
 FREQUENCY = np.geomspace(10.0, 6000.0, 6000)  # Hz; a step is a third of the sharpest peak's width
 STRAIN = 0.05  # static, above which the rubber is warned of
 
@@ -217,6 +222,16 @@ def marched(label: str, eq: bd.Equilibrium) -> Settled:
         return Settled(settle, record, heat.result(), seconds)
 
 
+def rms(result: xarray.Dataset, channel: str) -> tuple[float, float]:
+    """Effective value of a velocity about its mean, and of what of it lies above 2 kHz, µm/s."""
+    lines = bd.spectrum(result, channel)
+    amplitude = lines["amplitude"].values
+    power = amplitude[1:] ** 2
+    share = power[lines["frequency"].values[1:] > 2000.0].sum() / power.sum()
+    whole = 1e6 * float(np.std(result["record"].sel(channel=channel).values))
+    return whole, whole * math.sqrt(share)
+
+
 def transient_table(label: str, run: Settled, eq: bd.Equilibrium) -> None:
     """What a transient showed: ring-down, orbit, contact loss by bearing, heat by part."""
     result = run.record
@@ -230,9 +245,14 @@ def transient_table(label: str, run: Settled, eq: bd.Equilibrium) -> None:
         f"{run.settle} steps, {run.settle * motor.STEP:.2f} s, thrown away\n"
         f"    orbit        {np.ptp(data['shaft.middle.x']) * 1e6:.3f} × "
         f"{np.ptp(data['shaft.middle.y']) * 1e6:.3f} µm about ({data['shaft.middle.x'].mean() * 1e6:.1f}, "
-        f"{data['shaft.middle.y'].mean() * 1e6:.1f}) µm; strongest line {strongest:.0f} Hz\n"
-        f"    shaft's end  {np.std(data['shaft.end.y.velocity']) * 1e3:.3f} mm/s rms"
+        f"{data['shaft.middle.y'].mean() * 1e6:.1f}) µm; strongest line {strongest:.0f} Hz"
     )
+    speeds = [
+        f"{name} {v:.1f} ({above:.1f})"
+        for name, channel in VELOCITIES.items()
+        for v, above in [rms(result, channel)]
+    ]
+    print(f"    velocity     µm/s rms (above 2 kHz): {', '.join(speeds)}")
     for side in SIDES:
         found = bd.contact_statistics(result, side)
         counts = ", ".join(
