@@ -16,8 +16,8 @@ from bearingdyn import plot
 from bearingdyn.plot.frame import DASHES, colour, finish, new_axes, style
 
 MODE_VIEW = (-45.0, 590.0)  # mm, along z
-TALL = (-130.0, 90.0)  # mm
-SWING = 70.0  # mm, as which the largest motion of a mode is drawn
+TALL = (-128.0, 92.0)  # mm
+SWING = 60.0  # mm, as which the largest motion of a mode is drawn
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def mode_shapes(story: Story, labels: Sequence[str]) -> Any:
             ax.set_ylim(*TALL)
             ax.set_aspect("equal")
             ax.set_xlabel("z, mm" if ax is column[-1] else "")
-            ax.set_ylabel("y, mm" if column is axes.T[0] else "")
+            ax.set_ylabel("y, mm" if label == labels[0] else "")
     return axes
 
 

@@ -133,15 +133,19 @@ def describe_layer(state: State) -> None:
 
 
 def receptances(found: Mapping[str, Harmonic]) -> None:
-    """Static compliance, and the highest peak of the shaft's end."""
+    """Static compliance, and the highest peaks of the shaft's end and of what the housings radiate."""
     print("\nreceptance, vertical force at mid-shaft (zero-to-peak, per N)")
-    print(f"  {'':<24}{'mid y, static':>14}{'mid y, 10 Hz':>14}{'peak end y':>14}{'at':>9}")
+    print(
+        f"  {'':<24}{'mid y, static':>14}{'mid y, 10 Hz':>14}"
+        f"{'peak end y':>14}{'at':>9}{'peak ERP':>14}{'at':>8}"
+    )
     for label, harmonic in found.items():
         H = np.abs(harmonic.response["response"].values[:, :, 0])
-        peak = int(np.argmax(H[:, 0]))
+        peak, loud = int(np.argmax(H[:, 0])), int(np.argmax(harmonic.power))
         print(
             f"  {label:<24}{harmonic.still[3] * 1e9:11.2f} nm{H[0, 3] * 1e9:11.2f} nm"
             f"{H[peak, 0] * 1e9:11.1f} nm{FREQUENCY[peak]:6.0f} Hz"
+            f"{harmonic.power[loud] * 1e9:8.1f} nW/N²{FREQUENCY[loud]:5.0f} Hz"
         )
 
 
