@@ -206,7 +206,8 @@ def response(eq: bd.Equilibrium, frequency: np.ndarray) -> xarray.Dataset:
 
 def radiated(eq: bd.Equilibrium, frequency: np.ndarray) -> np.ndarray:
     """Equivalent radiated power (frequency,) of both housings' outside surfaces, W/N², to the same force."""
-    return bd.radiated_power(eq, frequency, [INPUT], SURFACES)["power"].values.sum(axis=(1, 2))
+    power = bd.radiated_power(eq, frequency, [INPUT], SURFACES)["power"].values
+    return np.asarray(power.sum(axis=(1, 2)))
 
 
 @dataclass(frozen=True)
@@ -221,7 +222,7 @@ class Bending:
     def of(self, kind: str, *parts: str) -> np.ndarray:
         """Share (modes,) of all parts whose names contain one of these in "strain", "dissipation" …"""
         names = [str(n) for n in self.shares["part"].values if any(p in str(n) for p in parts)]
-        return self.shares[kind].sel(part=names).values.sum(axis=1)
+        return np.asarray(self.shares[kind].sel(part=names).values.sum(axis=1))
 
 
 def bending(eq: bd.Equilibrium, f_max: float = 6000.0) -> Bending:
@@ -232,9 +233,11 @@ def bending(eq: bd.Equilibrium, f_max: float = 6000.0) -> Bending:
     found = bd.modes(eq, damped=True)
     shapes, shares = bd.mode_shapes(eq, found), bd.energy_shares(eq, found)
     on_shaft = [str(p) for p in shapes["place"].values if str(p).startswith("shaft.")]
-    size = np.abs(shapes["motion"].sel(place=on_shaft)).max("place")
-    vertical = size.sel(component="y").values
-    others = [size.sel(component=c).values * r for c, r in (("x", 1.0), ("z", 1.0), ("θz", INNER[0]))]
+    moved = shapes["motion"].sel(place=on_shaft)
+    vertical, sideways, along, turned = (
+        np.abs(moved.sel(component=c).values).max(axis=1) for c in ("y", "x", "z", "θz")
+    )
+    others = [sideways, along, INNER[0] * turned]
     chosen = np.flatnonzero(
         (vertical > np.max(others, axis=0))
         & (shares["kinetic"].sel(part="shaft").values > 0.5)

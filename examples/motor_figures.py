@@ -211,11 +211,12 @@ def _parts_at_rest(ax: Any, design: motor.Design) -> None:
             Rectangle((1e3 * z, 1e3 * y), 1e3 * length, 1e3 * height, color=shade, linewidth=0, zorder=0)
         )
 
-    house = motor.housing(motor.bore(design))
-    seats = motor.shaft().seats
+    house, seats = motor.housing(motor.bore(design)), motor.shaft().seats
+    below = house.bore_height if house.bore_height is not None else house.height / 2
+    inner, above = motor.bore(design) / 2, house.height - below
     for seat in (seats["left"], seats["right"]):
         z = seat - motor.SEAT
-        for low, high in ((-house.bore_height, -motor.bore(design) / 2), (motor.bore(design) / 2, 0.08)):
+        for low, high in ((-below, -inner), (inner, above)):
             box(z - house.length / 2, low, house.length, high - low, "0.90")
         for inside, outside, width, shade in (
             (motor.RING[1], motor.RING[1] + design.thickness, design.width, "#F5C9A8"),

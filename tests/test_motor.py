@@ -172,15 +172,22 @@ def test_the_layers_make_the_housings_radiate_less_over_1_to_5_khz(design: int) 
 
 
 def test_radiated_power_is_that_of_the_pedestals_faces() -> None:
-    """½ρc∫|v_n|²dA over top, front and back is part of that of the outside, which adds the two sides."""
+    """½ρc∫|v_n|²dA over top, front and back is part of that of the outside, which adds the two sides.
+
+    At 700 Hz the pedestals rock on their feet as cantilevers do: the mean square over a face is a quarter of
+    the square of the tip's, exactly so for Euler's beam in its first mode; in shear alone, a third.
+    """
     eq = equilibrium(0)
     faces = [f"left_housing.{face}" for face in ("top", "front", "back", "outside")]
     found = bd.radiated_power(eq, [700.0, 2100.0], [motor.INPUT], faces)
     top, front, back, outside = found["power"].values[:, :, 0].T
     assert (top + front + back < outside).all()
+    tip = bd.frequency_response(eq, [700.0], [motor.INPUT], ["left_housing.top.z"], quantity="velocity")
+    square = abs(complex(tip["response"].values[0, 0, 0])) ** 2
     part = motor.housing(2 * motor.RING[1])
-    hole = np.pi * part.bore_diameter**2 / 4
-    face = part.width * part.height - hole
+    face = part.width * part.height - np.pi * part.bore_diameter**2 / 4
+    for power in (front, back):
+        assert 0.25 < power[0] / (0.5 * 1.204 * 343.2 * face * square) < 1 / 3  # ρ and c of air at 20 °C
     edges = (part.width + 2 * part.height) * part.length
     area = found["area"].values
     # the bore is a polygon of quadratic sides; 1e-3 is far above what that takes off
@@ -250,8 +257,8 @@ def test_contact_statistics_tell_of_the_loaded_balls_what_the_march_counts(side:
     turn = 2 * np.pi / (motor.bearing("6305", clearance=10e-6).cage_ratio * motor.SPEED)
     assert 2 * turn == pytest.approx(26_000 * motor.STEP, rel=0.01)
     assert (found["losses"].values >= 2).all()
-    # the edges of the zone pass 1 % beyond two turns, and balls at its edge chatter
-    assert np.ptp(found["free"].values) < 0.05
+    # the record ends within 1 % of two turns
+    assert np.ptp(found["free"].values) < 0.01
     # statics: the balls carry the radial load against their directions, so more than it together
     both = sum(bd.contact_statistics(result, s)["mean"].values.sum() for s in ("left", "right"))
     assert both > motor.RADIAL
