@@ -146,20 +146,10 @@ def housing(bore_diameter: float) -> bd.Housing:
     )
 
 
-@dataclass(frozen=True)
-class Reduced:
-    """A part with its matrices made already."""
-
-    element: bd.Superelement
-
-    def superelement(self) -> bd.Superelement:
-        return self.element
-
-
 @cache
-def pedestal(bore_diameter: float) -> Reduced:
+def pedestal(bore_diameter: float) -> bd.Superelement:
     """The housing, reduced once for each bore: designs of equal thickness share it, and so do both sides."""
-    return Reduced(housing(bore_diameter).superelement())
+    return housing(bore_diameter).superelement()
 
 
 def bore(design: Design) -> float:
