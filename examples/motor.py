@@ -215,12 +215,12 @@ class Bending:
         return np.asarray(self.shares[kind].sel(part=names).values.sum(axis=1))
 
 
-def bending(eq: bd.Equilibrium, f_max: float = 6000.0) -> Bending:
-    """Damped modes below f_max in which the shaft carries the kinetic energy and moves up and down most.
+def bending(eq: bd.Equilibrium, f_max: float = 6000.0, damped: bool = True) -> Bending:
+    """Modes below f_max in which the shaft carries the kinetic energy and moves up and down most.
 
     Against the other motions of the shaft: sideways, along z, and turning, at the radius of its seats.
     """
-    found = bd.modes(eq, damped=True)
+    found = bd.modes(eq, damped=damped)
     shapes, shares = bd.mode_shapes(eq, found), bd.energy_shares(eq, found)
     on_shaft = [str(p) for p in shapes["place"].values if str(p).startswith("shaft.")]
     moved = shapes["motion"].sel(place=on_shaft)
