@@ -21,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples"))
 import motor
 
 import bearingdyn as bd
+from rotors import motor_rubber
 
 BARE, LOW, HIGH = 0, 1, 2  # of motor.designs: no layer; layers of equal |G*| at 1 kHz, low and high loss
 END_Y, HOUSING_Y, HOUSING_Z, MIDDLE_Y = range(4)  # of motor.OUTPUTS
@@ -30,7 +31,7 @@ FINE = np.geomspace(200.0, 7000.0, 8000)  # a step of 0.044 %; the sharpest peak
 
 @cache
 def equilibrium(design: int, radial: float = 0.0) -> bd.Equilibrium:
-    return bd.equilibrium(motor.motor(motor.designs(motor.rubber()[0])[design], radial))
+    return bd.equilibrium(motor.motor(motor.designs(motor_rubber())[design], radial))
 
 
 @cache
@@ -98,7 +99,7 @@ class TestTheHarmonicResponse:
 
     def test_b_a_higher_loss_factor_lowers_the_resonance_peaks_further(self) -> None:
         bare, low, high = (level(k, True)[:, END_Y] for k in (BARE, LOW, HIGH))
-        rubbers = [motor.designs(motor.rubber()[0])[k].rubber for k in (LOW, HIGH)]
+        rubbers = [motor.designs(motor_rubber())[k].rubber for k in (LOW, HIGH)]
         omega = 2 * np.pi * FINE
         less, more = (np.asarray(m.loss_factor(omega)) for m in rubbers if m is not None)
         # the high loss is a relaxation put at 1 kHz: at 5.5 kHz the two rubbers differ by a fifteenth only

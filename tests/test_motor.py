@@ -18,13 +18,14 @@ import motor
 
 import bearingdyn as bd
 from bearingdyn import core
+from rotors import motor_rubber
 
 ENERGIES = ("kinetic", "elastic", "stored", "indentation")
 
 
 @cache
 def rubber() -> bd.Maxwell:
-    return motor.rubber()[0]
+    return motor_rubber()
 
 
 @cache

@@ -11,6 +11,8 @@ import matplotlib
 import numpy as np
 import pytest
 
+from measured import DATA
+
 matplotlib.use("Agg")
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -65,6 +67,8 @@ def test_the_rubber_of_notebook_1_is_as_stiff_as_the_raw_table_says(monkeypatch:
 def test_the_sample_of_notebook_2_rings_where_the_reference_sample_says(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    if not (DATA / "epdm70").exists():
+        pytest.skip(f"{DATA / 'epdm70'} is not here; the shipped rubber's damped peak is no resonance")
     found = run("02", monkeypatch)
     rubber, axial = found["rubber"], found["axial"]
     # the reference sample has 839.6 Hz at G = 1 MPa and ν = 0.49 (theory, §3.8); in shear f goes with √G, and
