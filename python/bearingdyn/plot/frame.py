@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
+    from matplotlib.ticker import Formatter
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 DASHES = ("-", "--", "-.", (0, (1, 1)))
@@ -29,6 +32,10 @@ STYLE: Mapping[str, Any] = {
     "savefig.dpi": 160.0,
 }
 LEGEND_COLUMNS = 4
+RPM = 30.0 / math.pi  # per rad/s
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+# units that take a prefix, to the first power, at the head of a compound; a long time stays in seconds
+PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 
 @contextmanager
@@ -94,10 +101,49 @@ def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
         ax.set_title(title, loc="left", pad=6.0 + 14.0 * rows)
 
 
-def _written_out(axis: Axis, decades: float) -> None:
+def engineering(axis: Axis, values: NDArray[np.float64], unit: str) -> str:
+    """Write the ticks of an axis in the multiple of its unit that suits the values; returns that multiple.
+
+    What is drawn stays in the unit given. A unit without prefix gets a power of ten: "10⁶", "10⁻⁸ kg". No
+    factor is printed elsewhere. To be called once the scale of the axis, linear or log, is set.
+    """
+    from matplotlib.ticker import FuncFormatter
+
+    size = np.abs(values[np.isfinite(values) & (values != 0)])
+    low, high = (float(size.min()), float(size.max())) if size.size else (1.0, 1.0)
+    log = axis.get_scale() == "log"
+    typical = math.sqrt(low * high) if log else high
+    head = PREFIXED.match(unit)
+    least, most = (1.0, 1e4) if head else (1e-2, 1e5)
+    power = 0 if least <= typical < most else 3 * math.floor(math.log10(typical) / 3 + 1e-9)
+    if head:
+        power = min(max(power, min(PREFIXES)), 0 if head[2] == "s" else max(PREFIXES))
+        unit = f"{head[1]}{PREFIXES[power]}{unit[head.end(1) :]}"
+    elif power:
+        unit = f"{_power_of_ten(power)} {unit}".rstrip()
+
+    def written(value: float, _: object = None) -> str:
+        shown = value / 10.0**power
+        decade = math.log10(shown) if log and shown > 0 else 0.0
+        if not -3.5 < decade < 4.5 and abs(decade - round(decade)) < 1e-9:
+            return _power_of_ten(round(decade))
+        return f"{shown:.10g}".replace("-", "−")
+
+    if log:
+        _written_out(axis, math.log10(high / low), FuncFormatter(written))
+    else:
+        axis.set_major_formatter(FuncFormatter(written))
+    return unit
+
+
+def _power_of_ten(power: int) -> str:
+    return "10" + str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def _written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> None:
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-    plain = StrMethodFormatter("{x:g}")
+    plain = plain or StrMethodFormatter("{x:g}")
     axis.set_major_formatter(plain)
     axis.set_minor_formatter(plain if decades < 1.5 else NullFormatter())
     if decades < 1.5:
@@ -118,7 +164,9 @@ def colour(k: int) -> str:
 
 
 def some(datasets: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The results by label; ValueError if there are none."""
+    """The results by label; ValueError if there are none, or one without a label."""
+    if hasattr(datasets, "data_vars"):  # a Dataset is a Mapping too, of its variables
+        raise ValueError('this is a result without a label; give results by label, such as {"run": result}')
     if not datasets:
         raise ValueError("there is nothing to draw; give at least one result with its label")
     return datasets
