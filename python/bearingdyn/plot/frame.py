@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +32,7 @@ STYLE: Mapping[str, Any] = {
     "savefig.dpi": 160.0,
 }
 LEGEND_COLUMNS = 4
+WRITTEN_OUT = 4.0  # decades of a log axis; beyond, its ticks are powers of ten
 RPM = 30.0 / math.pi  # per rad/s
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 # units that take a prefix, to the first power, at the head of a compound; a long time stays in seconds
@@ -58,20 +59,30 @@ def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = N
 
 def halve(ax: Axes, share: float = 0.45) -> Axes:
     """New axes that take the lower share of the room of `ax`, on the same horizontal axis."""
+    return stack(ax, (1 - share, share))[1]
+
+
+def stack(ax: Axes, shares: Sequence[float]) -> list[Axes]:
+    """`ax` and new axes below it that share its room, from above, and its horizontal axis."""
     figure = ax.figure
     spec = ax.get_subplotspec()
+    panels = [ax]
     if spec is not None:
-        halves = spec.subgridspec(2, 1, height_ratios=[1 - share, share])
-        ax.set_subplotspec(halves[0])
-        lower = figure.add_subplot(halves[1], sharex=ax)
+        rows = spec.subgridspec(len(shares), 1, height_ratios=shares)
+        ax.set_subplotspec(rows[0])
+        panels += [figure.add_subplot(rows[k], sharex=ax) for k in range(1, len(shares))]
     else:
         box = ax.get_position()
         gap = 0.03 * box.height
-        cut = box.y0 + share * box.height
-        ax.set_position((box.x0, cut + gap, box.width, box.y1 - cut - gap))
-        lower = figure.add_axes((box.x0, box.y0, box.width, cut - gap - box.y0), sharex=ax)
-    ax.tick_params(axis="x", which="both", labelbottom=False)
-    return lower
+        edges = box.y1 - box.height * np.cumsum([0.0, *shares]) / sum(shares)
+        for k in range(1, len(shares)):
+            top, bottom = edges[k] - gap, edges[k + 1] + (gap if k + 1 < len(shares) else 0.0)
+            panels.append(figure.add_axes((box.x0, bottom, box.width, top - bottom), sharex=ax))
+        if len(shares) > 1:
+            ax.set_position((box.x0, edges[1] + gap, box.width, box.y1 - edges[1] - gap))
+    for panel in panels[:-1]:
+        panel.tick_params(axis="x", which="both", labelbottom=False)
+    return panels
 
 
 def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
@@ -112,10 +123,10 @@ def engineering(axis: Axis, values: NDArray[np.float64], unit: str) -> str:
     size = np.abs(values[np.isfinite(values) & (values != 0)])
     low, high = (float(size.min()), float(size.max())) if size.size else (1.0, 1.0)
     log = axis.get_scale() == "log"
-    typical = math.sqrt(low * high) if log else high
+    decades = math.log10(high / low)
     head = PREFIXED.match(unit)
     least, most = (1.0, 1e4) if head else (1e-2, 1e5)
-    power = 0 if least <= typical < most else 3 * math.floor(math.log10(typical) / 3 + 1e-9)
+    power = 0 if least <= high < most else 3 * math.floor(math.log10(high) / 3 + 1e-9)
     if head:
         power = min(max(power, min(PREFIXES)), 0 if head[2] == "s" else max(PREFIXES))
         unit = f"{head[1]}{PREFIXES[power]}{unit[head.end(1) :]}"
@@ -124,13 +135,12 @@ def engineering(axis: Axis, values: NDArray[np.float64], unit: str) -> str:
 
     def written(value: float, _: object = None) -> str:
         shown = value / 10.0**power
-        decade = math.log10(shown) if log and shown > 0 else 0.0
-        if not -3.5 < decade < 4.5 and abs(decade - round(decade)) < 1e-9:
-            return _power_of_ten(round(decade))
+        if log and decades > WRITTEN_OUT and shown > 0:
+            return _power_of_ten(round(math.log10(shown)))
         return f"{shown:.10g}".replace("-", "−")
 
     if log:
-        _written_out(axis, math.log10(high / low), FuncFormatter(written))
+        _written_out(axis, decades, FuncFormatter(written))
     else:
         axis.set_major_formatter(FuncFormatter(written))
     return unit

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 ROUND = 0.1
 # of the size of the structure, by which the largest motion of a shape is drawn
 SWING = 0.1
+ROOM = 1.12  # above the highest mode of a Campbell diagram, for the names of the orders
 NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, points
 
 
@@ -41,11 +42,15 @@ def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes 
             label = kind if kind not in named else None
             named.add(kind)
             ax.plot(rpm, frequency[:, k], color=colour(shade), linestyle=dash, label=label)
-        top = float(frequency.max(initial=0.0)) * 1.05
+        top = float(frequency.max(initial=0.0)) * ROOM
         for each in orders:
             ax.plot(rpm, each * rpm / 60, color="0.6", linewidth=0.7)
             end = min(float(rpm[-1]), 60 * top / each)
-            ax.annotate(f"{each:g}×", (end, each * end / 60), ha="right", va="bottom", color="0.35")
+            inside = "bottom" if end < 60 * top / each else "top"  # where it leaves to the right, or above
+            ax.annotate(
+                f"{each:g}×", (end, each * end / 60), xytext=(-4.0, 0.0), textcoords="offset points",
+                ha="right", va=inside, color="0.35",
+            )  # fmt: skip
         ax.set_ylim(0.0, top)
         ax.set_xlim(float(rpm[0]), float(rpm[-1]))
         swinging = np.abs(data["eigenvalue"].values[order].imag) > 0

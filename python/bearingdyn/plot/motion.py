@@ -32,6 +32,7 @@ GREY = "0.35"
 DEPTH = 1e-6
 # °; a phase begins in the turn below it
 PHASE_END = 135.0
+SMALL_PHASE = 15.0  # °; the axes of a phase show at least that much
 POINT = 1.0 / 72.0  # inch
 
 
@@ -54,8 +55,10 @@ def frequency_response(
     curves = {}
     for label, data in some(datasets).items():
         if "frequency" not in data.coords:
-            other = " over the speed; draw it with plot.unbalance_response" if "speed" in data.coords else ""
-            raise ValueError(f"{label!r} is no response over the frequency but {_kind(data)}{other}")
+            hint = "; draw it with plot.unbalance_response" if "speed" in data.coords else ""
+            raise ValueError(
+                f"{label!r} is no response over the frequency, its kind is {_kind(data)!r}{hint}"
+            )
         for kind, wanted in (("output", output), ("input", input)):
             known = [str(c) for c in data[kind].values]
             if wanted not in known:
@@ -96,8 +99,8 @@ def unbalance_response(
     curves = {}
     for label, data in some(datasets).items():
         if "speed" not in data.coords or "output" not in data.coords:
-            other = "; draw it with plot.frequency_response" if "frequency" in data.coords else ""
-            raise ValueError(f"{label!r} is no response over the speed but {_kind(data)}{other}")
+            hint = "; draw it with plot.frequency_response" if "frequency" in data.coords else ""
+            raise ValueError(f"{label!r} is no response over the speed, its kind is {_kind(data)!r}{hint}")
         known = [str(c) for c in data["output"].values]
         if output not in known:
             raise ValueError(f"{label!r} has no output {output!r}; there are {known}")
@@ -295,12 +298,16 @@ def continuous_phase(response: NDArray[np.complex128]) -> NDArray[np.float64]:
 
 
 def finish_phase(ax: Axes) -> None:
-    """Label, ticks at right angles and frame of the axes of a phase, °."""
+    """Label, ticks and frame of the axes of a phase, °: right angles where it turns as far, 5° at least."""
     from matplotlib.ticker import MultipleLocator
 
     ax.set_ylabel("phase, °")
-    turns = np.ptp(ax.get_ylim()) / 360
-    ax.yaxis.set_major_locator(MultipleLocator(90 * max(1, math.ceil(turns / 1.5))))
+    low, high = ax.get_ylim()
+    if high - low < SMALL_PHASE:
+        low, high = ((low + high + side * SMALL_PHASE) / 2 for side in (-1, 1))
+        ax.set_ylim(low, high)
+    step = next((s for s in (5, 10, 15, 30, 45) if high - low <= 4 * s), 90)
+    ax.yaxis.set_major_locator(MultipleLocator(step * max(1, math.ceil((high - low) / 540))))
     finish(ax)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.plot.frame import colour, engineering, finish, halve, new_axes, some, style
+from bearingdyn.plot.frame import colour, engineering, finish, new_axes, some, stack, style
 
 if TYPE_CHECKING:
     import xarray
@@ -25,7 +25,7 @@ QUANTITIES = {
     "rad/s²": "angular acceleration",
     "N": "force",
     "W": "power",
-    "1": "number",
+    "1": "loaded balls",
 }
 
 
@@ -35,13 +35,15 @@ def time(
     ax: Axes | None = None,
     *,
     span: tuple[float, float] | None = None,
+    about_mean: bool = False,
 ) -> Axes:
-    """Recorded channels of marches by bd.transient over time, several marches by label: the values themselves.
+    """Recorded channels of marches by bd.transient over time, several marches by label, sample by sample.
 
     Channels in one unit share axes; each further unit has its own below, in the order of the channels, and
     the uppermost axes are returned. Of a trace beyond 20 000 samples the smallest and largest of each stretch
     are drawn, so that no peak is lost. channels: those drawn; all of them when not given. span: first and
-    last time drawn, s.
+    last time drawn, s. about_mean: each trace less the mean of its record, so that small motion about a large
+    deflection is seen.
 
     Raises ValueError for a channel that a march has not recorded, a result without a record, or a span
     without samples.
@@ -62,26 +64,31 @@ def time(
                 raise ValueError(f"channel {name!r} of {label!r} was not recorded; there are {known}")
     for name in names:
         units.setdefault(str(first["unit"].sel(channel=name).item()), []).append(name)
-    traces = {(label, name): _trace(data, name, span) for label, data in marches.items() for name in names}
+    traces = {
+        (label, name): _trace(data, name, span, about_mean)
+        for label, data in marches.items()
+        for name in names
+    }
     if span is not None and not all(t.size for t, _ in traces.values()):
         raise ValueError(f"span is {span}; a march has no sample in it, in s")
+    from matplotlib.ticker import MaxNLocator
+
+    title = f"{names[0] if len(names) == 1 else 'Recorded channels'} over time"
+    title += ", less the mean" if about_mean else ""
     with style():
         ax = ax or new_axes(width=6.8, height=1.4 + 1.7 * len(units))
-        panels = [ax]
-        while len(panels) < len(units):
-            left = len(units) - len(panels)
-            panels.append(halve(panels[-1], share=left / (left + 1)))
+        panels = stack(ax, [1.0] * len(units))
         for panel, (unit, members) in zip(panels, units.items(), strict=True):
             drawn = [(label, name) for name in members for label in marches]
             for k, (label, name) in enumerate(drawn):
-                said = name if len(marches) == 1 else label if len(members) == 1 else f"{label}: {name}"
+                said = name if len(marches) == 1 else label if len(names) == 1 else f"{label}: {name}"
                 panel.plot(*traces[label, name], color=colour(k), linewidth=0.7, label=said)
             written = engineering(panel.yaxis, np.concatenate([traces[d][1] for d in drawn]), unit)
             quantity = QUANTITIES.get(unit, "value")
-            if len(members) == 1 and len(marches) > 1:
-                quantity = members[0]
-            panel.set_ylabel(quantity if unit == written == "1" else f"{quantity}, {written}")
-            finish(panel, legend=True)
+            panel.set_ylabel(quantity if written == "1" else f"{quantity}, {written}")
+            if unit == "1" and not about_mean:
+                panel.yaxis.set_major_locator(MaxNLocator(4, integer=True))
+            finish(panel, title if panel is ax else "", legend=True)
         begin = min(float(t[0]) for t, _ in traces.values())
         end = max(float(t[-1]) for t, _ in traces.values())
         if end > begin:
@@ -91,11 +98,13 @@ def time(
 
 
 def _trace(
-    data: xarray.Dataset, channel: str, span: tuple[float, float] | None
+    data: xarray.Dataset, channel: str, span: tuple[float, float] | None, about_mean: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Times, s, and samples to draw: all, or the extremes of each stretch in their order."""
     t = np.asarray(data["time"].values, dtype=np.float64)
     value = np.asarray(data["record"].sel(channel=channel).values, dtype=np.float64)
+    if about_mean:
+        value = value - value.mean()
     if span is not None:
         inside = (t >= span[0]) & (t <= span[1])
         t, value = t[inside], value[inside]
