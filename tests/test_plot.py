@@ -239,6 +239,7 @@ def test_orbit_is_in_micrometres_to_one_scale():
     assert ax.get_aspect() == 1.0
     assert ax.get_xlabel() == "shaft.end.x about its mean, µm"
     assert ax.get_ylabel() == "shaft.end.y about its mean, µm"
+    assert ax.get_title(loc="left") == "Orbits about their means"
     ax.figure.canvas.draw()
     box = ax.get_window_extent()
     # equal scales, in pixels

@@ -62,6 +62,27 @@ def test_wide_positive_columns_have_logarithmic_axes(table):
     assert not ax.get_lines()
 
 
+def test_small_numbers_are_written_in_a_multiple_of_their_unit_and_no_factor_stands_apart():
+    cases = [
+        study.Case({"i": i}, {"sag": s, "peak": 1e-12 / s, "rate": 1e7 * s, "load": 3e-9 / s})
+        for i, s in enumerate((1e-5, 2e-5, 4e-5))
+    ]
+    table = study.table(cases, {"sag": "m", "peak": "m/N", "rate": "1/s"})
+    ax = plot.trade_off(table, "sag", "peak", "rate")
+    ax.figure.canvas.draw()
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("sag, µm", "peak, nm/N")
+    # the axes hold metres, their ticks are micrometres
+    np.testing.assert_allclose(ax.collections[0].get_offsets()[:, 0], [1e-5, 2e-5, 4e-5], rtol=1e-15)
+    written = dict(zip(ax.get_xticks(), (t.get_text() for t in ax.get_xticklabels()), strict=True))
+    assert all(float(text) == pytest.approx(value * 1e6, abs=1e-9) for value, text in written.items())
+    for axis in (a for axes in ax.figure.axes for a in (axes.xaxis, axes.yaxis)):
+        assert axis.get_offset_text().get_text() == ""
+    # the legend stands above the points
+    assert ax.get_legend().get_window_extent().y0 >= ax.get_window_extent().y1
+    bare = plot.trade_off(table, "load", "rate")
+    assert (bare.get_xlabel(), bare.get_ylabel()) == ("load, 10⁻⁶", "rate, 1/s")
+
+
 def test_axes_given_are_drawn_into(table):
     _, given = plt.subplots()
     assert plot.trade_off(table, "k", "peak", ax=given) is given

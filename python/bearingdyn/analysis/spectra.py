@@ -42,7 +42,9 @@ def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarr
 
 
 def orbit(result: xarray.Dataset, x: str, y: str) -> xarray.Dataset:
-    """Two channels against each other, each with its mean (the static deflection) subtracted.
+    """Two channels against each other, each with the mean of its record subtracted.
+
+    The mean is the static deflection and what running at speed adds to it.
 
     Raises ValueError for an unknown channel.
 

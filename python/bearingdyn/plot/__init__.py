@@ -8,8 +8,10 @@ are halved and the upper ones returned; ``ax.figure`` is the whole.
 from bearingdyn.plot.bearing import bearing_spectrum, bearing_stiffness, film, load_distribution
 from bearingdyn.plot.material import isotherms, layer_stiffness, master, shifts
 from bearingdyn.plot.modes import campbell, mode_shape
-from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum
+from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum, unbalance_response
+from bearingdyn.plot.orders import order_spectrum, orders
 from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
+from bearingdyn.plot.traces import time
 from bearingdyn.plot.trade_off import trade_off
 from bearingdyn.plot.waterfall import waterfall
 
@@ -28,10 +30,14 @@ __all__ = [
     "master",
     "mode_shape",
     "orbit",
+    "order_spectrum",
+    "orders",
     "shifts",
     "spectrum",
     "spectrum_of",
+    "time",
     "trade_off",
+    "unbalance_response",
     "van_gurp_palmen",
     "waterfall",
 ]

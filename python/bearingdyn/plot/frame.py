@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
+    from matplotlib.ticker import Formatter
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 DASHES = ("-", "--", "-.", (0, (1, 1)))
@@ -29,6 +32,11 @@ STYLE: Mapping[str, Any] = {
     "savefig.dpi": 160.0,
 }
 LEGEND_COLUMNS = 4
+WRITTEN_OUT = 4.0  # decades of a log axis; beyond, its ticks are powers of ten
+RPM = 30.0 / math.pi  # per rad/s
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+# units that take a prefix, to the first power, at the head of a compound; a long time stays in seconds
+PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 
 @contextmanager
@@ -51,20 +59,30 @@ def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = N
 
 def halve(ax: Axes, share: float = 0.45) -> Axes:
     """New axes that take the lower share of the room of `ax`, on the same horizontal axis."""
+    return stack(ax, (1 - share, share))[1]
+
+
+def stack(ax: Axes, shares: Sequence[float]) -> list[Axes]:
+    """`ax` and new axes below it that share its room, from above, and its horizontal axis."""
     figure = ax.figure
     spec = ax.get_subplotspec()
+    panels = [ax]
     if spec is not None:
-        halves = spec.subgridspec(2, 1, height_ratios=[1 - share, share])
-        ax.set_subplotspec(halves[0])
-        lower = figure.add_subplot(halves[1], sharex=ax)
+        rows = spec.subgridspec(len(shares), 1, height_ratios=shares)
+        ax.set_subplotspec(rows[0])
+        panels += [figure.add_subplot(rows[k], sharex=ax) for k in range(1, len(shares))]
     else:
         box = ax.get_position()
         gap = 0.03 * box.height
-        cut = box.y0 + share * box.height
-        ax.set_position((box.x0, cut + gap, box.width, box.y1 - cut - gap))
-        lower = figure.add_axes((box.x0, box.y0, box.width, cut - gap - box.y0), sharex=ax)
-    ax.tick_params(axis="x", which="both", labelbottom=False)
-    return lower
+        edges = box.y1 - box.height * np.cumsum([0.0, *shares]) / sum(shares)
+        for k in range(1, len(shares)):
+            top, bottom = edges[k] - gap, edges[k + 1] + (gap if k + 1 < len(shares) else 0.0)
+            panels.append(figure.add_axes((box.x0, bottom, box.width, top - bottom), sharex=ax))
+        if len(shares) > 1:
+            ax.set_position((box.x0, edges[1] + gap, box.width, box.y1 - edges[1] - gap))
+    for panel in panels[:-1]:
+        panel.tick_params(axis="x", which="both", labelbottom=False)
+    return panels
 
 
 def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
@@ -94,10 +112,48 @@ def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
         ax.set_title(title, loc="left", pad=6.0 + 14.0 * rows)
 
 
-def _written_out(axis: Axis, decades: float) -> None:
+def engineering(axis: Axis, values: NDArray[np.float64], unit: str) -> str:
+    """Write the ticks of an axis in the multiple of its unit that suits the values; returns that multiple.
+
+    What is drawn stays in the unit given. A unit without prefix gets a power of ten: "10⁶", "10⁻⁸ kg". No
+    factor is printed elsewhere. To be called once the scale of the axis, linear or log, is set.
+    """
+    from matplotlib.ticker import FuncFormatter
+
+    size = np.abs(values[np.isfinite(values) & (values != 0)])
+    low, high = (float(size.min()), float(size.max())) if size.size else (1.0, 1.0)
+    log = axis.get_scale() == "log"
+    decades = math.log10(high / low)
+    head = PREFIXED.match(unit)
+    least, most = (1.0, 1e4) if head else (1e-2, 1e5)
+    power = 0 if least <= high < most else 3 * math.floor(math.log10(high) / 3 + 1e-9)
+    if head:
+        power = min(max(power, min(PREFIXES)), 0 if head[2] == "s" else max(PREFIXES))
+        unit = f"{head[1]}{PREFIXES[power]}{unit[head.end(1) :]}"
+    elif power:
+        unit = f"{_power_of_ten(power)} {unit}".rstrip()
+
+    def written(value: float, _: object = None) -> str:
+        shown = value / 10.0**power
+        if log and decades > WRITTEN_OUT and shown > 0:
+            return _power_of_ten(round(math.log10(shown)))
+        return f"{shown:.10g}".replace("-", "−")
+
+    if log:
+        _written_out(axis, decades, FuncFormatter(written))
+    else:
+        axis.set_major_formatter(FuncFormatter(written))
+    return unit
+
+
+def _power_of_ten(power: int) -> str:
+    return "10" + str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def _written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> None:
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-    plain = StrMethodFormatter("{x:g}")
+    plain = plain or StrMethodFormatter("{x:g}")
     axis.set_major_formatter(plain)
     axis.set_minor_formatter(plain if decades < 1.5 else NullFormatter())
     if decades < 1.5:
@@ -118,7 +174,9 @@ def colour(k: int) -> str:
 
 
 def some(datasets: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The results by label; ValueError if there are none."""
+    """The results by label; ValueError if there are none, or one without a label."""
+    if hasattr(datasets, "data_vars"):  # a Dataset is a Mapping too, of its variables
+        raise ValueError('this is a result without a label; give results by label, such as {"run": result}')
     if not datasets:
         raise ValueError("there is nothing to draw; give at least one result with its label")
     return datasets

@@ -10,7 +10,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.analysis import BearingState
-from bearingdyn.plot.frame import COLOURS, DASHES, colour, finish, halve, new_axes, some, style
+from bearingdyn.plot.frame import (
+    COLOURS,
+    DASHES,
+    RPM,
+    colour,
+    engineering,
+    finish,
+    halve,
+    new_axes,
+    some,
+    style,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -21,6 +32,7 @@ GREY = "0.35"
 DEPTH = 1e-6
 # °; a phase begins in the turn below it
 PHASE_END = 135.0
+SMALL_PHASE = 15.0  # °; the axes of a phase show at least that much
 POINT = 1.0 / 72.0  # inch
 
 
@@ -37,21 +49,22 @@ def frequency_response(
     With `phase` the axes are halved and the phase stands below; the axes of the magnitude are returned. It is
     unwrapped: it begins between −225° and 135° and goes on without jumps.
 
-    Raises ValueError if a label lacks the output or the input, or if they are of different quantities.
+    Raises ValueError if a label lacks the output or the input, if they are of different quantities, or for a
+    response over the speed, which `unbalance_response` draws.
     """
     curves = {}
     for label, data in some(datasets).items():
+        if "frequency" not in data.coords:
+            hint = "; draw it with plot.unbalance_response" if "speed" in data.coords else ""
+            raise ValueError(
+                f"{label!r} is no response over the frequency, its kind is {_kind(data)!r}{hint}"
+            )
         for kind, wanted in (("output", output), ("input", input)):
             known = [str(c) for c in data[kind].values]
             if wanted not in known:
                 raise ValueError(f"{label!r} has no {kind} {wanted!r}; there are {known}")
         curves[label] = data["response"].sel(output=output, input=input)
-    quantities = {str(data.attrs["quantity"]) for data in datasets.values()}
-    if len(quantities) > 1:
-        raise ValueError(f"responses of {sorted(quantities)} do not go into one figure; draw one of each")
-    quantity = quantities.pop()
-    from matplotlib.ticker import MultipleLocator
-
+    quantity = _one_quantity(datasets)
     unit = _response_unit(quantity, output, input)
     with style():
         ax = ax or new_axes(height=4.8 if phase else 3.4)
@@ -61,23 +74,70 @@ def frequency_response(
             f, value = curve["frequency"].values, curve.values
             ax.plot(f, np.abs(value), label=label, **look)
             if lower is not None:
-                lower.plot(f, _continuous_phase(value), **look)
+                lower.plot(f, continuous_phase(value), **look)
         ax.set_yscale("log")
         ax.set_ylabel(f"{'force' if _is_force(output) else quantity}, zero-to-peak, {unit}")
         bottom = lower or ax
         bottom.set_xlabel("frequency, Hz")
         _span(bottom, *(c["frequency"].values for c in curves.values()))
         if lower is not None:
-            lower.set_ylabel("phase, °")
-            turns = np.ptp(lower.get_ylim()) / 360
-            lower.yaxis.set_major_locator(MultipleLocator(90 * max(1, math.ceil(turns / 1.5))))
-            finish(lower)
+            finish_phase(lower)
         finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=True)
     return ax
 
 
+def unbalance_response(
+    datasets: Mapping[str, xarray.Dataset], output: str, ax: Axes | None = None, *, phase: bool = True
+) -> Axes:
+    """Magnitude of a response by bd.unbalance_response over the speed in rpm, several by label; log axis.
+
+    With `phase` the axes are halved and the phase against the angle of the shaft stands below, unwrapped from
+    the lowest speed that moves; the axes of the magnitude are returned.
+
+    Raises ValueError if a label lacks the output or is no unbalance response, or if their quantities differ.
+    """
+    curves = {}
+    for label, data in some(datasets).items():
+        if "speed" not in data.coords or "output" not in data.coords:
+            hint = "; draw it with plot.frequency_response" if "frequency" in data.coords else ""
+            raise ValueError(f"{label!r} is no response over the speed, its kind is {_kind(data)!r}{hint}")
+        known = [str(c) for c in data["output"].values]
+        if output not in known:
+            raise ValueError(f"{label!r} has no output {output!r}; there are {known}")
+        curve = data["response"].sel(output=output)
+        order = np.argsort(curve["speed"].values)
+        curves[label] = curve["speed"].values[order] * RPM, curve.values[order]
+    quantity = "force" if _is_force(output) else _one_quantity(datasets)
+    unit = str(next(iter(datasets.values()))["unit"].sel(output=output).item())
+    with style():
+        ax = ax or new_axes(height=4.8 if phase else 3.4)
+        lower = halve(ax, share=0.3) if phase else None
+        for k, (label, (rpm, value)) in enumerate(curves.items()):
+            look: dict[str, Any] = {"color": colour(k), "linestyle": DASHES[k % len(DASHES)]}
+            ax.plot(rpm, np.abs(value), label=label, **look)
+            moved = np.abs(value) > 0  # not at standstill
+            if lower is not None and moved.any():
+                lower.plot(rpm[moved], continuous_phase(value[moved]), **look)
+        ax.set_yscale("log")
+        sizes = np.concatenate([np.abs(value) for _, value in curves.values()])
+        ax.set_ylabel(f"{quantity}, zero-to-peak, {engineering(ax.yaxis, sizes, unit)}")
+        bottom = lower or ax
+        bottom.set_xlabel("speed, rpm")
+        ends = [rpm[k] for rpm, _ in curves.values() for k in (0, -1)]
+        if max(ends) > min(ends):
+            bottom.set_xlim(min(ends), max(ends))
+        if lower is not None:
+            finish_phase(lower)
+        finish(ax, f"Response at {output} to the unbalance", legend=True)
+    return ax
+
+
 def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
-    """Orbits by bd.orbit, several by label, in µm about their means, both axes to one scale."""
+    """Orbits by bd.orbit, several by label, in µm, each about its own mean, both axes to one scale.
+
+    The mean of the record is what bd.orbit subtracts and keeps as mean_x and mean_y. The paper subtracts the
+    static deflection; from that the mean differs by what speed adds to it.
+    """
     first = next(iter(some(datasets).values()))
     with style():
         ax = ax or new_axes(width=4.6, height=4.9)
@@ -92,7 +152,7 @@ def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axe
             axis.set_label_text(f"{meaning}, µm")
         ax.set_aspect("equal", adjustable="datalim")
         ax.margins(0.08)
-        finish(ax, "Orbit about the static deflection", legend=True)
+        finish(ax, "Orbit about its mean" if len(curves) == 1 else "Orbits about their means", legend=True)
     return ax
 
 
@@ -103,7 +163,7 @@ def spectrum(
     *,
     f_max: float | None = None,
 ) -> Axes:
-    """Amplitude spectra by bd.spectrum, several by label, on a log axis 120 dB deep at most.
+    """Amplitude spectra by bd.spectrum or bd.envelope_spectrum, several by label, 120 dB deep at most.
 
     lines: name -> frequency, Hz, such as {"BPFO": 107.4}: marked and named where they fall inside the figure.
     f_max: highest frequency drawn, Hz; the whole of the spectra when not given.
@@ -134,7 +194,9 @@ def spectrum(
             ax.set_ylim(low, low * (2 * largest / low) ** (1 / (1 - room)))
         ax.set_xlabel("frequency, Hz")
         ax.set_ylabel(f"amplitude, zero-to-peak, {units.pop()}")
-        finish(ax, f"Spectrum of {', '.join(channels)}", legend=True)
+        kinds = dict.fromkeys(_kind(data) for data in datasets.values())
+        title = f"{' and '.join(kinds)} of {', '.join(channels)}"
+        finish(ax, title[0].upper() + title[1:], legend=True)
     return ax
 
 
@@ -185,6 +247,22 @@ def _span(ax: Axes, *grids: NDArray[np.float64]) -> None:
         ax.set_xlim(low, high)
 
 
+def _kind(data: xarray.Dataset) -> str:
+    """What a result is, with the band of an envelope."""
+    kind = str(data.attrs.get("analysis", "spectrum"))
+    if "band" in data.attrs:
+        low, high = (float(f) for f in data.attrs["band"])
+        kind += f" ({low:g} to {high:g} Hz)"
+    return kind
+
+
+def _one_quantity(datasets: Mapping[str, xarray.Dataset]) -> str:
+    quantities = {str(data.attrs["quantity"]) for data in datasets.values()}
+    if len(quantities) > 1:
+        raise ValueError(f"responses of {sorted(quantities)} do not go into one figure; draw one of each")
+    return quantities.pop()
+
+
 def _is_rotation(channel: str) -> bool:
     return channel.rpartition(".")[2] in ("θx", "θy", "θz", "rx", "ry", "rz")
 
@@ -213,10 +291,24 @@ def _response_unit(quantity: str, output: str, input: str) -> str:
     return f"{f'({motion}{rate})' if rate else motion}/{'(N m)' if _is_rotation(input) else 'N'}"
 
 
-def _continuous_phase(response: NDArray[np.complex128]) -> NDArray[np.float64]:
+def continuous_phase(response: NDArray[np.complex128]) -> NDArray[np.float64]:
     """Unwrapped phase, °, its first value in the turn below PHASE_END: no curve begins at that angle."""
     degrees = np.degrees(np.unwrap(np.angle(response)))
     return np.asarray(degrees - 360.0 * np.ceil((degrees[0] - PHASE_END) / 360.0))
+
+
+def finish_phase(ax: Axes) -> None:
+    """Label, ticks and frame of the axes of a phase, °: right angles where it turns as far, 5° at least."""
+    from matplotlib.ticker import MultipleLocator
+
+    ax.set_ylabel("phase, °")
+    low, high = ax.get_ylim()
+    if high - low < SMALL_PHASE:
+        low, high = ((low + high + side * SMALL_PHASE) / 2 for side in (-1, 1))
+        ax.set_ylim(low, high)
+    step = next((s for s in (5, 10, 15, 30, 45) if high - low <= 4 * s), 90)
+    ax.yaxis.set_major_locator(MultipleLocator(step * max(1, math.ceil((high - low) / 540))))
+    finish(ax)
 
 
 def _mark(ax: Axes, lines: Mapping[str, float]) -> float:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.plot.frame import COLOURS, finish, new_axes, style
+from bearingdyn.plot.frame import COLOURS, engineering, finish, new_axes, style
 
 if TYPE_CHECKING:
     import xarray
@@ -21,7 +21,8 @@ def trade_off(
     study: as `bearingdyn.study.table` makes it, its columns over "case". Where `bearingdyn.study.pareto` has
     marked the front, its cases are ringed, and joined where x and y were the only aims. An axis is
     logarithmic where its values are positive and span a decade or more. Units come from the columns'
-    attribute "units".
+    attribute "units"; ticks are written in a fitting multiple of them, µm for 1e-5 m, while the axes keep the
+    study's own numbers for whatever else is drawn.
 
     Raises ValueError for a column that is not in the study or holds no finite number.
     """
@@ -41,7 +42,10 @@ def trade_off(
                 across[whole], up[whole], s=22.0, c=shade[whole], norm=norm, cmap="viridis", linewidths=0.0
             )
             points.set_label("cases")
-            ax.figure.colorbar(points, ax=ax, label=_label(study, colour))
+            bar = ax.figure.colorbar(points, ax=ax)
+            bar.set_label(
+                _label(study, colour, engineering(bar.ax.yaxis, shade[whole], _unit(study, colour)))
+            )
         if "front" in study:
             front = whole & study["front"].values.astype(bool)
             order = np.flatnonzero(front)[np.argsort(across[front])]
@@ -54,8 +58,8 @@ def trade_off(
         for axis, column in (("x", across[whole]), ("y", up[whole])):
             if _wide(column):
                 ax.set(**{f"{axis}scale": "log"})
-        ax.set_xlabel(_label(study, x))
-        ax.set_ylabel(_label(study, y))
+        ax.set_xlabel(_label(study, x, engineering(ax.xaxis, across[whole], _unit(study, x))))
+        ax.set_ylabel(_label(study, y, engineering(ax.yaxis, up[whole], _unit(study, y))))
         finish(ax, legend=True)
     return ax
 
@@ -74,7 +78,10 @@ def _wide(values: np.ndarray) -> bool:
     return bool(values.min() > 0 and values.max() >= 10 * values.min())
 
 
-def _label(study: xarray.Dataset, name: str) -> str:
+def _unit(study: xarray.Dataset, name: str) -> str:
+    return str(study[name].attrs.get("units", ""))
+
+
+def _label(study: xarray.Dataset, name: str, unit: str) -> str:
     meaning = str(study[name].attrs.get("long_name", name)) or name
-    unit = study[name].attrs.get("units", "")
     return f"{meaning}, {unit}" if unit else meaning

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.plot.frame import finish, new_axes, style
+from bearingdyn.plot.frame import RPM, finish, new_axes, style
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-RPM = 30.0 / math.pi
 DEPTH = 1e-4  # of the largest line of a waterfall: 80 dB
 
 
