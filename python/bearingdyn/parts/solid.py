@@ -27,6 +27,7 @@ from bearingdyn.fem.eigen import factorise, rigid_motion
 from bearingdyn.fem.solid import assemble_solid
 from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
 from bearingdyn.material import Elastic
+from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.section import ViscoelasticSolid
 
 Float = NDArray[np.float64]
@@ -280,6 +281,15 @@ class Solid:
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
         return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
+
+    def outline(self) -> Outline:
+        """The faces of its elements on the boundary, with the middles of their sides."""
+        corners = len(self.mesh.kind.faces[0])
+        around = np.arange(2 * corners).reshape(2, -1).T.ravel()  # corner, middle of the side, corner, ...
+        nodes, faces = np.unique(self.mesh.boundary[:, around], return_inverse=True)
+        shapes = self._basis.Psi.reshape(len(self.mesh.points), 3, -1)
+        rows = shapes[nodes].reshape(3 * nodes.size, -1)
+        return Outline(self.mesh.points[nodes], (faces.reshape(-1, 2 * corners),), rows)
 
     def _radiation(self, name: str) -> Surface:
         samples, rows = self.surface(name)

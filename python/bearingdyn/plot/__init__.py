@@ -10,6 +10,7 @@ from bearingdyn.plot.material import isotherms, layer_stiffness, master, shifts
 from bearingdyn.plot.modes import campbell, mode_shape
 from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum
 from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
+from bearingdyn.plot.surfaces import mode_geometry, mode_scene
 from bearingdyn.plot.trade_off import trade_off
 from bearingdyn.plot.waterfall import waterfall
 
@@ -26,6 +27,8 @@ __all__ = [
     "layer_stiffness",
     "load_distribution",
     "master",
+    "mode_geometry",
+    "mode_scene",
     "mode_shape",
     "orbit",
     "shifts",
