@@ -25,13 +25,13 @@ Array = NDArray[np.float64]
 class MovedSurface:
     """The surface of a part where it stands, and its motion in a mode.
 
-    part: name. points: (p, 3), m, from the first interface of the first part. faces: arrays (f, q) of point
-    numbers, polygons of q corners. motion: (p, 3), complex, m, of the size that the mode has.
+    part: name. points: (p, 3), m, from the first interface of the first part. faces: (f, 3 or 4), corners
+    among the points. motion: (p, 3), complex, m, of the size that the mode has.
     """
 
     part: str
     points: Array
-    faces: tuple[NDArray[np.intp], ...]
+    faces: NDArray[np.intp]
     motion: NDArray[np.complex128]
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.fem.revolution_mesh import Float, Index
 
@@ -17,12 +16,12 @@ AZIMUTHS = 48  # around a body of revolution
 class Outline:
     """The surface of a part in its own frame.
 
-    points: (p, 3), m. faces: arrays (f, q) of point numbers, polygons of q corners each.
+    points: (p, 3), m. faces: (f, 3 or 4), their corners among the points.
     rows: (3 p, n): x, y, z of every point from the coordinates of the part's superelement.
     """
 
     points: Float
-    faces: tuple[Index, ...]
+    faces: Index
     rows: Float
 
 

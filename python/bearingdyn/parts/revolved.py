@@ -338,7 +338,7 @@ class Revolved:
             for copy, (index, sign) in enumerate(places):
                 turned = h.turned(azimuths(), sine=copy == 1)
                 rows[..., index] += sign * (turned @ shapes[:, None])
-        return Outline(points, (faces,), rows.reshape(-1, n))
+        return Outline(points, faces, rows.reshape(-1, n))
 
     def modes(
         self, order: int, count: int, modulus: float | None = None, fixed: Iterable[str] = ()

@@ -98,4 +98,4 @@ class RigidBody:
             moments = np.array(self.inertia)
             sides = np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments) / self.mass, 0.0))
             points, faces = box(sides)
-        return Outline(points, (faces,), carried(np.eye(6), points))
+        return Outline(points, faces, carried(np.eye(6), points))

@@ -204,7 +204,7 @@ class Shaft:
         starts = np.cumsum([0, *(len(each[0]) for each in drawn)])
         faces = np.concatenate([each[1] + start for each, start in zip(drawn, starts, strict=False)])
         arms = points - z[owner, None] * np.array([0.0, 0.0, 1.0])
-        return Outline(points, (faces,), carried(motion[owner], arms))
+        return Outline(points, faces, carried(motion[owner], arms))
 
 
 def spin_generator(n_nodes: int) -> scipy.sparse.csr_matrix:

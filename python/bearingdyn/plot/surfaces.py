@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 SWING = 0.08  # of the size of the structure, by which the largest motion is drawn
+MAP = "YlOrRd"
 EDGE = 0.8  # cosine of the angle between two faces from which on their common edge is drawn
 SHADE = 0.55  # of its colour that a face seen along its plane keeps
 LIGHT = np.array([0.3, -0.5, 0.8])  # where the light comes from, in the axes z, x, y of the figure
@@ -55,13 +56,12 @@ def mode_geometry(
     for s in surfaces:
         rest, now = (1e3 * p[:, TO_FIGURE] for p in (s.points, s.points + factor * s.motion.real))
         level = _amplitude(s) / largest
-        for faces in s.faces:
-            polygons += list(now[faces])
-            shade = SHADE + (1.0 - SHADE) * np.abs(_normals(now[faces]) @ (LIGHT / np.linalg.norm(LIGHT)))
-            colour = colormaps["viridis"](level[faces].mean(axis=1))
-            colour[:, :3] *= shade[:, None]
-            colours.append(colour)
-            edges.append(rest[_sharp(rest, faces)])
+        polygons += list(now[s.faces])
+        shade = SHADE + (1.0 - SHADE) * np.abs(_normals(now[s.faces]) @ (LIGHT / np.linalg.norm(LIGHT)))
+        colour = colormaps[MAP](level[s.faces].mean(axis=1))
+        colour[:, :3] *= shade[:, None]
+        colours.append(colour)
+        edges.append(rest[_sharp(rest, s.faces)])
     with style():
         if ax is None:
             import matplotlib.pyplot as plt
@@ -70,10 +70,14 @@ def mode_geometry(
             ax = figure.add_subplot(projection="3d", proj_type="ortho")
             ax.view_init(elev=20.0, azim=-60.0)
         shown = np.concatenate(colours)
-        ax.add_collection3d(Poly3DCollection(polygons, facecolors=shown, edgecolors=shown, linewidths=0.2))
-        ax.add_collection3d(Line3DCollection(np.concatenate(edges), colors="0.35", linewidths=0.35))
+        for drawn in (
+            Poly3DCollection(polygons, facecolors=shown, edgecolors=shown, linewidths=0.2),
+            Line3DCollection(np.concatenate(edges), colors="0.35", linewidths=0.35),
+        ):
+            drawn.set_clip_on(False)
+            ax.add_collection3d(drawn)
         _frame(ax, np.concatenate([*polygons, *(e.reshape(-1, 3) for e in edges)]))
-        bar = ax.figure.colorbar(ScalarMappable(cmap="viridis"), ax=ax, shrink=0.6, pad=0.02)
+        bar = ax.figure.colorbar(ScalarMappable(cmap=MAP), ax=ax, shrink=0.6, pad=0.12)
         bar.set_label("displacement over the largest", size=STYLE["axes.labelsize"])
         frequency, damping = (float(found[name].values[mode]) for name in ("frequency", "damping_ratio"))
         said = f", ζ = {100 * damping:.2g} %" if found.attrs.get("damped") else ""
@@ -108,8 +112,8 @@ def mode_scene(
     largest = max(float(_amplitude(s).max()) for s in surfaces) or 1.0
     scene = pyvista.MultiBlock()
     for s in surfaces:
-        cells = [np.insert(faces, 0, faces.shape[1], axis=1).ravel() for faces in s.faces]
-        block = pyvista.PolyData(s.points + factor * s.motion.real, np.concatenate(cells))
+        cells = np.insert(s.faces, 0, s.faces.shape[1], axis=1)
+        block = pyvista.PolyData(s.points + factor * s.motion.real, cells.ravel())
         block["displacement"] = s.motion.real / largest
         block["amplitude"] = _amplitude(s) / largest
         block["rest"] = s.points
@@ -138,7 +142,7 @@ def _drawn(
 
 
 def _amplitude(surface: MovedSurface) -> Array:
-    return np.linalg.norm(np.abs(surface.motion), axis=1)
+    return np.asarray(np.linalg.norm(np.abs(surface.motion), axis=1))
 
 
 def _normals(polygons: Array) -> Array:
@@ -163,7 +167,7 @@ def _frame(ax: Axes3D, points: Array) -> None:
     """Equal scales, few ticks, names of the axes."""
     low, high = points.min(axis=0), points.max(axis=0)
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    ax.set_box_aspect(high - low)
+    ax.set_box_aspect(high - low, zoom=1.1)
     for axis, name in zip((ax.xaxis, ax.yaxis, ax.zaxis), "zxy", strict=True):
         axis.set_label_text(f"{name}, mm")
         axis.label.set_fontsize(STYLE["axes.labelsize"])
