@@ -212,6 +212,7 @@ class Revolved:
         Q = np.linalg.qr(self._boundaries.rigid_motion(n))[0]
         return np.asarray(np.eye(n) - Q @ Q.T)
 
+    @cached_property
     def _families(self) -> list[tuple[Harmonic, Float, int, int]]:
         """Each family with its shapes, the number of constraint shapes among them, and its copies."""
         levels = shape_moduli(self.regions, self.moduli)
@@ -221,12 +222,16 @@ class Revolved:
             found.append((h, *self._shape_maker().basis(h, levels), copies))
         return found
 
-    def _placed(
-        self, families: list[tuple[Harmonic, Float, int, int]]
-    ) -> Iterator[tuple[Harmonic, Float, list[tuple[NDArray[np.intp], Float]]]]:
+    @property
+    def _size(self) -> int:
+        """Number of coordinates of the superelement."""
+        internal = (copies * (Psi.shape[1] - fixed) for _, Psi, fixed, copies in self._families)
+        return self._boundaries.n + sum(internal)
+
+    def _placed(self) -> Iterator[tuple[Harmonic, Float, list[tuple[NDArray[np.intp], Float]]]]:
         """Each family with its shapes, and the coordinates and signs of these in each of its copies."""
         end = self._boundaries.n
-        for h, Psi, fixed, copies in families:
+        for h, Psi, fixed, copies in self._families:
             places = []
             for copy in range(copies):
                 index, sign = self._boundaries.place(h, copy)
@@ -258,7 +263,7 @@ class Revolved:
         materials = [part.material for part in model.viscoelastic]
         level = modulus_levels(materials, self.moduli)[0]
         families = [
-            (h, Psi, fixed, RIGID_SHAPES[h.order, h.components]) for h, Psi, fixed, _ in self._families()
+            (h, Psi, fixed, RIGID_SHAPES[h.order, h.components]) for h, Psi, fixed, _ in self._families
         ]
         return full_basis(model, families, level)
 
@@ -275,9 +280,7 @@ class Revolved:
         """
         if not self.interfaces and not self.grooves:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
-        families = self._families()
-        n = self._boundaries.n
-        n += sum(copies * (Psi.shape[1] - fixed) for _, Psi, fixed, copies in families)
+        n = self._size
         rubbers: list[Any] = []
         owner = np.full(len(self.regions), -1)
         for i, q in enumerate(self.regions):
@@ -291,7 +294,7 @@ class Revolved:
         M, K, E = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
         H = [np.zeros((n, n)) for _ in rubbers]
         rows = {name: np.zeros((3, n)) for name in self.outputs}
-        for h, Psi, places in self._placed(families):
+        for h, Psi, places in self._placed():
             parts = [(M, h.mass_matrix(self._density)), (K, h.stiffness(bulk, shear))]
             parts += [(E, h.stiffness(np.where(owner < 0, bulk, 0.0), shear))]
             parts += [
@@ -327,10 +330,9 @@ class Revolved:
         sides = self.mesh.outline_sides
         halves = np.vstack([sides[:, :2], sides[:, 1:]])
         points, faces, nodes = revolved(self.mesh.r, self.mesh.z, halves)
-        families = self._families()
-        n = self._boundaries.n + sum(copies * (Psi.shape[1] - fixed) for _, Psi, fixed, copies in families)
+        n = self._size
         rows = np.zeros((nodes.size, len(azimuths()), 3, n))
-        for h, Psi, places in self._placed(families):
+        for h, Psi, places in self._placed():
             shapes = np.zeros((nodes.size, 3, Psi.shape[1]))
             shapes[:, list(h.components)] = h.complete(Psi.copy()).reshape(
                 self.mesh.r.size, len(h.components), -1
