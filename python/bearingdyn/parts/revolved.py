@@ -225,7 +225,7 @@ class Revolved:
     @property
     def _size(self) -> int:
         """Number of coordinates of the superelement."""
-        internal = (copies * (Psi.shape[1] - fixed) for _, Psi, fixed, copies in self._families)
+        internal = (copies * int(Psi.shape[1] - fixed) for _, Psi, fixed, copies in self._families)
         return self._boundaries.n + sum(internal)
 
     def _placed(self) -> Iterator[tuple[Harmonic, Float, list[tuple[NDArray[np.intp], Float]]]]:
