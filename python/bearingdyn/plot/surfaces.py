@@ -15,7 +15,7 @@ from bearingdyn.system import System
 
 if TYPE_CHECKING:
     import xarray
-    from mpl_toolkits.mplot3d import Axes3D
+    from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
 
@@ -31,11 +31,11 @@ def mode_geometry(
     source: Equilibrium | Application | System,
     found: xarray.Dataset,
     mode: int,
-    ax: Axes3D | None = None,
+    ax: Axes | None = None,
     *,
     scale: float | None = None,
     parts: Sequence[str] | None = None,
-) -> Axes3D:
+) -> Axes:
     """One mode by bd.modes on the surfaces of the parts, in colours of how far they move; edges at rest thin.
 
     scale: times which the mode is drawn, None: so that the largest motion is 8 % of the structure's size.
@@ -62,27 +62,29 @@ def mode_geometry(
         colour[:, :3] *= shade[:, None]
         colours.append(colour)
         edges.append(rest[_sharp(rest, s.faces)])
+    on: Any = ax
     with style():
-        if ax is None:
+        if on is None:
             import matplotlib.pyplot as plt
 
             figure = plt.figure(figsize=(7.4, 4.6), layout="constrained")
-            ax = figure.add_subplot(projection="3d", proj_type="ortho")
-            ax.view_init(elev=20.0, azim=-60.0)
+            on = figure.add_subplot(projection="3d", proj_type="ortho")
+            on.view_init(elev=20.0, azim=-60.0)
         shown = np.concatenate(colours)
         for drawn in (
             Poly3DCollection(polygons, facecolors=shown, edgecolors=shown, linewidths=0.2),
             Line3DCollection(np.concatenate(edges), colors="0.35", linewidths=0.35),
         ):
             drawn.set_clip_on(False)
-            ax.add_collection3d(drawn)
-        _frame(ax, np.concatenate([*polygons, *(e.reshape(-1, 3) for e in edges)]))
-        bar = ax.figure.colorbar(ScalarMappable(cmap=MAP), ax=ax, shrink=0.6, pad=0.12)
+            on.add_collection3d(drawn)
+        _frame(on, np.concatenate([*polygons, *(e.reshape(-1, 3) for e in edges)]))
+        bar = on.figure.colorbar(ScalarMappable(cmap=MAP), ax=on, shrink=0.6, pad=0.12)
         bar.set_label("displacement over the largest", size=STYLE["axes.labelsize"])
         frequency, damping = (float(found[name].values[mode]) for name in ("frequency", "damping_ratio"))
         said = f", ζ = {100 * damping:.2g} %" if found.attrs.get("damped") else ""
-        ax.set_title(f"Mode {mode + 1} at {frequency:.4g} Hz{said}", loc="left")
-    return ax
+        on.set_title(f"Mode {mode + 1} at {frequency:.4g} Hz{said}", loc="left")
+    drawn_in: Axes = on
+    return drawn_in
 
 
 def mode_scene(
@@ -163,7 +165,7 @@ def _sharp(points: Array, faces: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.asarray(edges[(count == 1) | (cosine < EDGE)])
 
 
-def _frame(ax: Axes3D, points: Array) -> None:
+def _frame(ax: Any, points: Array) -> None:
     """Equal scales, few ticks, names of the axes."""
     low, high = points.min(axis=0), points.max(axis=0)
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
