@@ -29,6 +29,7 @@ HOMES = {
         "equilibrium",
         "frequency_response",
         "mode_shapes",
+        "mode_surfaces",
         "modes",
         "orbit",
         "order_spectrum",

@@ -7,7 +7,7 @@ from bearingdyn.analysis.harmonic import frequency_response
 from bearingdyn.analysis.losses import dissipation
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.radiation import radiated_power
-from bearingdyn.analysis.shapes import mode_shapes
+from bearingdyn.analysis.shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.shares import energy_shares
 from bearingdyn.analysis.spectra import orbit, spectrum
 from bearingdyn.analysis.spectra_orders import order_spectrum, shaft_angle, track_orders
@@ -19,6 +19,7 @@ from bearingdyn.analysis.unbalance import unbalance_response
 __all__ = [
     "BearingState",
     "Equilibrium",
+    "MovedSurface",
     "ball_channels",
     "campbell",
     "contact_statistics",
@@ -28,6 +29,7 @@ __all__ = [
     "equilibrium",
     "frequency_response",
     "mode_shapes",
+    "mode_surfaces",
     "modes",
     "orbit",
     "order_spectrum",

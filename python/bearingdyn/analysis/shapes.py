@@ -1,17 +1,38 @@
-"""Mode shapes where they can be seen: on the interfaces and points of the parts."""
+"""Mode shapes where they can be seen: on the interfaces and points of the parts, and on their surfaces."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.application import COMPONENTS, Application
+from bearingdyn.application.rigid import arm
+from bearingdyn.parts.outline import Outlined
 from bearingdyn.system import System, assemble
 
 if TYPE_CHECKING:
     import xarray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MovedSurface:
+    """The surface of a part where it stands, and its motion in a mode.
+
+    part: name. points: (p, 3), m, from the first interface of the first part. faces: (f, 3 or 4), corners
+    among the points. motion: (p, 3), complex, m, of the size that the mode has.
+    """
+
+    part: str
+    points: Array
+    faces: NDArray[np.intp]
+    motion: NDArray[np.complex128]
 
 
 def mode_shapes(source: Equilibrium | Application | System, found: xarray.Dataset) -> xarray.Dataset:
@@ -24,14 +45,7 @@ def mode_shapes(source: Equilibrium | Application | System, found: xarray.Datase
 
     Raises ValueError for modes of another system, or a system that does not know its parts.
     """
-    if isinstance(source, Application):
-        source = assemble(source)
-    system = source.system if isinstance(source, Equilibrium) else source
-    shape = found["shape"].values
-    if shape.shape[1] != system.n:
-        raise ValueError(
-            f"the modes have {shape.shape[1]} coordinates and the system {system.n}; give modes of this one"
-        )
+    system, shape = _of_one_system(source, found)
     places = [name for name in system.outputs if name in system.positions]
     if not places:
         raise ValueError("the system does not know where its parts stand; pass an application")
@@ -61,3 +75,56 @@ def mode_shapes(source: Equilibrium | Application | System, found: xarray.Datase
         {"analysis": "mode shapes", **inputs_of(system.inputs)},
         {"place": (places, ""), "component": (list(COMPONENTS), ""), "axis": (["x", "y", "z"], "")},
     )
+
+
+def mode_surfaces(
+    source: Equilibrium | Application | System,
+    found: xarray.Dataset,
+    mode: int,
+    parts: Sequence[str] | None = None,
+) -> list[MovedSurface]:
+    """One of the modes that `modes` found, on the surfaces of the parts that know theirs.
+
+    parts: names of those wanted; None: all that have a surface and are joined to the first part. Bare
+    superelements and imported matrices have none.
+
+    Raises ValueError for modes of another system, a mode that is not there, a part without surface or place,
+    or when no part has one.
+    """
+    system, shape = _of_one_system(source, found)
+    if not 0 <= mode < len(shape):
+        raise ValueError(f"mode is {mode}; there are modes 0 to {len(shape) - 1}")
+    moved = []
+    for term in system.parts:
+        place = system.positions.get(f"{term.name}.{next(iter(term.element.interfaces), None)}")
+        if place is None or (parts is not None and term.name not in parts):
+            continue
+        if isinstance(term.source, Outlined):
+            outline = term.source.outline()
+            # the mean of the points, from the first interface and in the part's own frame
+            mean = outline.rows.reshape(-1, 3, outline.rows.shape[1]).mean(axis=0)
+            shift = place + arm(mean, term.rigid) - outline.points.mean(axis=0)
+            motion = (outline.rows @ (term.place @ shape[mode])).reshape(-1, 3)
+            moved.append(MovedSurface(term.name, outline.points + shift, outline.faces, motion))
+    drawn = [surface.part for surface in moved]
+    lacking = sorted(set(parts or ()) - set(drawn))
+    if lacking or not moved:
+        raise ValueError(
+            f"{lacking[0]!r} names no part that can be drawn" if lacking else "no part has a surface to draw"
+        )
+    return moved
+
+
+def _of_one_system(
+    source: Equilibrium | Application | System, found: xarray.Dataset
+) -> tuple[System, NDArray[np.complex128]]:
+    """The system, and the shapes (mode, coordinate) of its modes."""
+    if isinstance(source, Application):
+        source = assemble(source)
+    system = source.system if isinstance(source, Equilibrium) else source
+    shape = found["shape"].values
+    if shape.shape[1] != system.n:
+        raise ValueError(
+            f"the modes have {shape.shape[1]} coordinates and the system {system.n}; give modes of this one"
+        )
+    return system, shape

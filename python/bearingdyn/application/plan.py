@@ -90,7 +90,7 @@ class Plan:
         return self._rigid[part]
 
     def positions(self) -> dict[str, Array]:
-        """Where interfaces and points stand, (3,) m, from the first interface of the first part.
+        """Where interfaces, points and raceways stand, (3,) m, from the first interface of the first part.
 
         Arms follow from the rigid motions of each part; joined interfaces, springs and bearings stand at one
         place. Left out are parts without rigid motion, and those that nothing joins to the first.
@@ -101,8 +101,12 @@ class Plan:
             if R is not None:
                 names = (*element.interfaces, *element.outputs)
                 arms[part] = {name: arm(element.rows(name), R) for name in names}
+                for name, raceway in element.raceways.items():
+                    centre = np.linalg.pinv(raceway.series.rigid(raceway.arm)) @ raceway.rows
+                    arms[part][name] = arm(centre, R)
         pairs = [(c.a, c.b) for c in self.connections] + [(s.a, s.b) for s in self.springs]
         pairs += [(b.inner, b.outer) for b in self.bearings.values()]
+        pairs += [(f.ring, f.bore) for f in self.fits.values()]
         origin = {part: np.zeros(3) for part in list(arms)[:1]}
         left = [pair for pair in pairs if GROUND not in pair]
         while True:

@@ -102,11 +102,18 @@ class Harmonic:
         local[list(self.components)] = np.einsum(
             "a,acm->cm", N[0], u.reshape(-1, c, u.shape[1])[self.mesh.elements[e]]
         )
-        n = self.order
+        return np.asarray(self.turned(phi, sine) @ local)
+
+    def turned(self, phi: ArrayLike, sine: bool = False) -> Float:
+        """Displacement x, y, z at azimuths φ (...,) of unit U, V, W, (..., 3, 3); sine: the turned family."""
+        phi, n = np.asarray(phi, dtype=np.float64), self.order
         cos, sin = np.cos(n * phi), np.sin(n * phi)
-        radial, hoop, axial = (sin, -cos, sin) if sine else (cos, sin if n else 1.0, cos)
-        u_r, u_t, u_z = radial * local[0], hoop * local[1], axial * local[2]
-        return np.stack([np.cos(phi) * u_r - np.sin(phi) * u_t, np.sin(phi) * u_r + np.cos(phi) * u_t, u_z])
+        radial, hoop, axial = (sin, -cos, sin) if sine else (cos, sin if n else np.ones_like(phi), cos)
+        A = np.zeros((*phi.shape, 3, 3))
+        A[..., 0, 0], A[..., 0, 1] = np.cos(phi) * radial, -np.sin(phi) * hoop
+        A[..., 1, 0], A[..., 1, 1] = np.sin(phi) * radial, np.cos(phi) * hoop
+        A[..., 2, 2] = axial
+        return A
 
 
 def _element_matrices(

@@ -82,8 +82,13 @@ class RevolutionMesh:
     @cached_property
     def outline(self) -> Index:
         """Nodes on the surface of the body: on sides that belong to one element."""
+        return np.unique(self.outline_sides)
+
+    @property
+    def outline_sides(self) -> Index:
+        """Sides on the surface of the body, or on the axis: those that belong to one element."""
         edges, count = self._sides
-        return np.unique(edges[count == 1])
+        return np.asarray(edges[count == 1])
 
     @cached_property
     def _sides(self) -> tuple[Index, Index]:

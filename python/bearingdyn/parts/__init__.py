@@ -7,6 +7,7 @@ from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.housing import Feet, Housing
 from bearingdyn.parts.imported import Imported, NodeSet, at_radius
 from bearingdyn.parts.layer import Layer
+from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring, damping_sample
@@ -38,6 +39,7 @@ __all__ = [
     "Line",
     "MeshNodes",
     "NodeSet",
+    "Outline",
     "Patch",
     "Region",
     "Revolved",

@@ -13,6 +13,7 @@ from bearingdyn.cms import Superelement
 from bearingdyn.fem.revolution_mesh import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.layer import Layer
+from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.section import Cylinder, Groove, Line, Patch, Region, Surface, Where
 
@@ -144,3 +145,7 @@ class FlexibleRing:
     def superelement(self) -> Superelement:
         """Reduced matrices: interface, raceway coefficients, internal modes; see Revolved.superelement."""
         return self.body.superelement()
+
+    def outline(self) -> Outline:
+        """Its surface; see Revolved.outline."""
+        return self.body.outline()

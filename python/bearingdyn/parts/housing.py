@@ -12,6 +12,7 @@ import numpy as np
 from bearingdyn.cms import Superelement
 from bearingdyn.fem.solid_meshers import block_with_bore
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.solid import RigidSurface, Solid
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
@@ -118,6 +119,10 @@ class Housing:
     def superelement(self) -> Superelement:
         """The housing reduced onto its bore and feet and the fixed-interface modes up to f_max."""
         return self.body.superelement()
+
+    def outline(self) -> Outline:
+        """Its surface; see Solid.outline."""
+        return self.body.outline()
 
     @cached_property
     def body(self) -> Solid:

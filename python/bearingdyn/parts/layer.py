@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.cms import Superelement
 from bearingdyn.material import Elastic
+from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.section import Cylinder, Region, ViscoelasticSolid
 
@@ -86,6 +87,10 @@ class Layer:
     def superelement(self) -> Superelement:
         """Reduced matrices: 12 interface coordinates, and up to 5 internal ones for each further modulus."""
         return self.body.superelement()
+
+    def outline(self) -> Outline:
+        """Its surface; see Revolved.outline."""
+        return self.body.outline()
 
     def nominal_strain(self, relative: ArrayLike) -> NDArray[np.float64]:
         """Nominal strain max |t + θ × ρ| / (r_outer − r_inner) under a relative motion of the interfaces.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -25,6 +25,7 @@ from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
 from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
 from bearingdyn.material import Elastic
 from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
+from bearingdyn.parts.outline import Outline, azimuths, revolved
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.section import Cylinder, EndFace, Groove, Patch, Region, Surface, shape_moduli
@@ -211,6 +212,7 @@ class Revolved:
         Q = np.linalg.qr(self._boundaries.rigid_motion(n))[0]
         return np.asarray(np.eye(n) - Q @ Q.T)
 
+    @cached_property
     def _families(self) -> list[tuple[Harmonic, Float, int, int]]:
         """Each family with its shapes, the number of constraint shapes among them, and its copies."""
         levels = shape_moduli(self.regions, self.moduli)
@@ -219,6 +221,26 @@ class Revolved:
             h = self._harmonic(order, components)
             found.append((h, *self._shape_maker().basis(h, levels), copies))
         return found
+
+    @property
+    def _size(self) -> int:
+        """Number of coordinates of the superelement."""
+        internal = (copies * int(Psi.shape[1] - fixed) for _, Psi, fixed, copies in self._families)
+        return self._boundaries.n + sum(internal)
+
+    def _placed(self) -> Iterator[tuple[Harmonic, Float, list[tuple[NDArray[np.intp], Float]]]]:
+        """Each family with its shapes, and the coordinates and signs of these in each of its copies."""
+        end = self._boundaries.n
+        for h, Psi, fixed, copies in self._families:
+            places = []
+            for copy in range(copies):
+                index, sign = self._boundaries.place(h, copy)
+                internal = np.arange(end, end + Psi.shape[1] - fixed)
+                end += internal.size
+                places.append(
+                    (np.concatenate([index, internal]), np.concatenate([sign, np.ones(internal.size)]))
+                )
+            yield h, Psi, places
 
     def full_model(self) -> FullModel:
         """The unreduced equations of orders 0 and 1 (those that rigid interfaces excite), sparse.
@@ -241,7 +263,7 @@ class Revolved:
         materials = [part.material for part in model.viscoelastic]
         level = modulus_levels(materials, self.moduli)[0]
         families = [
-            (h, Psi, fixed, RIGID_SHAPES[h.order, h.components]) for h, Psi, fixed, _ in self._families()
+            (h, Psi, fixed, RIGID_SHAPES[h.order, h.components]) for h, Psi, fixed, _ in self._families
         ]
         return full_basis(model, families, level)
 
@@ -258,9 +280,7 @@ class Revolved:
         """
         if not self.interfaces and not self.grooves:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
-        families = self._families()
-        n = self._boundaries.n
-        n += sum(copies * (Psi.shape[1] - fixed) for _, Psi, fixed, copies in families)
+        n = self._size
         rubbers: list[Any] = []
         owner = np.full(len(self.regions), -1)
         for i, q in enumerate(self.regions):
@@ -274,8 +294,7 @@ class Revolved:
         M, K, E = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
         H = [np.zeros((n, n)) for _ in rubbers]
         rows = {name: np.zeros((3, n)) for name in self.outputs}
-        end = self._boundaries.n
-        for h, Psi, fixed, copies in families:
+        for h, Psi, places in self._placed():
             parts = [(M, h.mass_matrix(self._density)), (K, h.stiffness(bulk, shear))]
             parts += [(E, h.stiffness(np.where(owner < 0, bulk, 0.0), shear))]
             parts += [
@@ -283,14 +302,7 @@ class Revolved:
             ]
             reduced = [(full, Psi.T @ (A @ Psi)) for full, A in parts]
             whole = h.complete(Psi.copy())
-            for copy in range(copies):
-                index, sign = self._boundaries.place(h, copy)
-                internal = np.arange(end, end + Psi.shape[1] - fixed)
-                index, sign = (
-                    np.concatenate([index, internal]),
-                    np.concatenate([sign, np.ones(internal.size)]),
-                )
-                end += internal.size
+            for copy, (index, sign) in enumerate(places):
                 for full, a in reduced:
                     full[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (a + a.T)
                 for name, (r, z, phi) in self.outputs.items():
@@ -309,6 +321,26 @@ class Revolved:
                 for name, t in self._boundaries.tracks.items()
             },
         )
+
+    def outline(self) -> Outline:
+        """Its surface, revolved.
+
+        Raises ValueError if moduli cannot be chosen for a material.
+        """
+        sides = self.mesh.outline_sides
+        halves = np.vstack([sides[:, :2], sides[:, 1:]])
+        points, faces, nodes = revolved(self.mesh.r, self.mesh.z, halves)
+        n = self._size
+        rows = np.zeros((nodes.size, len(azimuths()), 3, n))
+        for h, Psi, places in self._placed():
+            shapes = np.zeros((nodes.size, 3, Psi.shape[1]))
+            shapes[:, list(h.components)] = h.complete(Psi.copy()).reshape(
+                self.mesh.r.size, len(h.components), -1
+            )[nodes]
+            for copy, (index, sign) in enumerate(places):
+                turned = h.turned(azimuths(), sine=copy == 1)
+                rows[..., index] += sign * (turned @ shapes[:, None])
+        return Outline(points, faces, rows.reshape(-1, n))
 
     def modes(
         self, order: int, count: int, modulus: float | None = None, fixed: Iterable[str] = ()

@@ -9,6 +9,7 @@ import numpy as np
 
 from bearingdyn.cms import Superelement
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.outline import Outline, box, carried, cylinder
 
 
 @dataclass(frozen=True)
@@ -18,6 +19,7 @@ class RigidBody:
     mass: kg. inertia: (Ix, Iy, Iz), kg m², about the centre; the axes x, y, z are principal.
     rotating: the body turns with the shaft about z; its polar inertia is then Iz, and Ix must equal Iy, for
         the inertia of an unequal body would vary with the angle.
+    measures: (r_inner, r_outer, width), m, of the ring it is drawn as; None: the box of its inertia.
 
     Raises ValueError for values that are not positive or that no body can have.
 
@@ -30,6 +32,7 @@ class RigidBody:
     mass: float
     inertia: tuple[float, float, float]
     rotating: bool = False
+    measures: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         if not (self.mass > 0 and math.isfinite(self.mass)):
@@ -69,7 +72,8 @@ class RigidBody:
         mass = material.density * math.pi * (r_outer**2 - r_inner**2) * width
         square = r_inner**2 + r_outer**2
         across = mass * (square / 4.0 + width**2 / 12.0)
-        return cls(mass, (across, across, mass * square / 2.0), rotating)
+        inertia = (across, across, mass * square / 2.0)
+        return cls(mass, inertia, rotating, (r_inner, r_outer, width))
 
     def superelement(self) -> Superelement:
         """Six coordinates, those of the interface "centre"; gyroscopic when rotating."""
@@ -83,3 +87,15 @@ class RigidBody:
             G=G,
             interfaces={"centre": np.arange(6)},
         )
+
+    def outline(self) -> Outline:
+        """The ring of its measures, or the box of evenly spread mass that has its mass and inertia."""
+        if self.measures is not None:
+            r_inner, r_outer, width = self.measures
+            points, faces = cylinder(r_inner, r_outer, (-0.5 * width, 0.5 * width))
+        else:
+            # I_x = m (b² + c²)/12, and so on
+            moments = np.array(self.inertia)
+            sides = np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments) / self.mass, 0.0))
+            points, faces = box(sides)
+        return Outline(points, faces, carried(np.eye(6), points))

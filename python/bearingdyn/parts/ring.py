@@ -8,6 +8,7 @@ from functools import cached_property
 
 from bearingdyn.cms import Superelement
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.section import Cylinder, Region, ViscoelasticSolid
 
@@ -55,6 +56,10 @@ class Ring:
     def superelement(self) -> Superelement:
         """Reduced matrices with both faces rigid."""
         return self.body.superelement()
+
+    def outline(self) -> Outline:
+        """Its surface; see Revolved.outline."""
+        return self.body.outline()
 
     def modes(self, order: int, count: int, fixed: Iterable[str] = ()) -> RevolvedModes:
         """Lowest modes of one Fourier order with its faces free (elastic), or some of them held still."""

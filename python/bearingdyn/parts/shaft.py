@@ -11,9 +11,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bearingdyn.cms import RigidInterface, Superelement, reduce_free_body
+from bearingdyn.cms import Basis, FullModel, RigidInterface, Superelement, basis_of, project
 from bearingdyn.fem.beam import Section, assemble, bending_wavelength
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 
 ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at f_max, 2e-4 at half of it
 
@@ -142,8 +143,8 @@ class Shaft:
             sections += [self.sections[own]] * count
         return np.concatenate(z), sections
 
-    def superelement(self) -> Superelement:
-        """The shaft reduced onto its seats and the fixed-interface modes up to f_max."""
+    def full_model(self) -> FullModel:
+        """The unreduced equations: sparse matrices, six coordinates at each of `nodes`."""
         z, sections = self.nodes()
         M, K, G = assemble(z, sections, self.material)
         n = 6 * len(z)
@@ -166,16 +167,44 @@ class Shaft:
             name: RigidInterface(coordinates(place), np.eye(6), np.array([0.0, 0.0, place]))
             for name, place in self.seats.items()
         }
-        return reduce_free_body(
-            M,
-            K,
-            seats,
-            {name: selection(place) for name, place in self.points.items()},
-            G=G,
-            spin=spin_generator(len(z)),
-            damping=self.damping,
-            f_max=self.f_max,
-        )
+        points = {name: selection(place) for name, place in self.points.items()}
+        return FullModel(M, K, seats, points, G=G, spin=spin_generator(len(z)))
+
+    def superelement(self) -> Superelement:
+        """The shaft reduced onto its seats and the fixed-interface modes up to f_max."""
+        model = self.full_model()
+        return project(model, self._basis(model), damping=self.damping)
+
+    def _basis(self, model: FullModel) -> Basis:
+        return basis_of(model, f_max=self.f_max, inertia=0)
+
+    def outline(self) -> Outline:
+        """Its surface at every node, plane sections staying plane.
+
+        Discs, of which no more is known, are solid cylinders of their mass and moments.
+        """
+        z, sections = self.nodes()
+        motion = self._basis(self.full_model()).Psi.reshape(len(z), 6, -1)
+        # once around the section: out along the outside, back along the bore
+        ends = np.repeat(np.arange(len(z)), 2)[1:-1]
+        d = np.repeat([(s.d_outer, s.d_inner) for s in sections], 2, axis=0)
+        corners = np.array([[*ends, *ends[::-1]], [*d[:, 0], *d[::-1, 1]]])
+        (own, d_at), line = np.unique(corners, axis=1, return_inverse=True)
+        line = line.ravel()
+        nodes = own.astype(np.intp)
+        points, faces, used = revolved(0.5 * d_at, z[nodes], np.stack([line, np.roll(line, -1)], axis=-1))
+        drawn = [(points, faces, np.repeat(nodes[used], len(points) // used.size))]
+        for disc in self.discs:
+            radius = math.sqrt(2.0 * disc.Ip / disc.mass)
+            half = 0.5 * math.sqrt(max(12.0 * disc.Id / disc.mass - 3.0 * radius**2, 0.0))
+            node = int(np.argmin(np.abs(z - disc.z)))
+            points, faces = cylinder(0.0, radius, (disc.z - half, disc.z + half))
+            drawn.append((points, faces, np.full(len(points), node)))
+        points, owner = (np.concatenate([each[k] for each in drawn]) for k in (0, 2))
+        starts = np.cumsum([0, *(len(each[0]) for each in drawn)])
+        faces = np.concatenate([each[1] + start for each, start in zip(drawn, starts, strict=False)])
+        arms = points - z[owner, None] * np.array([0.0, 0.0, 1.0])
+        return Outline(points, faces, carried(motion[owner], arms))
 
 
 def spin_generator(n_nodes: int) -> scipy.sparse.csr_matrix:

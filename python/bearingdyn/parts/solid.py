@@ -25,8 +25,10 @@ from bearingdyn.cms import (
 )
 from bearingdyn.fem.eigen import factorise, rigid_motion
 from bearingdyn.fem.solid import assemble_solid
+from bearingdyn.fem.solid_element import face_shapes
 from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
 from bearingdyn.material import Elastic
+from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.section import ViscoelasticSolid
 
 Float = NDArray[np.float64]
@@ -280,6 +282,27 @@ class Solid:
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
         return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
+
+    def outline(self) -> Outline:
+        """The faces of its elements on the boundary, each as triangles around its middle."""
+        p, boundary, corners = self.mesh.points, self.mesh.boundary, len(self.mesh.kind.faces[0])
+        f = len(boundary)
+        around = np.arange(2 * corners).reshape(2, -1).T.ravel()  # corner, middle of the side, corner, ...
+        used, ring = np.unique(boundary[:, around], return_inverse=True)
+        ring = ring.reshape(f, -1)
+        middle = np.broadcast_to(used.size + np.arange(f)[:, None], ring.shape)
+        # weight of every node in every point: the nodes themselves, and the shape functions at the middles
+        centre = np.full((1, 2), 0.5 if corners == 4 else 1.0 / 3.0)
+        N = face_shapes(self.mesh.kind, centre)[0]
+        at = (np.repeat(np.arange(f), boundary.shape[1]), boundary.ravel())
+        W = scipy.sparse.vstack(
+            [
+                scipy.sparse.eye(len(p), format="csr")[used],
+                scipy.sparse.csr_matrix((np.tile(N[0], f), at), shape=(f, len(p))),
+            ]
+        )
+        faces = np.stack([ring, np.roll(ring, -1, axis=1), middle], axis=-1).reshape(-1, 3)
+        return Outline(W @ p, faces, scipy.sparse.kron(W, scipy.sparse.eye(3)) @ self._basis.Psi)
 
     def _radiation(self, name: str) -> Surface:
         samples, rows = self.surface(name)

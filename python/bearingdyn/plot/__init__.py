@@ -11,6 +11,7 @@ from bearingdyn.plot.modes import campbell, mode_shape
 from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum, unbalance_response
 from bearingdyn.plot.orders import order_spectrum, orders
 from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
+from bearingdyn.plot.surfaces import mode_geometry, mode_scene
 from bearingdyn.plot.traces import time
 from bearingdyn.plot.trade_off import trade_off
 from bearingdyn.plot.waterfall import waterfall
@@ -28,6 +29,8 @@ __all__ = [
     "layer_stiffness",
     "load_distribution",
     "master",
+    "mode_geometry",
+    "mode_scene",
     "mode_shape",
     "orbit",
     "order_spectrum",

@@ -19,7 +19,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from bearingdyn import core
-from bearingdyn.application import COMPONENTS
+from bearingdyn.application import COMPONENTS, Part
 from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
 from bearingdyn.bearing.series import RIGID, RacewaySeries
 from bearingdyn.cms import Superelement, coupled_blocks
@@ -80,13 +80,14 @@ class PartTerm:
     """One part: its own coordinates are place @ x, place (m, n).
 
     rigid (m, 6): its coordinates in unit rigid motions x, y, z, θx, θy, θz of its first interface; NaN where
-    it holds itself.
+    it holds itself. source: what it was reduced from.
     """
 
     name: str
     element: Superelement
     place: Array
     rigid: Array
+    source: Part
 
 
 @dataclass(frozen=True, eq=False)

@@ -46,7 +46,7 @@ def assemble(app: Application) -> System:
         R = app.rigid_shapes(part)
         rigid = np.full((element.n, 6), np.nan) if R is None else R
         inertia += select[part].T @ (element.M @ rigid[:, :3])
-        terms.append(PartTerm(part, element, select[part], rigid))
+        terms.append(PartTerm(part, element, select[part], rigid, app.sources[part]))
         for term in element.viscoelastic:
             layers.append(LayerTerm(part, term.material, select[part].T @ factor(term.H)))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
