@@ -35,10 +35,12 @@ def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
     if out is not None:
         out.write_text(model.to_json() + "\n", encoding="utf-8")
     if figure is not None:
+        from matplotlib.figure import Figure
+
         from bearingdyn.plot import master
 
-        drawn = master(curve, model).get_figure()
-        assert drawn is not None  # the axes were made in one
+        drawn = Figure(figsize=(6.2, 5.0), layout="constrained")
+        master(curve, model, drawn.add_subplot())
         drawn.savefig(figure)
     if arguments.json:
         return json.dumps({**_fit_record(curve, model), "data": arguments.data}, indent=1), GOOD
