@@ -143,7 +143,7 @@ def test_loss_factor_of_a_layer_shows_in_its_dynamic_stiffness():
     """A massless ring on a layer: 1/H = K*(ω), whose loss factor in torsion is that of the rubber itself."""
     app = Application()
     app.add("ring", RigidBody(1e-9, (1e-13,) * 3))
-    rubber = Maxwell(G0=1e6, G=[2e6, 3e6], tau=[1e-3, 1e-4], eta0=3.0, K=2e9, density=1e-6)
+    rubber = Maxwell(G0=1e6, G=[2e6, 3e6], tau=[1e-3, 1e-4], eta0=3.0, K=2e9, density=1e-3)
     layer = Layer(0.0175, 0.020, 0.011, rubber, moduli=(1e6, 6e6))
     app.add("layer", layer)
     app.connect("ring.centre", "layer.inner")
@@ -230,7 +230,7 @@ def test_layer_at_its_modulus_follows_the_full_model():
     app = Application()
     app.add("ring", RigidBody(1e-9, (1e-13,) * 3))
     app.add(
-        "layer", Layer(0.036, 0.039, 0.019, Maxwell(1e6, [2e6, 3e6], [1e-3, 1e-4], 3.0, K=2e9, density=1e-6))
+        "layer", Layer(0.036, 0.039, 0.019, Maxwell(1e6, [2e6, 3e6], [1e-3, 1e-4], 3.0, K=2e9, density=1e-3))
     )
     app.connect("ring.centre", "layer.inner")
     app.ground("layer.outer")

@@ -26,7 +26,7 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 
 # A room may import the rooms of earlier rows, and nothing beside or after it. "" is bearingdyn/__init__.py.
 ORDER: tuple[tuple[str, ...], ...] = (
-    ("core", "inputs"),
+    ("core", "inputs", "magnitude", "notice"),
     ("material",),
     ("bearing", "fem"),
     ("cms",),

@@ -163,7 +163,7 @@ HEAD = "frequency_Hz,temperature_C,G_storage_Pa,G_loss_Pa\n"
         ("frequency_Hz,G_storage_Pa,G_loss_Pa\n1,5e6,1e6\n", "line 1: no column recognised as temperature"),
         ("a,b\n1,2\n", "no column recognised as frequency, temperature, storage, loss"),
         (
-            "f_Hz,temperature,G_storage_Pa,G_loss_Pa\n1,20,5e6,1e6\n",
+            "f_Hz,temperature,G_storage_Pa,G_loss_Pa\n1,293,5e6,1e6\n",
             r"no unit for the temperature: known are c",
         ),
         (

@@ -54,7 +54,7 @@ def beam(n=24, L=0.3, d=0.02, soft=(10, 14), **change) -> FullModel:
             for name, i in (("a", 2), ("b", n - 2))
         },
         "outputs": {"end": np.eye(6, 6 * n + 6), "middle": np.eye(6, 6 * n + 6, 6 * (n // 2))[:3]},
-        "viscoelastic": (Viscoelastic(Maxwell(1e9, [6e10], [2e-4], K=1e10, density=1e3), H.tocsr()),),
+        "viscoelastic": (Viscoelastic(Maxwell(1e9, [6e10], [2e-4], K=1e11, density=1e3), H.tocsr()),),
     }
     return FullModel(**(given | change))
 

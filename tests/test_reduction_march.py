@@ -57,7 +57,7 @@ def test_harmonic_load_brings_the_complex_stiffness_and_mass():
     """A mass on a Maxwell spring: after the start has died, F/(2G*H − mω²) to the scheme's (ωΔt)²/12."""
     m, H, f = 0.5, 0.02, 200.0
     w = 2 * math.pi * f
-    material = Maxwell(1e6, [3e6], [1e-3], eta0=50.0, K=1e9, density=1.0)
+    material = Maxwell(1e6, [3e6], [1e-3], eta0=50.0, K=1e9, density=1e3)
     model = FullModel(
         m * np.eye(6),
         np.zeros((6, 6)),

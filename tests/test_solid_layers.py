@@ -17,6 +17,7 @@ from bearingdyn.fem.solid_mesh import SolidMesh, second_order
 from bearingdyn.fem.solid_meshers import box_mesh, o_ring_mesh, ring_mesh
 from bearingdyn.material import STEEL, Elastic, Maxwell
 from bearingdyn.parts import Layer, RigidBody, RigidSurface, Solid, damping_sample
+from verified.row import as_printed, unit_rubber
 
 pytest.importorskip("skfem")
 
@@ -25,16 +26,12 @@ RUBBER = Maxwell(1e6, [3e6], [1e-4], K=2e9, density=1200.0)
 AXES = {"inner": RigidSurface("inner", "axis"), "outer": RigidSurface("outer", "axis")}
 
 
-def unit_shear(nu):
-    return Elastic(2 * (1 + nu), nu, 1.0)
-
-
 def strip_over_theory(mesh, incompressible):
     """A bonded strip, ν = 0.49995, 20 wide and 1 thick, pressed in plane strain, over the formula.
 
     Pressure p'' = 12 G/t² (p/K − ε): E = K (1 − tanh λb/λb), λ² = 12 G/K t², and 4/3 G of the stretch itself.
     """
-    material, half = unit_shear(0.49995), 10.0
+    material, half = unit_rubber(0.49995), 10.0
     p, K = mesh.points, assemble_solid(mesh, incompressible=incompressible).stiffness(material)
     above, below = p[:, 1] > 1 - 1e-9, p[:, 1] < 1e-9
     u, held = np.zeros_like(p), np.zeros(p.shape, dtype=bool)
@@ -81,9 +78,9 @@ def test_tetrahedra_do_not_lock_either_but_converge_slowly():
 
 
 def test_bonded_ring_of_bricks_is_as_stiff_as_the_body_of_revolution():
-    material = unit_shear(0.499)
-    exact = np.diag(Layer(26.0, 28.0, 16.0, material).stiffness().real)[:6]
-    mesh = ring_mesh((26.0, 28.0), 16.0, across=3, along=9, around=24)
+    material = unit_rubber(0.499)
+    exact = np.diag(Layer(26 * MM, 28 * MM, 16 * MM, material).stiffness().real)[:6]
+    mesh = ring_mesh((26 * MM, 28 * MM), 16 * MM, across=3, along=9, around=24)
     found = np.diag(Solid(mesh, material, AXES, 0.0).stiffness().real)[:6]
     print("ring of bricks over revolution, ν = 0.499, x y z θx θy θz:", np.round(found / exact, 5))
     # asked for to 0.5 %
@@ -121,16 +118,17 @@ def test_sample_of_bricks_vibrates_as_the_body_of_revolution():
 
 
 def pad(thickness, around):
-    mesh = ring_mesh((20.0, 20.0 + thickness), 20.0, (-math.pi / 4, math.pi / 4), across=2, around=around)
-    return np.diag(Solid(mesh, unit_shear(0.3), AXES, 0.0).stiffness().real)[:6]
+    radii = (20.0 * MM, (20.0 + thickness) * MM)
+    mesh = ring_mesh(radii, 20.0 * MM, (-math.pi / 4, math.pi / 4), across=2, around=around)
+    return np.diag(as_printed(Solid(mesh, unit_rubber(0.3), AXES, 0.0).stiffness()))[:6]
 
 
 def test_thin_pads_carry_shear_and_pressure_by_their_area():
     # a quarter of a ring about the x axis: G/t an area in shear and (K + 4/3 G)/t in pressure
-    material, r, width = unit_shear(0.3), 20.0, 20.0
+    material, r, width = unit_rubber(0.3), 20.0, 20.0
     errors = []
     for t in (1.0, 0.25):
-        shear, pressure, radius = material.G / t, (material.K + 4 / 3 * material.G) / t, r + t / 2
+        shear, pressure, radius = 1 / t, (material.K / material.G + 4 / 3) / t, r + t / 2
         found, area = pad(t, 8), radius * width
         wide, slim = math.pi / 4 + 0.5, math.pi / 4 - 0.5  # ∫cos² and ∫sin² over the quarter
         theory = np.array(
@@ -150,7 +148,7 @@ def test_thin_pads_carry_shear_and_pressure_by_their_area():
 
 
 def test_four_pads_make_a_ring_but_for_their_edges():
-    ring = np.diag(Layer(20.0, 20.25, 20.0, unit_shear(0.3)).stiffness().real)
+    ring = np.diag(as_printed(Layer(20.0 * MM, 20.25 * MM, 20.0 * MM, unit_rubber(0.3)).stiffness()))
     one = pad(0.25, 8)
     for name, four, whole in (
         ("radial", 2 * (one[0] + one[1]), ring[0]),
@@ -171,7 +169,8 @@ def test_cord_of_an_o_ring_shears_as_a_disc_between_two_arcs():
         beta = math.radians(half)
         length = (-0.5 / radius, 0.5 / radius)
         mesh = o_ring_mesh(radius, 2.0, 2.0 * math.sin(beta), length, across=across, around=1)
-        K = assemble_solid(mesh).stiffness(unit_shear(0.3))
+        material = unit_rubber(0.3)
+        K = assemble_solid(mesh).stiffness(material) / material.G
         u, held = np.zeros(mesh.points.shape), np.ones(mesh.points.shape, dtype=bool)
         held[:, 1] = False
         held[mesh.surface("inner"), 1] = held[mesh.surface("outer"), 1] = True

@@ -7,6 +7,9 @@ import math
 from collections.abc import Iterable
 from decimal import Decimal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bearingdyn.material import Elastic
 
 MM = 1e-3
@@ -59,3 +62,14 @@ def to_the_digit(section: str, source: str, cases: Iterable[tuple[str, str, floa
 
 def steel(E: float) -> Elastic:
     return Elastic(E, 0.3, 7850.0)
+
+
+def unit_rubber(nu: float) -> Elastic:
+    """G = 1 MPa: bodies in mm then have the stiffnesses of tables for G = 1, by `as_printed`."""
+    return Elastic(2e6 * (1 + nu), nu, 1200.0)
+
+
+def as_printed(K: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Stiffness (6 i, 6 i) of bodies in mm with G = 1 MPa, as for G = 1 and the bare lengths."""
+    s = np.tile([10**-1.5] * 3 + [10**1.5] * 3, len(K) // 6)
+    return np.asarray(K.real * np.outer(s, s))

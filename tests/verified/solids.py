@@ -14,7 +14,7 @@ from bearingdyn.fem import assemble_solid, box_mesh, ring_mesh
 from bearingdyn.fem.eigen import lowest_modes
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts import RigidSurface, Solid
-from verified.row import INDEPENDENT, MM, Row, rows
+from verified.row import INDEPENDENT, MM, Row, as_printed, rows, unit_rubber
 
 AXES = {"inner": RigidSurface("inner", "axis"), "outer": RigidSurface("outer", "axis")}
 
@@ -77,8 +77,8 @@ def bonded() -> list[Row]:
     table = {0.49: (489.87, 4281.3, 107453, 180620.6), 0.499: (490.43, 5708, 109280, 180620.6)}
     cases = []
     for nu, wanted in table.items():
-        mesh = ring_mesh((17.5, 20.0), 11.0)
-        K = np.diag(Solid(mesh, Elastic(2 * (1 + nu), nu, 1.0), AXES, 0.0).stiffness().real)
+        mesh = ring_mesh((17.5 * MM, 20.0 * MM), 11.0 * MM)
+        K = np.diag(as_printed(Solid(mesh, unit_rubber(nu), AXES, 0.0).stiffness()))
         for name, want, at in zip(("axial", "radial", "tilt", "torsion"), wanted, (2, 0, 3, 5), strict=True):
             cases.append((f"bonded ring of bricks 17.5/20×11, ν = {nu:g}, {name}", want, K[at]))
     rings = rows("§3.7", 5e-3, "asked for to 0.5 %, on 4×8×24 bricks", INDEPENDENT, cases)
@@ -102,9 +102,10 @@ def _sample() -> list[Row]:
 
 def _strip() -> list[Row]:
     nu, half = 0.49995, 10.0
-    material = Elastic(2 * (1 + nu), nu, 1.0)
-    slope = math.sqrt(12 / material.K) * half
-    theory = 2 * half * (material.K * (1 - math.tanh(slope) / slope) + 4 / 3)
+    material = unit_rubber(nu)
+    bulk = material.K / material.G
+    slope = math.sqrt(12 / bulk) * half
+    theory = 2 * half * (bulk * (1 - math.tanh(slope) / slope) + 4 / 3)
     cases = []
     for element in ("hex20", "hex27"):
         mesh = box_mesh(np.linspace(-half, half, 21), np.linspace(0, 1, 3), [0.0, 1.0], element)
@@ -115,13 +116,13 @@ def _strip() -> list[Row]:
         held[mesh.surface("y+")] = held[mesh.surface("y-")] = True
         x, free = u.ravel(), np.flatnonzero(~held.ravel())
         x[free] = -scipy.linalg.solve(K[free][:, free].toarray(), K[free] @ x, assume_a="pos")
-        cases.append((f"bonded strip 20×1 pressed, ν = {nu:g}, {element}", theory, x @ (K @ x)))
+        cases.append((f"bonded strip 20×1 pressed, ν = {nu:g}, {element}", theory, x @ (K @ x) / material.G))
     reason = "lubrication theory leaves out the free edges; elements that lock err by 15 % (hex20) and more"
     return [Row(n, "thin bonded strip, compressible, closed form", w, g, 0.015, reason) for n, w, g in cases]
 
 
 def _pad() -> list[Row]:
-    r, t, width, material = 20.0, 0.25, 20.0, Elastic(2.6, 0.3, 1.0)
+    r, t, width, material = 20.0, 0.25, 20.0, unit_rubber(0.3)
     mesh = ring_mesh((r, r + t), width, (-math.pi / 4, math.pi / 4), across=2, around=8)
     K = np.diag(Solid(mesh, material, AXES, 0.0).stiffness().real)
     shear, pressure, area = material.G / t, (material.K + 4 / 3 * material.G) / t, (r + t / 2) * width
@@ -132,4 +133,7 @@ def _pad() -> list[Row]:
         ("quarter-ring pad, thin: axial shear, GA/t", area * math.pi / 2 * shear, K[2]),
     ]
     reason = "edges relax over the depth of the thickness"
-    return [Row(n, "thin bonded pad, closed form", w, float(g), t / width, reason) for n, w, g in cases]
+    return [
+        Row(n, "thin bonded pad, closed form", w / material.G, float(g) / material.G, t / width, reason)
+        for n, w, g in cases
+    ]

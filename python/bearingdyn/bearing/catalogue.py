@@ -12,6 +12,7 @@ from typing import Any, Literal, NamedTuple
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.checks import positive, require
+from bearingdyn.magnitude import check_length
 
 Kind = Literal["deep groove", "angular contact"]
 
@@ -78,6 +79,7 @@ def estimate(
     """
     d, D = positive("bore", bore), positive("outside", outside)
     B = positive("width", width)
+    check_length("outside", D)
     require(D > d, "outside", outside, f"must exceed the bore of {bore!r} m")
     require(
         kind in ("deep groove", "angular contact"), "kind", kind, 'give "deep groove" or "angular contact"'
@@ -159,20 +161,20 @@ CATALOGUE: dict[str, Entry] = _table()
 """60xx, 62xx, 63xx (deep groove), 70xx (15°), 72xx (40°) with bores of 10 to 50 mm."""
 
 
-def entry(designation: str) -> Entry:
+def entry(designation: str | int) -> Entry:
     """Typical geometry of a designation, its source beside it; ValueError if it is not listed."""
     listed = ", ".join(CATALOGUE)
-    require(designation in CATALOGUE, "designation", designation, f"must be one of {listed}")
-    return CATALOGUE[designation]
+    require(str(designation) in CATALOGUE, "designation", designation, f"must be one of {listed}")
+    return CATALOGUE[str(designation)]
 
 
-def bearing(designation: str, *, clearance: float | None = None, **keywords: Any) -> BallBearing:
+def bearing(designation: str | int, *, clearance: float | None = None, **keywords: Any) -> BallBearing:
     """BallBearing with the typical internal geometry of a designation.
 
     Parameters
     ----------
     designation
-        A key of CATALOGUE, such as "6305" or "7205".
+        A key of CATALOGUE, such as "6305" or "7205"; the number 6305 will do.
     clearance
         Diametral clearance, m: of a deep groove bearing, and of no other.
     **keywords

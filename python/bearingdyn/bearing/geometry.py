@@ -12,6 +12,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 from bearingdyn.bearing.checks import nonnegative, number, positive, require
+from bearingdyn.magnitude import LARGEST_BALL, LARGEST_BODY, check_length
+
+PRELOADED = (
+    "an interference that leaves none is not modelled: give clearance=0 and load the bearing along its axis, "
+    "or give contact_angle"
+)
 
 
 class Frequencies(NamedTuple):
@@ -49,7 +55,8 @@ class Geometry:
     Raises
     ------
     ValueError
-        If a value is out of range, the balls do not fit side by side, or not exactly one of clearance and
+        If a value is out of range (Dw above 0.5 m and Dpw above 10 m are in mm, a clearance above Dw/10 is in
+        µm), the balls do not fit side by side, or not exactly one of clearance and
         contact_angle is given.
     """
 
@@ -66,6 +73,8 @@ class Geometry:
         require(n >= 3 and n == int(n), "Z", self.Z, "the number of balls must be a whole number, at least 3")
         positive("Dw", self.Dw, "the ball diameter in metres must be positive and finite")
         positive("Dpw", self.Dpw, "the pitch diameter in metres must be positive and finite")
+        check_length("Dw", self.Dw, LARGEST_BALL)
+        check_length("Dpw", self.Dpw, LARGEST_BODY)
         require(
             self.Dpw * math.sin(math.pi / n) >= self.Dw,
             "Dpw",
@@ -86,9 +95,12 @@ class Geometry:
             "give exactly one: clearance (diametral, m; deep groove) or contact_angle (rad; angular contact)",
         )
         if self.clearance is not None:
-            Pd = nonnegative(
+            Pd = number(
                 "clearance", self.clearance, "the diametral clearance in metres must be zero or positive"
             )
+            require(Pd >= 0, "clearance", self.clearance, f"must be zero or positive, in metres; {PRELOADED}")
+            unit = f"above Dw/10 = {0.1 * self.Dw:.6g} m: is it in µm? the clearance is in m"
+            require(Pd <= 0.1 * self.Dw, "clearance", self.clearance, unit)
             require(
                 Pd < 2 * self.A,
                 "clearance",

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.checks import nonnegative, number, positive, require
+from bearingdyn.bearing.geometry import PRELOADED
+from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 
 _STEEL_EXPANSION = 11.5e-6
@@ -90,6 +92,7 @@ class Mounting:
         require(
             positive("outside", self.outside) > self.bore, "outside", self.outside, "must exceed the bore"
         )
+        check_length("outside", self.outside)
         for name in ("inner", "outer", "balls"):
             number(name, getattr(self, name), "must be a finite temperature difference in K")
         nonnegative("expansion", self.expansion)
@@ -128,7 +131,10 @@ class Mounting:
             If less than no clearance is left: the model has no rings pressed together by their balls.
         """
         left = bearing.geometry.Pd + self.clearance_change(bearing)
-        why = "fits and temperatures leave less than none; choose looser fits or a larger clearance"
+        why = (
+            "fits and temperatures leave less than none; choose looser fits or a larger clearance "
+            f"({PRELOADED})"
+        )
         require(left >= 0, "clearance", left, why)
         if bearing.clearance is not None:
             return dataclasses.replace(bearing, clearance=left)

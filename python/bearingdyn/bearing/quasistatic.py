@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +12,7 @@ from bearingdyn.bearing.ball_bearing import STATIC_PRESSURE, BallBearing
 from bearingdyn.bearing.checks import number, positive, require
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.running import Running
+from bearingdyn.notice import warn
 
 Array = NDArray[np.float64]
 
@@ -112,7 +112,7 @@ def _warn_of_pressure(race: str, p: Array) -> None:
         j = int(np.argmax(p))
         others = f", and {over.size - 1} more above it" if over.size > 1 else ""
         text = f"ball {j + 1}: {p[j] / 1e9:.3g} GPa on the {race} race, over 4.2 GPa (ISO 76){others}"
-        warnings.warn(text, BearingWarning, stacklevel=3)
+        warn(text, BearingWarning)
 
 
 def _check_shoulder(
@@ -128,7 +128,7 @@ def _check_shoulder(
         raise ValueError(f"load beyond the shoulder: {where}, {limit}; less axial load, or a higher shoulder")
     if reach[j] > edge:
         text = f"{where}, the ellipse ends at {math.degrees(reach[j]):.3g}°, {limit} and cuts it"
-        warnings.warn(text, BearingWarning, stacklevel=3)
+        warn(text, BearingWarning)
 
 
 @dataclass(frozen=True, eq=False)

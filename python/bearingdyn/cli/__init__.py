@@ -108,10 +108,27 @@ def _parser() -> argparse.ArgumentParser:
     )
     fit.add_argument("--K", type=float, help=f"bulk modulus, Pa (default {BULK_MODULUS:g}, usual for rubber)")
     fit.add_argument("--density", type=float, help=f"kg/m3 (default {DENSITY:g}, usual for rubber)")
+    fit.add_argument(
+        "--units",
+        nargs="+",
+        default=[],
+        metavar="QUANTITY=UNIT",
+        help="units the header does not name: storage=kPa loss=kPa temperature=C frequency=Hz",
+    )
+    fit.add_argument(
+        "--columns",
+        nargs="+",
+        default=[],
+        metavar="QUANTITY=TITLE",
+        help="""titles of columns the header does not make plain: storage="G' (kPa)" """,
+    )
     fit.add_argument("--mode", choices=("shear", "tension"), help="where the header does not say it")
     fit.add_argument("--f-max", type=float, metavar="F", help="leave out what was measured above, Hz")
     fit.add_argument("--no-clean", action="store_true", help="keep points that look like fixture resonance")
     fit.add_argument("--out", metavar="FILE", help="write the model there, as Maxwell.from_json reads it")
+    fit.add_argument(
+        "--plot", metavar="FILE", help="draw the master curve and the model, as a PNG, PDF or SVG"
+    )
 
     show = add(
         "show",

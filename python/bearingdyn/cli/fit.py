@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bearingdyn.cli.outcome import GOOD
-from bearingdyn.material import MasterCurve, Maxwell, fit_maxwell, master_curve, read_dma
+from bearingdyn.material import DMAData, MasterCurve, Maxwell, fit_maxwell, master_curve, read_dma
 
 # usual for rubber; said in the table where they were not given
 BULK_MODULUS = 2e9
@@ -17,12 +17,10 @@ DENSITY = 1200.0
 
 def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
     """The fitted model, written to --out as well."""
-    out = None if arguments.out is None else Path(arguments.out)
-    if out is not None and not out.resolve().parent.is_dir():
-        raise ValueError(f"--out {out}: there is no folder {out.parent}")
+    out, figure = _target("--out", arguments.out), _target("--plot", arguments.plot)
     if arguments.f_max is not None and not arguments.f_max > 0:
         raise ValueError(f"--f-max is {arguments.f_max}; it must be a positive frequency, in Hz")
-    dma = read_dma(arguments.data, arguments.mode)
+    dma = _read(arguments)
     if arguments.f_max is not None:
         dma = dma.select(f_max=arguments.f_max)
     curve = master_curve(dma, T_ref=arguments.T_ref, law=arguments.law, clean=not arguments.no_clean)
@@ -36,12 +34,54 @@ def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     if out is not None:
         out.write_text(model.to_json() + "\n", encoding="utf-8")
+    if figure is not None:
+        from matplotlib.figure import Figure
+
+        from bearingdyn.plot import master
+
+        drawn = Figure(figsize=(6.2, 5.0), layout="constrained")
+        master(curve, model, drawn.add_subplot())
+        drawn.savefig(figure)
     if arguments.json:
         return json.dumps({**_fit_record(curve, model), "data": arguments.data}, indent=1), GOOD
     text = _fit_table(
         curve, model, K_given=arguments.K is not None, density_given=arguments.density is not None
     )
-    return (text if out is None else f"{text}\nwritten to {out}"), GOOD
+    return "\n".join([text, *(f"written to {path}" for path in (out, figure) if path is not None)]), GOOD
+
+
+def _target(option: str, name: str | None) -> Path | None:
+    """A file to write, whose folder is there."""
+    path = None if name is None else Path(name)
+    if path is not None and not path.resolve().parent.is_dir():
+        raise ValueError(f"{option} {path}: there is no folder {path.parent}")
+    return path
+
+
+def _read(arguments: argparse.Namespace) -> DMAData:
+    """The measurement; what read_dma asks for by its arguments is asked for by options."""
+    columns, units = _pairs("--columns", arguments.columns), _pairs("--units", arguments.units)
+    try:
+        return read_dma(arguments.data, arguments.mode, columns=columns, units=units)
+    except ValueError as error:
+        remedies = (
+            ("units={", "--units storage=MPa loss=MPa temperature=C"),
+            ("columns={", "--columns storage=TITLE"),
+            ("mode=", "--mode shear"),
+        )
+        options = ", ".join(option for word, option in remedies if word in str(error))
+        raise ValueError(f"{error} (options: {options})" if options else str(error)) from error
+
+
+def _pairs(option: str, given: list[str]) -> dict[str, str]:
+    """The texts "quantity=value" as a mapping."""
+    pairs = {}
+    for text in given:
+        name, sign, value = text.partition("=")
+        if not (name and sign and value):
+            raise ValueError(f"{option} {text!r}: must be quantity=value, such as storage=kPa")
+        pairs[name] = value
+    return pairs
 
 
 def _fit_record(curve: MasterCurve, model: Maxwell) -> dict[str, Any]:
@@ -51,6 +91,7 @@ def _fit_record(curve: MasterCurve, model: Maxwell) -> dict[str, Any]:
         "maxwell": json.loads(model.to_json()),
         "fit": {
             "band": list(report.band),
+            "covered": list(report.covered),
             "points": report.points,
             "storage_rms": report.storage_rms,
             "storage_max": report.storage_max,
@@ -93,7 +134,7 @@ def _fit_table(curve: MasterCurve, model: Maxwell, K_given: bool, density_given:
         f"  K            {model.K:12.5g} Pa{assumed(K_given)}",
         f"  density      {model.density:12.5g} kg/m3{assumed(density_given)}",
         "",
-        f"errors of the {report.points} points from {report.band[0]:g} to {report.band[1]:g} Hz",
+        f"errors of the {report.points} points from {report.covered[0]:.4g} to {report.covered[1]:.4g} Hz",
         f"  storage modulus  rms {report.storage_rms:.2%}   largest {report.storage_max:.2%}",
         f"  tan delta        rms {report.tan_delta_rms:.2%}   largest {report.tan_delta_max:.2%}",
     ]

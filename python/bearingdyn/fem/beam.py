@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from bearingdyn.magnitude import LONGEST_SHAFT, THICKEST_SHAFT, check_length
 from bearingdyn.material import Elastic
 
 Float = NDArray[np.float64]
@@ -26,7 +27,8 @@ class Section:
 
     length: m. d_outer, d_inner: outer and bore diameter, m; 0 <= d_inner < d_outer.
 
-    Raises ValueError for a length or diameter that is not positive, or a bore that leaves no wall.
+    Raises ValueError for a length or diameter that is not positive, a bore that leaves no wall, a length
+    above 100 m or a diameter above 5 m: it is then in mm.
     """
 
     length: float
@@ -42,6 +44,8 @@ class Section:
             raise ValueError(
                 f"Section d_inner is {self.d_inner}; it must lie from 0 to below d_outer = {self.d_outer} m"
             )
+        check_length("Section length", self.length, LONGEST_SHAFT)
+        check_length("Section d_outer", self.d_outer, THICKEST_SHAFT)
 
     @property
     def area(self) -> float:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from bearingdyn.fem.abaqus_mesh import read_inp
 from bearingdyn.fem.raw_mesh import RawMesh, finished
 from bearingdyn.fem.solid_mesh import SolidMesh
+from bearingdyn.magnitude import LARGEST_BODY
 
 Index = NDArray[np.intp]
 
@@ -31,7 +32,7 @@ def read_mesh(
     upgrade: bool = False,
     merge: float | None = None,
     drop_unconnected: bool = False,
-    largest: float = 10.0,
+    largest: float = LARGEST_BODY,
 ) -> SolidMesh:
     """A mesh of 20- or 27-node bricks or 10-node tetrahedra from a file, by its suffix.
 

@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
+from bearingdyn.magnitude import check_density
 from bearingdyn.material.fit import fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift import Law, ShiftTable
@@ -27,6 +28,7 @@ def _check(owner: str, positive: dict[str, float]) -> None:
     for name, value in positive.items():
         if not (value > 0 and math.isfinite(value)):
             raise ValueError(f"{owner}.{name} = {value!r}: must be positive and finite")
+    check_density(f"{owner}.density", positive["density"])
 
 
 def _approximate(

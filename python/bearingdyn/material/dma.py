@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from bearingdyn.notice import warn
 
 Mode = Literal["shear", "tension"]
 
@@ -214,10 +215,9 @@ def check_range(dma: DMAData) -> None:
     """Warn of moduli that gels, elastomers and polymers do not have: the unit is likely wrong."""
     middle = float(np.median(np.abs(dma.storage)))
     if middle > _HARD or 0 < middle < _SOFT:
-        warnings.warn(
+        warn(
             f"{dma.source}: median storage modulus {middle:.3g} Pa in {dma.mode} lies outside {_SOFT:g} to "
             f"{_HARD:g} Pa, the range of gels, elastomers and polymers: {_UNIT}",
-            stacklevel=3,
         )
 
 

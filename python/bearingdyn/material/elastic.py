@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from bearingdyn.magnitude import SOFTEST, check_density
+
 
 @dataclass(frozen=True)
 class Elastic:
@@ -13,11 +15,11 @@ class Elastic:
     Parameters
     ----------
     E
-        Young's modulus, Pa.
+        Young's modulus, Pa, at least 1e4.
     nu
         Poisson's ratio, −1 < nu < 0.5.
     density
-        Mass density, kg/m³.
+        Mass density, kg/m³, 10 to 30000; 1e-4 to 0.1 stand for a body without inertia.
 
     Raises
     ------
@@ -39,6 +41,11 @@ class Elastic:
     def __post_init__(self) -> None:
         if not (self.E > 0 and math.isfinite(self.E)):
             raise ValueError(f"Elastic.E = {self.E!r} Pa: Young's modulus must be positive and finite")
+        if not self.E >= SOFTEST:
+            raise ValueError(
+                f"Elastic.E = {self.E!r} Pa: below {SOFTEST:g} Pa, softer than any rubber; is it in GPa or "
+                "MPa? E is in Pa"
+            )
         if not -1 < self.nu < 0.5:
             raise ValueError(
                 f"Elastic.nu = {self.nu!r}: Poisson's ratio must lie strictly between -1 and 0.5 "
@@ -46,6 +53,7 @@ class Elastic:
             )
         if not (self.density > 0 and math.isfinite(self.density)):
             raise ValueError(f"Elastic.density = {self.density!r} kg/m³: must be positive and finite")
+        check_density("Elastic.density", self.density)
 
     @property
     def G(self) -> float:

@@ -8,18 +8,19 @@ is polished on the deviations of ln G′ and ln tan δ, which are what the user 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import shear_modulus
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.projection import Limits, Points, Polished, Projection, polish
-from bearingdyn.material.report import FitReport
+from bearingdyn.material.report import FitReport, OutsideBand
 from bearingdyn.material.tts import MasterCurve
+from bearingdyn.notice import warn
 
 Array = NDArray[np.float64]
 
@@ -160,6 +161,7 @@ def fit_dense(
     rms = [float(np.sqrt(np.mean(r**2))) for r in (storage, tan)]
     report = FitReport(
         points.band,
+        _covered(points),
         points.omega.size,
         rms[0],
         float(np.abs(storage).max()),
@@ -182,6 +184,12 @@ def fit_dense(
         vertical=master.vertical,
         fit=report,
     )
+
+
+def _covered(points: Points) -> tuple[float, float]:
+    """Lowest and highest frequency of the points, Hz."""
+    f = points.omega / (2 * np.pi)
+    return float(f.min()), float(f.max())
 
 
 def _best(points: Points, limits: Limits) -> Polished:
@@ -210,11 +218,10 @@ def _smallest(
         if excess <= 1:
             return found, limits
     assert best is not None  # at least one number was tried
-    warnings.warn(
+    warn(
         f"n = 'auto': no number of branches up to {most} comes within the tolerance of {tolerance:g} or "
         "1.2 times "
         f"the floor {floor[0]:.3g}, {floor[1]:.3g}; the best is {best[0]:.2g} times that",
-        stacklevel=3,
     )
     return best[1], best[2]
 
@@ -236,19 +243,21 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
             f"{low:.4g} to {high:.4g} Hz: {n} branches need at least {needed}"
         )
     if not (f_lo >= 0.5 * low and f_hi <= 2 * high):
-        warnings.warn(
+        warn(
             f"band = {f_lo:g} to {f_hi:g} Hz goes beyond the master curve, {low:.4g} to {high:.4g} Hz: "
-            "outside it the model is an extrapolation",
-            stacklevel=3,
+            "no point was measured outside it, and the model's band is cut to twice beyond it",
+            OutsideBand,
         )
+        f_lo, f_hi = max(f_lo, 0.5 * low), min(f_hi, 2 * high)
     modulus = master.storage[keep] + 1j * master.loss[keep]
     if master.mode == "tension":
         modulus, note = shear_modulus(modulus, K, None)
-        warnings.warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand", stacklevel=3)
+        warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand")
     elif master.K is not None and not math.isclose(master.K, K, rel_tol=1e-6):
         raise ValueError(
             f"K = {K:g} Pa: the curve was turned into shear with K = {master.K:g} Pa; both must be the same"
         )
+    check_bulk("K", K, float(np.abs(modulus).max()))
     T = master.temperature[keep]
     if master.shifts:
         means = np.array(list(master.shifts))
@@ -300,6 +309,7 @@ def _report(points: Points, best: Polished, floor: tuple[float, float], refits: 
     storage, tan_delta = np.split(best.residual, 2)
     return FitReport(
         points.band,
+        _covered(points),
         points.omega.size,
         float(np.sqrt(np.mean(storage**2))),
         float(np.abs(storage).max()),

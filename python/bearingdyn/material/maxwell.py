@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import json
 import math
-import warnings
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bearingdyn.magnitude import check_bulk, check_density
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.report import FitReport, OutsideBand
 from bearingdyn.material.retune import Retunable
 from bearingdyn.material.shift import Law, RhoT, law_from_dict, law_to_dict
+from bearingdyn.notice import warn
 
 _ROUNDING = 1.001  # of the edges of a band
 
@@ -44,9 +45,10 @@ class Maxwell(Retunable):
     eta0
         Viscosity of the parallel dashpot, Pa s, ≥ 0.
     K
-        Bulk modulus, Pa, constant.
+        Bulk modulus, Pa, constant; at least 2/3 of the shear modulus right after a step (at the upper end of
+        the band, where there is one): Poisson's ratio would else be negative.
     density
-        Mass density, kg/m³.
+        Mass density, kg/m³, 10 to 30000; 1e-4 to 0.1 stand for a layer without inertia.
     law
         Shift law (WLF, Arrhenius, Joined, ShiftTable), for :meth:`at`.
     temperature
@@ -146,10 +148,19 @@ class Maxwell(Retunable):
             raise ValueError(
                 "Maxwell: G0, every G and eta0 are zero: the material would carry no shear at all"
             )
+        check_density("Maxwell.density", self.density)
+        check_bulk("Maxwell.K", self.K, self._stiffest())
         if self.temperature is not None and not math.isfinite(self.temperature):
             raise ValueError(f"Maxwell.temperature = {self.temperature!r} °C: must be finite")
         if self.band is not None and not 0 < self.band[0] < self.band[1] < math.inf:
             raise ValueError(f"Maxwell.band = {self.band!r} Hz: must be a lower and a higher frequency")
+
+    def _stiffest(self) -> float:
+        """|G*| at the upper end of the band, or right after a step where there is none, Pa."""
+        if self.band is None:
+            return self.G_instantaneous
+        x = 2 * math.pi * self.band[1] * self.tau
+        return abs(self.G0 + complex(x / (1 + x * x) * (x + 1j) @ self.G))
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
@@ -207,12 +218,11 @@ class Maxwell(Retunable):
         f = np.abs(omega[omega != 0]) / (2 * np.pi)
         outside = f[(f < self.band[0] / _ROUNDING) | (f > self.band[1] * _ROUNDING)]
         if outside.size:
-            warnings.warn(
+            warn(
                 f"{outside.min():.3g} to {outside.max():.3g} Hz lies outside the band the Maxwell model "
                 "was fitted "
                 f"in, {self.band[0]:.4g} to {self.band[1]:.4g} Hz: it extrapolates there",
                 OutsideBand,
-                stacklevel=3,
             )
 
     def loss_factor(self, omega: ArrayLike) -> NDArray[np.float64]:

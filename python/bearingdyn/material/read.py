@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import importlib.resources
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from bearingdyn.magnitude import SOFTEST
 from bearingdyn.material.dma import DMAData, Mode, check_range, first_unsorted, group_isotherms
 from bearingdyn.material.source import Source, read_source, source_of
-from bearingdyn.material.table import Table, read_table
+from bearingdyn.material.table import NO_LETTER, Table, read_table
+from bearingdyn.notice import warn
 
 
 def read_dma(
@@ -47,7 +48,8 @@ def read_dma(
         "phase", "isotherm"), where the header is not understood.
     units
         Units by quantity, where the file names none, e.g. {"storage": "MPa"}. A frequency without unit is
-        taken as Hz, an angular frequency as rad/s, and that is said.
+        taken as Hz, an angular frequency as rad/s, a temperature of up to 150 as °C, and
+        that is said.
     temperature
         Of all points, °C, where the table has no such column.
     sort
@@ -76,23 +78,19 @@ def read_dma(
     if temperature is not None and not -273.15 < temperature < 1e4:
         raise ValueError(f"temperature = {temperature!r} °C: must be a temperature in °C")
     sources = read_source(Path(data)) if isinstance(data, str | Path) else [source_of(data)]
-    source, table = _first_table(sources, columns or {}, units or {}, drop_invalid, temperature)
+    source, table = _first_table(sources, columns or {}, units or {}, drop_invalid, temperature, mode is None)
     header = source.at(table.header_line)
     if mode is None:
         mode = table.mode
         if mode is None and table.shear_named:
             mode = "shear"
-            warnings.warn(
+            warn(
                 f"{header}: the header does not tell G from E: taken as shear, because the file speaks "
                 "of shear "
                 "(torque, plates); mode='tension' says otherwise",
-                stacklevel=2,
             )
         if mode is None:
-            raise ValueError(
-                f"{header}: the header does not tell G (shear) from E (tension): give mode='shear' or "
-                "mode='tension'"
-            )
+            raise ValueError(f"{header}: {NO_LETTER}")
     elif table.mode is not None and table.mode != mode:
         raise ValueError(
             f"{header}: the header says {table.mode}, mode = {mode!r}: give the right mode, or name the "
@@ -140,6 +138,12 @@ def read_dma(
     except ValueError as error:
         raise ValueError(f"{source.at(table.lines[0])} to {table.lines[-1]}: {error}") from error
     check_range(dma)
+    top = float(np.max(np.abs(dma.storage)))
+    if 10.0 <= top < SOFTEST:  # below, check_range has warned
+        warn(
+            f"{dma.source}: no storage modulus above {top:.4g} Pa, softer than any rubber: are the numbers "
+            "in kPa or MPa? Then give units={'storage': 'kPa', 'loss': 'kPa'}"
+        )
     return dma
 
 
@@ -149,15 +153,16 @@ def _first_table(
     units: Mapping[str, str],
     drop_invalid: bool,
     temperature: float | None,
+    letters: bool,
 ) -> tuple[Source, Table]:
     """The first sheet that holds a table."""
     for source in sources[:-1]:
         try:
-            return source, read_table(source, columns, units, drop_invalid, temperature)
+            return source, read_table(source, columns, units, drop_invalid, temperature, letters)
         except ValueError as error:
             if "no column recognised as" not in str(error):
                 raise
-    return sources[-1], read_table(sources[-1], columns, units, drop_invalid, temperature)
+    return sources[-1], read_table(sources[-1], columns, units, drop_invalid, temperature, letters)
 
 
 def sample_dma_path() -> Path:

@@ -25,7 +25,10 @@ class FitReport:
     Attributes
     ----------
     band
-        Lowest and highest frequency at the reference temperature, Hz.
+        Lowest and highest frequency at the reference temperature the model is good for, Hz: as asked
+        for, at most twice beyond the master curve.
+    covered
+        Lowest and highest frequency of the points inside it, Hz.
     points
         Number of points inside the band.
     storage_rms, storage_max
@@ -43,6 +46,7 @@ class FitReport:
     """
 
     band: tuple[float, float]
+    covered: tuple[float, float]
     points: int
     storage_rms: float
     storage_max: float

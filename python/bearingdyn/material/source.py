@@ -72,6 +72,8 @@ def read_source(path: Path) -> list[Source]:
     ValueError naming the file if it is binary, of unknown encoding, a spreadsheet that cannot be read, or
     empty.
     """
+    if not path.exists():
+        raise FileNotFoundError(f"file {path} is not there")
     with path.open("rb") as file:
         data = file.read()
     if data[:4] == _OLE:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -13,12 +12,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.material.block import Block, aligned, cell_at, factors_of, units_row
 from bearingdyn.material.columns import (
     UNITS,
     Column,
     choose,
     columns_of,
-    factor,
     is_number,
     names_shear,
     number_of,
@@ -26,11 +25,13 @@ from bearingdyn.material.columns import (
     title_of,
 )
 from bearingdyn.material.source import Row, Source, Splitter
+from bearingdyn.notice import warn
 
 _MISSING = ("", "-", "--", "---", "nan", "n/a", "na", "null", "none", "#n/a")
 _TEMPERATURE_LINE = re.compile(
     r"^\s*temperature\s*[:;,\t]?\s*(-?\d+(?:[.,]\d+)?)\s*(°C|ºC|C|K)\b", re.IGNORECASE
 )
+NO_LETTER = "the header does not tell G (shear) from E (tension): give mode='shear' or mode='tension'"
 KNOWN = (*UNITS, "isotherm")
 
 
@@ -46,24 +47,13 @@ class Table:
     notes: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class _Block:
-    """One header, the rows below it down to the next, and its columns."""
-
-    header: Row
-    rows: tuple[Row, ...]
-    splitter: Splitter
-    columns: dict[str, Column]
-    quantities: tuple[str, ...]
-    labelled: bool
-
-
 def read_table(
     source: Source,
     wanted: Mapping[str, str],
     units: Mapping[str, str],
     drop_invalid: bool,
     temperature: float | None,
+    letters: bool = False,
 ) -> Table:
     """Every table of a source, one below the other, as one.
 
@@ -75,6 +65,8 @@ def read_table(
         Leave out, with a warning, points whose frequency or moduli are not positive too.
     temperature
         Of all points, °C, where the table has no such column.
+    letters
+        The header has to tell shear from tension; said only along with another fault.
 
     Raises
     ------
@@ -85,15 +77,17 @@ def read_table(
         unknown = set(mapping) - set(KNOWN)
         if unknown:
             raise ValueError(f"{name}: unknown quantities {sorted(unknown)}: known are {list(KNOWN)}")
-    blocks = _blocks(source, wanted)
+    blocks = _blocks(source, wanted, units)
     if temperature is None:
         temperature = _stated_temperature(source, blocks)
     kept: list[dict[str, float]] = []
     numbers: list[int] = []
     tally = _Tally(source)
     notes: list[str] = []
+    silent = letters and _mode(source, blocks) is None and not _speaks_of_shear(source, blocks)
+    more = [NO_LETTER] if silent else []
     for block in blocks:
-        _read_block(source, block, units, drop_invalid, temperature, kept, numbers, tally, notes)
+        _read_block(source, block, units, drop_invalid, temperature, kept, numbers, tally, notes, more)
     tally.warn(len(kept))
     if not kept:
         first = blocks[0].header.number
@@ -111,15 +105,19 @@ def read_table(
     values = {q: np.array([k[q] for k in kept]) for q in ("frequency", "temperature", "storage", "loss")}
     if "isotherm" in common:
         values["isotherm"] = np.array([k["isotherm"] for k in kept])
-    text = " ".join(row.text for row in source.rows if row.number <= blocks[0].header.number)
     return Table(
         values,
         tuple(numbers),
         blocks[0].header.number,
         _mode(source, blocks),
-        names_shear(text),
+        _speaks_of_shear(source, blocks),
         tuple(dict.fromkeys(notes)),
     )
+
+
+def _speaks_of_shear(source: Source, blocks: list[Block]) -> bool:
+    """Whether what stands down to the first header speaks of shear."""
+    return names_shear(" ".join(row.text for row in source.rows if row.number <= blocks[0].header.number))
 
 
 class _Tally:
@@ -135,24 +133,23 @@ class _Tally:
 
     def warn(self, kept: int) -> None:
         if self.count:
-            warnings.warn(
-                f"{self.count} of {self.count + kept} points left out: first {self.first}", stacklevel=4
+            warn(
+                f"{self.count} of {self.count + kept} points left out: first {self.first}",
             )
         if self.after:
             row = self.after[0]
             numbers = sum(any(is_number(c) for c in r.text.split()) for r in self.after)
-            warnings.warn(
+            warn(
                 f"{self.source.at(row.number)}: {len(self.after)} lines after the table left out, "
                 f"{numbers} of "
                 f"them with numbers: first {row.text.strip()[:60]!r}",
-                stacklevel=4,
             )
 
 
-def _blocks(source: Source, wanted: Mapping[str, str]) -> list[_Block]:
+def _blocks(source: Source, wanted: Mapping[str, str], units: Mapping[str, str]) -> list[Block]:
     """Headers and what stands below them."""
     heads: list[tuple[int, dict[str, Column], Splitter, tuple[str, str, str], bool]] = []
-    best: tuple[int, set[str]] = (source.rows[0].number, set())
+    best: tuple[int, dict[str, Column], Splitter] = (0, {}, Splitter.of(source.rows[0].text))
     for position, row in enumerate(source.rows):
         splitter = Splitter.of(row.text)
         cells = splitter.cells(row)
@@ -160,7 +157,7 @@ def _blocks(source: Source, wanted: Mapping[str, str]) -> list[_Block]:
         chosen = choose(columns)
         if chosen is None:
             if len(columns) > len(best[1]):
-                best = (row.number, set(columns))
+                best = (position, columns, splitter)
             continue
         for quantity, first, second in doubles:
             if quantity in (*chosen, "temperature"):
@@ -172,23 +169,29 @@ def _blocks(source: Source, wanted: Mapping[str, str]) -> list[_Block]:
         label = bool(cells) and cells[0].strip().endswith(":") and quantity_of(title_of(cells[0])[0]) is None
         heads.append((position, columns, splitter, chosen, label))
     if not heads:
-        has = best[1] | ({"frequency"} if "angular" in best[1] else set())
+        position, columns, splitter = best
+        has = columns.keys() | ({"frequency"} if "angular" in columns else set())
         missing = [q for q in ("frequency", "temperature", "storage", "loss") if q not in has]
-        raise ValueError(
-            f"{source.at(best[0])}: no column recognised as {', '.join(missing)}: the header must name "
+        known = tuple(q for q in columns if q != "isotherm")
+        block = Block(source.rows[position], source.rows[position + 1 :], splitter, columns, known, False)
+        faults = factors_of(source, block, known, units, [])[1]
+        where = source.at(block.header.number)
+        none = (
+            f"{where}: no column recognised as {', '.join(missing)}: the header must name "
             "frequency, temperature, storage modulus and loss modulus (or tan delta, or |G*| and phase), or "
             "give columns={...} with the names used"
         )
+        raise ValueError(_together(where, [none, *faults]))
     ends = [h[0] for h in heads[1:]] + [len(source.rows)]
     return [
-        _Block(source.rows[p], source.rows[p + 1 : end], splitter, columns, chosen, label)
+        Block(source.rows[p], source.rows[p + 1 : end], splitter, columns, chosen, label)
         for (p, columns, splitter, chosen, label), end in zip(heads, ends, strict=True)
     ]
 
 
 def _read_block(
     source: Source,
-    block: _Block,
+    block: Block,
     units: Mapping[str, str],
     drop_invalid: bool,
     temperature: float | None,
@@ -196,25 +199,27 @@ def _read_block(
     numbers: list[int],
     tally: _Tally,
     notes: list[str],
+    more: list[str],
 ) -> None:
     wanted = list(block.quantities)
+    faults: list[str] = []
     if "temperature" in block.columns:
         wanted.append("temperature")
     elif temperature is None:
-        raise ValueError(
+        faults.append(
             f"{source.at(block.header.number)}: no column recognised as temperature: give "
-            "temperature=..., °C, if "
-            "the sweep is one isotherm, or columns={'temperature': ...}"
+            "temperature=..., °C, if the sweep is one isotherm, or columns={'temperature': ...}"
         )
+    factors, wrong = factors_of(source, block, wanted, units, notes)
+    faults += wrong
+    if faults:
+        raise ValueError(_together(source.at(block.header.number), [*faults, *more]))
     if "isotherm" in block.columns:
-        wanted.append("isotherm")
-    rows, unit_cells, unit_line = _units_row(block)
-    factors = {
-        q: _unit(source, block, q, units, unit_cells, unit_line, notes) for q in wanted if q != "isotherm"
-    }
+        wanted.append("isotherm")  # has no unit
+    rows = units_row(block)[0]
     for position, row in enumerate(rows):
-        cells = _aligned(block, row)
-        texts = {q: _cell(cells, block.columns[q].index) for q in wanted}
+        cells = aligned(block, row)
+        texts = {q: cell_at(cells, block.columns[q].index) for q in wanted}
         if not any(is_number(texts[q]) for q in (*block.quantities,)):
             empty = all(not t for t in texts.values()) and not any(c.strip() for c in cells)
             if empty:
@@ -240,6 +245,11 @@ def _read_block(
         numbers.append(row.number)
 
 
+def _together(where: str, faults: Sequence[str]) -> str:
+    """All faults as one message, their place said once."""
+    return "; ".join([faults[0], *(f.removeprefix(f"{where}, ") for f in faults[1:])])
+
+
 def _ends_section(row: Row) -> bool:
     """Whether a row opens or describes a new step of the instrument, which belongs to no table."""
     text = row.text.strip()
@@ -248,69 +258,9 @@ def _ends_section(row: Row) -> bool:
     )
 
 
-def _units_row(block: _Block) -> tuple[tuple[Row, ...], list[str], int]:
-    if block.rows:
-        cells = _aligned(block, block.rows[0])
-        if not any(is_number(cell) for cell in cells):
-            known = {u for table in UNITS.values() for u in table} - {""}
-            here = [_cell(cells, c.index).strip("[]() ").lower() for c in block.columns.values()]
-            if any(unit in known for unit in here):
-                return block.rows[1:], cells, block.rows[0].number
-    return block.rows, [], 0
-
-
-def _aligned(block: _Block, row: Row) -> list[str]:
-    """Cells of a row; a label in front of the header has none in front of the numbers."""
-    cells = block.splitter.cells(row)
-    if block.labelled and cells and is_number(cells[0]):
-        return ["", *cells]
-    return cells
-
-
-def _cell(cells: list[str], index: int) -> str:
-    return cells[index].strip() if index < len(cells) else ""
-
-
-def _unit(
-    source: Source,
-    block: _Block,
-    quantity: str,
-    units: Mapping[str, str],
-    unit_cells: list[str],
-    unit_line: int,
-    notes: list[str],
-) -> float:
-    """Factor of a column; what is assumed of a frequency is said."""
-    column = block.columns[quantity]
-    where, unit = source.at(block.header.number), column.unit
-    if unit_cells and not unit and _cell(unit_cells, column.index):
-        where, unit = source.at(unit_line), _cell(unit_cells, column.index)
-    given = units.get(quantity, units.get("frequency") if quantity == "angular" else None)
-    if given is None and quantity in ("frequency", "angular"):
-        bare = unit.strip().strip("[]()").strip().lower()
-        if not bare:
-            unit = "Hz" if quantity == "frequency" else "rad/s"
-            text = (
-                f"{where}, column {column.title!r}: no unit for the {quantity} frequency: taken as {unit}; "
-                "units={'frequency': ...} says otherwise"
-            ).replace("frequency frequency", "frequency")
-            notes.append(text)
-            warnings.warn(text, stacklevel=6)
-        elif quantity == "angular" and bare != "rad/s" and "ang" in column.title.lower():
-            warnings.warn(
-                f"{where}, column {column.title!r}: an angular frequency in {unit}: taken as {unit}, not "
-                "rad/s",
-                stacklevel=6,
-            )
-        note = f"frequency read in {unit.strip('[] ')}"
-        if not any(n.endswith(note) for n in notes):
-            notes.append(f"{where}: {note}")
-    return factor(quantity, unit if given is None else given, column, where)
-
-
 def _point(
     source: Source,
-    block: _Block,
+    block: Block,
     row: Row,
     texts: Mapping[str, str],
     drop_invalid: bool,
@@ -361,7 +311,7 @@ def _modulus(first: str, second: str, a: float, b: float) -> tuple[float, float]
     return a * math.cos(angle), a * math.sin(angle)
 
 
-def _stated_temperature(source: Source, blocks: list[_Block]) -> float | None:
+def _stated_temperature(source: Source, blocks: list[Block]) -> float | None:
     """A temperature stated above a table without such a column."""
     if len(blocks) > 1 or "temperature" in blocks[0].columns:
         return None
@@ -373,7 +323,7 @@ def _stated_temperature(source: Source, blocks: list[_Block]) -> float | None:
     return None
 
 
-def _mode(source: Source, blocks: list[_Block]) -> Literal["shear", "tension"] | None:
+def _mode(source: Source, blocks: list[Block]) -> Literal["shear", "tension"] | None:
     used = [(b.header.number, b.columns[q]) for b in blocks for q in b.quantities[1:]]
     letters = {column.letter for _, column in used} - {""}
     if len(letters) > 1:

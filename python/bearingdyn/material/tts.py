@@ -8,7 +8,6 @@ afterwards, and, if wished, once more directly to the data.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -21,10 +20,12 @@ from bearingdyn.material.kk import Suspect, summary, suspects
 from bearingdyn.material.laws import LawName, fit_law, fit_law_to_data, require_isotherms
 from bearingdyn.material.shift import ZERO_CELSIUS, Law, RhoT
 from bearingdyn.material.superpose import Superposed, Superposition, first_shifts
+from bearingdyn.notice import warn
 
 Array = NDArray[np.float64]
 
 _JITTER = 0.5  # K; as far as a mean temperature may miss the one that was meant
+_FAR = 100.0  # K; a T_ref further outside the data is taken for kelvin
 _LAW_MISFIT = 0.3  # decades rms, beyond which a law misleads: a factor of two in frequency
 
 
@@ -148,7 +149,8 @@ def master_curve(
     Raises
     ------
     ValueError
-        If there is only one isotherm, two have one temperature, or T_ref lies where the law cannot reach.
+        If there is only one isotherm, two have one temperature, or T_ref lies where the law cannot reach or
+        more than 100 K outside the measured temperatures.
 
     Returns a MasterCurve: reduced frequency, Hz, and moduli, Pa, (n,), sorted by reduced frequency.
 
@@ -198,11 +200,10 @@ def master_curve(
         by_law, shifts_found = fitted.log_shift(T), found.shifts - offset
     residual = float(np.sqrt(np.mean((shifts_found - by_law) ** 2)))
     if not residual < _LAW_MISFIT:
-        warnings.warn(
+        warn(
             f"{dma.source}: the shifts deviate from the {law} law by {residual:.2g} decades rms: a WLF or "
             "Arrhenius law does not hold through a glass transition; take law='joined' or 'free', or fewer "
             "isotherms",
-            stacklevel=2,
         )
     frequency = used.frequency * 10 ** (found.point_shifts - offset)
     order = np.argsort(frequency, kind="stable")
@@ -238,10 +239,9 @@ def _cleaned(dma: DMAData, clean: bool) -> tuple[DMAData, tuple[Suspect, ...]]:
     if flagged.all():
         raise ValueError(f"{dma.source}: no point has positive moduli: the columns or their signs are wrong")
     more = "; clean=False keeps what is positive" if clean else ""
-    warnings.warn(
+    warn(
         f"{dma.source}: {len(found)} of {flagged.size} points left out that no passive material could give: "
         f"{summary(found)}{more}",
-        stacklevel=3,
     )
     return dma.take(np.flatnonzero(~flagged)), found
 
@@ -268,17 +268,20 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
             "temperature"
         )
     if single:
-        warnings.warn(
+        warn(
             f"{dma.source}: one frequency only at {', '.join(f'{T[k]:.4g}' for k in single)} °C: these "
             "shifts "
             "rest on a single point",
-            stacklevel=3,
+        )
+    if not T[0] - _FAR <= T_ref <= T[-1] + _FAR:
+        raise ValueError(
+            f"T_ref = {T_ref:g} °C lies more than {_FAR:g} K outside the measured {T[0]:.4g} to "
+            f"{T[-1]:.4g} °C: no shift law reaches there; is it in kelvin? T_ref is in °C"
         )
     if not T[0] - _JITTER <= T_ref <= T[-1] + _JITTER:
-        warnings.warn(
+        warn(
             f"T_ref = {T_ref:g} °C lies outside the measured {T[0]:.4g} to {T[-1]:.4g} °C: the law "
             "extrapolates",
-            stacklevel=3,
         )
     return T
 

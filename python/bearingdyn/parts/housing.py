@@ -11,6 +11,7 @@ import numpy as np
 
 from bearingdyn.cms import Superelement
 from bearingdyn.fem.solid_meshers import block_with_bore
+from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.solid import RigidSurface, Solid
@@ -52,7 +53,8 @@ class Housing:
     both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n). Surfaces: "top",
     "front" (at +z), "back", and "outside", all but the bore and the base.
 
-    Raises ValueError for a bore that leaves no wall, a point outside, or values not positive and finite.
+    Raises ValueError for a bore that leaves no wall, a point outside, values not positive and finite, or
+    a length above 10 m: it is then in mm.
 
     Reference: paper section 4, which gives no dimensions.
     """
@@ -75,6 +77,8 @@ class Housing:
             if not (value > 0 and math.isfinite(value)):
                 unit = "frequency in Hz" if name == "f_max" else "length in m"
                 raise ValueError(f"{name} is {value}; it must be a positive {unit}")
+            if name != "f_max":
+                check_length(name, value)
         if not 0 <= self.damping < 1:
             raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
         d, axis = self.bore_diameter, self.axis

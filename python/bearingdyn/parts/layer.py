@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.cms import Superelement
+from bearingdyn.magnitude import check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.revolved import Revolved
@@ -29,7 +30,8 @@ class Layer:
         shapes at 1 MPa are 26 % too stiff at 10 MPa.
     refinement: mesh density; the default gives stiffnesses within some 0.02 % for ratios G/K down to 1e-4.
 
-    Raises ValueError for dimensions that are not positive and finite, or r_outer not above r_inner.
+    Raises ValueError for dimensions that are not positive and finite, r_outer not above r_inner, or
+    more than 10 m: they are then in mm.
 
     Reference: paper section 3.3.
 
@@ -55,6 +57,8 @@ class Layer:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
         if not 0 < self.width < math.inf:
             raise ValueError(f"width is {self.width}; it must be positive, m")
+        for name in ("r_outer", "width"):
+            check_length(name, getattr(self, name))
         if self.moduli is not None:
             object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
         _ = self.body

@@ -23,6 +23,7 @@ from bearingdyn.cms import (
 from bearingdyn.fem.eigen import lowest_modes
 from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
 from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
+from bearingdyn.magnitude import check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
 from bearingdyn.parts.outline import Outline, azimuths, revolved
@@ -125,6 +126,8 @@ class Revolved:
             if not isinstance(q, kind):
                 where = "without a mesh in section" if self.section is None else "for a mesh in section"
                 raise ValueError(f"regions[{k}] is {q!r}; {where} it must be a {kind.__name__}")
+        if self.section is not None:
+            check_length("the size of the section", self.section.size)
         if self.section is not None and int(self.section.region.max()) + 1 != len(self.regions):
             raise ValueError(
                 f"section has {int(self.section.region.max()) + 1} regions and there are materials for "

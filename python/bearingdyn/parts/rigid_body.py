@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.cms import Superelement
+from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, box, carried, cylinder
 
@@ -61,7 +62,7 @@ class RigidBody:
     ) -> RigidBody:
         """A ring (a disc when r_inner is 0) about z, for example that of a bearing; radii and width in m.
 
-        Raises ValueError unless 0 <= r_inner < r_outer and width > 0.
+        Raises ValueError unless 0 <= r_inner < r_outer <= 10 m and 0 < width <= 10 m.
         """
         if not (r_outer > 0 and math.isfinite(r_outer)):
             raise ValueError(f"r_outer is {r_outer}; it must be a positive radius in m")
@@ -69,6 +70,8 @@ class RigidBody:
             raise ValueError(f"r_inner is {r_inner}; it must be at least 0 and below r_outer = {r_outer} m")
         if not (width > 0 and math.isfinite(width)):
             raise ValueError(f"width is {width}; it must be a positive width in m")
+        check_length("r_outer", r_outer)
+        check_length("width", width)
         mass = material.density * math.pi * (r_outer**2 - r_inner**2) * width
         square = r_inner**2 + r_outer**2
         across = mass * (square / 4.0 + width**2 / 12.0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from bearingdyn.cms import Superelement
+from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
@@ -22,7 +23,8 @@ class Ring:
         frequency, Hz; 0: none.
     refinement: mesh density.
 
-    Raises ValueError for dimensions that are not positive, or r_outer not above r_inner.
+    Raises ValueError for dimensions that are not positive, r_outer not above r_inner, or more than
+    10 m: they are then in mm.
     """
 
     r_inner: float
@@ -40,6 +42,8 @@ class Ring:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
         if not self.width > 0:
             raise ValueError(f"width is {self.width}; it must be positive, m")
+        for name in ("r_outer", "width"):
+            check_length(name, getattr(self, name))
         _ = self.body
 
     @cached_property

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.cms import modulus_levels
 from bearingdyn.fem.revolution_mesh import SAME, Float, Index, Rectangle, RevolutionMesh
+from bearingdyn.magnitude import check_length
 from bearingdyn.material import Elastic
 
 HIGHEST = 64  # Fourier order of a raceway: far more than any number of balls asks for
@@ -43,7 +44,8 @@ class Region:
 
     graded: crowd the mesh towards its sides; None: do so if the material is viscoelastic.
 
-    Raises ValueError for a section that is none, or a material that is neither elastic nor has G*(ω).
+    Raises ValueError for a section that is none or above 10 m, or a material that is neither elastic nor has
+    G*(ω).
     """
 
     r: tuple[float, float]
@@ -53,6 +55,8 @@ class Region:
 
     def __post_init__(self) -> None:
         Rectangle(self.r, self.z)
+        check_length("r[1]", self.r[1])
+        check_length("z[1] - z[0]", self.z[1] - self.z[0])
         _check_material(self.material)
 
     @property

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.cms import Basis, FullModel, RigidInterface, Superelement, basis_of, project
 from bearingdyn.fem.beam import Section, assemble, bending_wavelength
+from bearingdyn.magnitude import LONGEST_SHAFT, check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 
@@ -68,8 +69,8 @@ class Shaft:
         interest keeps frequencies to about 0.1 %.
     element_length: longest beam element, m; by default 1/30 of the shortest bending wave at f_max.
 
-    Raises ValueError for a position off the shaft, a name used twice, two seats in one place, or values that
-    are not positive and finite.
+    Raises ValueError for a position off the shaft, a name used twice, two seats in one place, values that
+    are not positive and finite, or more than 100 m in all.
 
     Reference: J. S. Przemieniecki, Theory of Matrix Structural Analysis (Timoshenko element); H. D. Nelson,
     J. Mech. Design 102 (1980) 793 (gyroscopic terms).
@@ -100,6 +101,7 @@ class Shaft:
         if not self.seats:
             raise ValueError("seats is empty; a shaft needs at least one seat to be joined by")
         L = self.length
+        check_length("the length of all sections", L, LONGEST_SHAFT)
         places = [(f"seats[{k!r}]", v) for k, v in self.seats.items()]
         places += [(f"points[{k!r}]", v) for k, v in self.points.items()]
         places += [(f"discs[{i}].z", d.z) for i, d in enumerate(self.discs)]

@@ -27,6 +27,7 @@ from bearingdyn.fem.eigen import factorise, rigid_motion
 from bearingdyn.fem.solid import assemble_solid
 from bearingdyn.fem.solid_element import face_shapes
 from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
+from bearingdyn.magnitude import LARGEST_SOLID, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.section import ViscoelasticSolid
@@ -132,6 +133,7 @@ class Solid:
             object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
             if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
                 raise ValueError(f"moduli is {self.moduli}; it needs one or more positive shear moduli, Pa")
+        check_length("the body's extent", float(np.ptp(self.mesh.points, axis=0).max()), LARGEST_SOLID)
         self._check_materials()
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")

@@ -1,0 +1,19 @@
+"""Warnings that point at the line of the user's program, from however deep inside the package."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+
+_OWN = __name__.partition(".")[0]
+
+
+def warn(text: str, category: type[Warning] = UserWarning) -> None:
+    """Warn at the nearest caller that is not of this package.
+
+    By the module's name, not by the file: a dataclass's __init__ has none.
+    """
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] == _OWN:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, category, stacklevel=level)
