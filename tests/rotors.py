@@ -5,8 +5,8 @@ from __future__ import annotations
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.fem.beam import Section
-from bearingdyn.material import Maxwell
-from bearingdyn.parts import Layer, RigidBody, Shaft
+from bearingdyn.material import Elastic, Maxwell
+from bearingdyn.parts import Disc, Layer, RigidBody, Shaft
 
 RUBBER = Maxwell(G0=1e6, G=[2e6, 3e6], tau=[1e-3, 1e-4], eta0=3.0, K=2e9, density=1200.0)
 BEARING = BallBearing(8, 12.303e-3, 52e-3, 0.52, 0.53, clearance=10e-6, damping=30.0)
@@ -63,4 +63,25 @@ def motor(rubber: Maxwell = RUBBER) -> Application:
     app.bearing("right", BEARING, inner="shaft.right", outer="cap.centre")
     app.load("cap.centre", (0, 0, 180.0, 0, 0, 0))
     app.load("shaft.end", (0, -50.0, 0, 0, 0, 0))
+    return app
+
+
+def friswell() -> Application:
+    """Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines, example 5.9.1, through parts."""
+    steel = Elastic(211e9, 211e9 / (2 * 81.2e9) - 1, 7810.0)
+    shaft = Shaft(
+        [Section(1.5, 0.05)],
+        seats={"left": 0.0, "right": 1.5},
+        discs=[
+            Disc.cylinder(0.5, 0.28, 0.07, 0.05, material=steel),
+            Disc.cylinder(1.0, 0.35, 0.07, 0.05, material=steel),
+        ],
+        material=steel,
+        f_max=3e3,
+        element_length=0.25,
+    )
+    app = Application()
+    app.add("rotor", shaft)
+    for end in ("left", "right"):
+        app.ground(f"rotor.{end}", stiffness=(1e6, 1e6, 0, 0, 0, 0))
     return app

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-ROOMS = {
+SUBPACKAGES = {
     "bearing": "bearing",
     "catalogue": "bearing.catalogue",
     "material": "material",
@@ -17,7 +17,7 @@ ROOMS = {
     "study": "study",
 }
 # the stub beside this file says the same to type checkers
-HOMES = {
+PUBLIC = {
     "analysis": (
         "Equilibrium",
         "ball_channels",
@@ -108,19 +108,19 @@ HOMES = {
         "damping_sample",
         "quadrilaterals",
     ),
-    "results": ("load", "save"),
+    "results": ("open_result", "save"),
 }
 
-__all__ = sorted(name for names in HOMES.values() for name in names)
+__all__ = sorted(name for names in PUBLIC.values() for name in names)
 
 
 def __getattr__(name: str) -> object:
     """A room, or a public name out of the room it lives in."""
     if name == "__version__":
         return import_module(f"{__name__}.results").versions()["bearingdyn"]
-    if name in ROOMS:
-        return import_module(f"{__name__}.{ROOMS[name]}")
-    for home, names in HOMES.items():
+    if name in SUBPACKAGES:
+        return import_module(f"{__name__}.{SUBPACKAGES[name]}")
+    for home, names in PUBLIC.items():
         if name in names:
             value: object = getattr(import_module(f"{__name__}.{home}"), name)
             globals()[name] = value
@@ -129,4 +129,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, *ROOMS, "__version__"})
+    return sorted({*globals(), *__all__, *SUBPACKAGES, "__version__"})

@@ -104,7 +104,7 @@ from bearingdyn.parts import (
     quadrilaterals,
 )
 from bearingdyn.results import (
-    load,
+    open_result,
     save,
 )
 
@@ -172,12 +172,12 @@ __all__ = [
     "equilibrium",
     "fit_maxwell",
     "frequency_response",
-    "load",
     "master_curve",
     "mode_shapes",
     "mode_surfaces",
     "modes",
     "o_ring_mesh",
+    "open_result",
     "orbit",
     "order_spectrum",
     "quadrilaterals",

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn import _core
+from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
     from bearingdyn.bearing.kernel import BearingKernel
 
-Array: TypeAlias = NDArray[np.float64]
 Progress: TypeAlias = Callable[[int, int], object]
 Model = _core.Model
 
@@ -223,14 +223,14 @@ def march(
 def harmonic(
     model: Model,
     omega: Array,
-    modulus: NDArray[np.complex128],
+    modulus: Complex,
     bearing_K: Array,
     bearing_C: Array,
     force: Array,
     row: Array,
     speed: float = 0.0,
     progress: Progress | None = None,
-) -> NDArray[np.complex128]:
+) -> Complex:
     """Complex response (frequencies, outputs, inputs) to unit forces; paper eq (20).
 
     omega (f,) rad/s; modulus (f, layers) G*(ω) in Pa; bearing_K, bearing_C (coefficients, coefficients)

@@ -25,8 +25,8 @@ def check_density(field: str, density: float) -> None:
     """ValueError for a density, kg/m³, that no solid has; 1e-4 to 0.1 stand for a body without inertia."""
     if not (LIGHTEST <= density <= HEAVIEST or MASSLESS[0] <= density <= MASSLESS[1]):
         raise ValueError(
-            f"{field} = {density!r} kg/m³: a solid has {LIGHTEST:g} to {HEAVIEST:g} kg/m³; is it in g/cm³ or "
-            f"t/mm³? Water has 1000 kg/m³ (for a body without inertia give {MASSLESS[0]:g} to "
+            f"{field} is {density!r} kg/m³; a solid has {LIGHTEST:g} to {HEAVIEST:g} kg/m³; is it in g/cm³ "
+            f"or t/mm³? Water has 1000 kg/m³ (for a body without inertia give {MASSLESS[0]:g} to "
             f"{MASSLESS[1]:g})"
         )
 

@@ -20,9 +20,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 MAGIC = b"bearingdyn run 1\n"
 _BLOCK = struct.Struct("<QI")

@@ -82,7 +82,7 @@ def whirl() -> list[Row]:
 
 def two_domains() -> list[Row]:
     """The layered motor: one march under forty sines against a dense solve of the paper's (20)."""
-    from test_two_domains import BASE, OUTPUTS, lines, marched
+    from marches import BASE, OUTPUTS, lines, marched
 
     harmonics = lines(40)
     found, system = marched(1e-6, harmonics, 1e-3, linear=False)
@@ -120,7 +120,7 @@ def _receptance(system: System, f: float, outputs: list[str]) -> np.ndarray:
 
 def ring_down() -> list[Row]:
     """Poles fitted to the ring-down of a layered rotor, against roots of its dynamic stiffness nearby."""
-    from test_ring_down import ring_down_of_a_layered_rotor
+    from marches import ring_down_of_a_layered_rotor
 
     fitted, state = ring_down_of_a_layered_rotor()
     system = state.linearised()

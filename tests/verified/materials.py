@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
 
 import numpy as np
 
 import make_sample_dma as made
 from bearingdyn.material import MasterCurve, Maxwell, fit_maxwell, master_curve, read_dma, sample_dma_path
+from measured import DATA
 from verified.row import Row
-
-DATA = Path(__file__).parents[3] / "shared" / "data"
 
 
 def measured() -> list[Row]:

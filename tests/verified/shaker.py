@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
-from pathlib import Path
 
 import numpy as np
+import shaker
 
 from verified.row import Row
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
-
-import shaker
 
 SOURCE = "MarcusNi96/dma-prony-validation, commit 068d2131, shaker at 0.1 g"
 # g: frequency, Hz, and height of the largest measured |H|

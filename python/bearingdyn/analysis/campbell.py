@@ -6,22 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.optimize
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.modes import modes
 from bearingdyn.application import Application
 from bearingdyn.system import System, assemble
+from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
     import xarray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # further modes followed, so that one that comes into the lowest `count` is known from where it came
 MARGIN = 12
-# likeness of two modes that an octave between their frequencies costs: it decides where shapes do not
+# what an octave between two frequencies costs of the modes' assurance: it decides where shapes do not
 OCTAVE = 0.1
 # kinetic energy of the lateral motion, of the whole: below it a mode does not whirl, it turns or stretches
 LATERAL = 1e-8
@@ -43,7 +42,7 @@ def campbell(
 
     Returns a Dataset over (speed, mode): frequency (Hz, |λ|/2π), damping_ratio, eigenvalue (rad/s), whirl: +1
     a circle with a shaft that turns from x to y, −1 one against it, 0 along a line, of the parts that turn
-    (all, if none does); likeness to the same mode at the next higher speed, 0 … 1.
+    (all, if none does); mac, the modal assurance to the same mode at the next higher speed, 0 … 1.
 
     Raises ValueError for speeds that are not finite, a count below 1, and as `modes`.
     """
@@ -59,14 +58,14 @@ def campbell(
     order = np.argsort(-np.abs(given), kind="stable")
     values: list[Complex] = [np.zeros(0, dtype=np.complex128)] * given.size
     shapes: list[Complex] = [np.zeros((0, 0), dtype=np.complex128)] * given.size
-    likeness = [np.zeros(0)] * given.size
+    assurance = [np.zeros(0)] * given.size
     above = None
     for i in order:
         pool = count + MARGIN * (1 if above is None else 2)
         found = modes(source, pool, speed=float(given[i]), damped=damped, modulus=modulus)
         value, shape = found["eigenvalue"].values, found["shape"].values
         if above is None:
-            values[i], shapes[i], likeness[i] = value, shape, np.ones(value.size)
+            values[i], shapes[i], assurance[i] = value, shape, np.ones(value.size)
         else:
             mac = _assurance(system.M, shapes[above], shape)
             with np.errstate(divide="ignore"):
@@ -74,10 +73,10 @@ def campbell(
             score = mac - OCTAVE * np.minimum(np.nan_to_num(apart, nan=0.0), 10.0)
             row, column = scipy.optimize.linear_sum_assignment(-score)
             values[i], shapes[i] = value[column], shape[column]
-            likeness[i] = mac[row, column]
+            assurance[i] = mac[row, column]
             if row.size < len(values[above]):  # fewer modes swing here than above: drop those that ended
                 for j in order[: int(np.flatnonzero(order == i)[0])]:
-                    values[j], shapes[j], likeness[j] = values[j][row], shapes[j][row], likeness[j][row]
+                    values[j], shapes[j], assurance[j] = values[j][row], shapes[j][row], assurance[j][row]
         above = i
     slowest = order[-1]
     keep = np.argsort(np.abs(values[slowest]), kind="stable")[:count]
@@ -103,9 +102,9 @@ def campbell(
                 "1",
                 "+1 forward circle, −1 backward circle, 0 a line",
             ),
-            "likeness": (
+            "mac": (
                 over,
-                np.array([a[keep] for a in likeness]),
+                np.array([a[keep] for a in assurance]),
                 "1",
                 "modal assurance criterion with the next higher speed",
             ),

@@ -7,13 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.analysis.statics import BearingState, Statics, diagonal_blocks
 from bearingdyn.application import Application
 from bearingdyn.system import LoadTerm, System, assemble
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
@@ -16,12 +16,10 @@ from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
 from bearingdyn.system import QUANTITIES, RATES, System, assemble
+from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
     import xarray
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)

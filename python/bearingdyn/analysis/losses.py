@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.running import part_of
 from bearingdyn.analysis.transient import checked_speed
 from bearingdyn.system import System, factor
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-Array = NDArray[np.float64]
 Channel = tuple[int, Array | None, int, int]
 
 # steps whose powers are held at once

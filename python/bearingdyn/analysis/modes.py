@@ -6,17 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.application import Application
 from bearingdyn.system import System
+from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
     import xarray
 
-Array = NDArray[np.float64]
 
 # an eigenvalue this close to the real axis, relative to its size, does not swing
 REAL = 1e-9
@@ -86,14 +85,12 @@ def modes(
     )
 
 
-def _swinging(
-    values: NDArray[np.complex128], shapes: NDArray[np.complex128]
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+def _swinging(values: Complex, shapes: Complex) -> tuple[Complex, Complex]:
     keep = values.imag > REAL * np.abs(values).max(initial=1.0) * 1e-3
     return values[keep], shapes[:, keep]
 
 
-def _gyroscopic(K: Array, M: Array, G: Array) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+def _gyroscopic(K: Array, M: Array, G: Array) -> tuple[Complex, Complex]:
     n = len(K)
     inverse = np.linalg.inv(M)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ K, -inverse @ G]])
@@ -101,7 +98,7 @@ def _gyroscopic(K: Array, M: Array, G: Array) -> tuple[NDArray[np.complex128], N
     return _swinging(values, vectors[:n])
 
 
-def _damped(system: System, speed: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+def _damped(system: System, speed: float) -> tuple[Complex, Complex]:
     """States x, v and every branch stress: ṡ = 2 G Lᵀ v − s/τ, force L s (paper (6) differentiated)."""
     modal, T = system.modal()
     n = modal.n

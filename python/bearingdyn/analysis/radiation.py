@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
@@ -23,8 +23,6 @@ from bearingdyn.system import PartTerm, System
 
 if TYPE_CHECKING:
     import xarray
-
-Array = NDArray[np.float64]
 
 
 def radiated_power(

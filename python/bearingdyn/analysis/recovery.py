@@ -6,14 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.application import COMPONENTS, GROUND
 from bearingdyn.bearing.series import NET
 from bearingdyn.system import RATES, PartTerm, SpringTerm, System, component_of
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from bearingdyn.types import Array, Complex
 
 
 @dataclass(frozen=True, eq=False)

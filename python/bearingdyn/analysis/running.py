@@ -9,12 +9,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn import core, runfile
 from bearingdyn.system import System
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 NEVER = 2**62  # a decimation that keeps nothing
 # steps between two chunks on the disk: a tenth of a second or so, which a kill may cost

@@ -7,18 +7,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.application import COMPONENTS, Application
 from bearingdyn.application.rigid import arm
 from bearingdyn.parts.outline import Outlined
 from bearingdyn.system import System, assemble
+from bearingdyn.types import Array, Complex, Index
 
 if TYPE_CHECKING:
     import xarray
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +29,8 @@ class MovedSurface:
 
     part: str
     points: Array
-    faces: NDArray[np.intp]
-    motion: NDArray[np.complex128]
+    faces: Index
+    motion: Complex
 
 
 def mode_shapes(source: Equilibrium | Application | System, found: xarray.Dataset) -> xarray.Dataset:
@@ -117,7 +115,7 @@ def mode_surfaces(
 
 def _of_one_system(
     source: Equilibrium | Application | System, found: xarray.Dataset
-) -> tuple[System, NDArray[np.complex128]]:
+) -> tuple[System, Complex]:
     """The system, and the shapes (mode, coordinate) of its modes."""
     if isinstance(source, Application):
         source = assemble(source)

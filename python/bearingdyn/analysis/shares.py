@@ -13,18 +13,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.application import Application
 from bearingdyn.system import System
+from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
     import xarray
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.analysis.spectra import amplitudes, check_window, signal_of, speed_profile, unit_of
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-Array = NDArray[np.float64]
 
 # samples a turn, in units of the highest order
 PER_ORDER = 8

@@ -12,15 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS
 from bearingdyn.bearing.minimum import NoBalance, minimum
 from bearingdyn.bearing.series import NET, RIGID, RacewaySeries
 from bearingdyn.system import BearingTerm, System
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 # ω², 1/s², of the test spring on free motions: of the order of a rotor's on its bearings, else of no effect
 HOLD = 1e6

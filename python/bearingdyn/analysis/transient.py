@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
@@ -19,11 +19,11 @@ from bearingdyn.bearing import ConstantDamping
 from bearingdyn.bearing.series import NET
 from bearingdyn.results import march_dataset
 from bearingdyn.system import QUANTITIES, RATES, System, is_rotation
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-Array = NDArray[np.float64]
 Channel = tuple[int, Array | None, int, int]
 
 
@@ -70,8 +70,8 @@ def transient(
         Result of an earlier call on the same application: goes on where it ended, bit for bit.
     stream
         File on which channels and states are put while the march runs, every chunk checked and on the disk
-        before the next: killed at any moment, it holds every finished chunk (`bearingdyn.load` opens it),
-        and the same call goes on from there, bit for bit.
+        before the next. Killed at any moment, it holds every finished chunk; `bearingdyn.open_result` opens
+        it, and the same call goes on from there, bit for bit.
     audit
         Integrate energies and works; they come as attributes "energy_…", J.
     scheme

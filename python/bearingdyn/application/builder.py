@@ -9,7 +9,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.application.notes import (
     GRAVITY,
@@ -26,8 +26,7 @@ from bearingdyn.application.plan import Plan
 from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit
 from bearingdyn.cms import Viscoelastic
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 def _six(name: str, value: ArrayLike, positive: bool = False) -> Array:

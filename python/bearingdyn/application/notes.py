@@ -5,13 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from bearingdyn.bearing import BallBearing, LooseFit
 from bearingdyn.cms import Superelement
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 COMPONENTS = ("x", "y", "z", "θx", "θy", "θz")
 GROUND = "ground"

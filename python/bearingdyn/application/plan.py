@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.application.notes import GROUND, Bush, Connection, HungBearing, HungFit, Load, Part, Support
 from bearingdyn.application.rigid import arm, rigid_shapes
 from bearingdyn.cms import Raceway, Superelement
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 class Plan:

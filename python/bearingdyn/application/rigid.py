@@ -6,12 +6,10 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
 from bearingdyn.application.notes import COMPONENTS
 from bearingdyn.cms import Superelement
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 # energy of a rigid motion, of what the same entries would give without cancelling: round-off of a reduction
 FREE = 1e-10

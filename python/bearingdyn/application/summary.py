@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.application.notes import GRAVITY, GROUND, Load
 from bearingdyn.application.plan import Plan
 from bearingdyn.application.rigid import free_motions
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 def summary(app: Plan) -> str:

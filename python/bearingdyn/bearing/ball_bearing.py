@@ -15,23 +15,22 @@ from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.checks import nonnegative, number, positive, require, vector
 from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
 from bearingdyn.bearing.minimum import minimum
 from bearingdyn.bearing.series import RIGID, RacewaySeries
+from bearingdyn.checks import nonnegative, number, positive, require, vector
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.types import Array
 
 STATIC_PRESSURE = 4.2e9
 """Contact pressure that defines the static rating of a ball bearing (ISO 76), Pa."""
 
-_Response: TypeAlias = tuple[
-    NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]
-]
+_Response: TypeAlias = tuple[Array, Array, Array, Array]
 _MOTION = "(x, y, z, θx, θy, θz) of the inner ring relative to the outer ring"
 
 
@@ -149,10 +148,10 @@ class BallBearing:
             overrides.arm if arm is None else arm,
         )
         if given.kappa is not None:
-            positive("kappa", given.kappa, "must be positive and finite, in N/m^1.5")
+            positive("kappa", given.kappa, "it must be positive and finite, in N/m^1.5")
         if given.cage_ratio is not None:
             ratio = number("cage_ratio", given.cage_ratio)
-            require(0 <= ratio <= 1, "cage_ratio", ratio, "must lie in 0..1 (½(1 − γ), near 0.4)")
+            require(0 <= ratio <= 1, "cage_ratio", ratio, "it must lie in 0..1 (½(1 − γ), near 0.4)")
         if given.arm is not None:
             positive("arm", given.arm, "the arm of the moments in metres must be positive and finite")
         waves, pits, sizes = checked(int(Z), waviness, defects, oversize)
@@ -223,7 +222,7 @@ class BallBearing:
         """
         if contact_angle is None:
             return self.geometry.frequencies(speed)
-        loaded = abs(number("contact_angle", contact_angle, "must be a finite angle in rad"))
+        loaded = abs(number("contact_angle", contact_angle, "it must be a finite angle in rad"))
         return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(speed)
 
     def turned(self, angle: float) -> BallBearing:
@@ -293,7 +292,7 @@ class BallBearing:
             oversize=np.array(self.oversize),
         )
 
-    def coefficients(self, series: RacewaySeries = RIGID) -> NDArray[np.float64]:
+    def coefficients(self, series: RacewaySeries = RIGID) -> Array:
         """(n, 6) matrix from q to the raceway coefficients, lengths in m.
 
         Rows by default: radial cos ψ (x), radial sin ψ (y), axial mean (z), axial cos ψ (−R θy), axial
@@ -301,13 +300,13 @@ class BallBearing:
         """
         return series.rigid(self.arm)
 
-    def relative(self, q: ArrayLike) -> NDArray[np.float64]:
+    def relative(self, q: ArrayLike) -> Array:
         """Raceway coefficients (5,), m, of a relative motion q (6,), m and rad."""
         return self.coefficients() @ vector("q", q, (6,), _MOTION)
 
     def force(
         self, q: ArrayLike, angle: float = 0.0, velocity: ArrayLike | None = None, speed: float = 0.0
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         """Load (6,), N and N m, that holds the inner ring at q: +∇V (minus it acts on the ring).
 
         Parameters
@@ -330,17 +329,17 @@ class BallBearing:
         rate = np.zeros(6) if velocity is None else velocity
         return self.coefficients().T @ self._evaluate(q, angle, rate, speed)[0]
 
-    def stiffness(self, q: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
+    def stiffness(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Tangent stiffness (6, 6) ∂force/∂q at rest, symmetric, N/m, N and N m."""
         B = self.coefficients()
         return B.T @ self._evaluate(q, angle, np.zeros(6), 0.0)[1] @ B
 
-    def damping_matrix(self, q: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
+    def damping_matrix(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Tangent damping (6, 6) ∂force/∂velocity at rest, symmetric, N s/m, N s and N m s."""
         B = self.coefficients()
         return B.T @ self._evaluate(q, angle, np.zeros(6), 0.0)[2] @ B
 
-    def ball_loads(self, q: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
+    def ball_loads(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Contact load (Z,) of each ball at rest, N, balls in the order of their azimuth."""
         return self._evaluate(q, angle, np.zeros(6), 0.0)[3]
 
@@ -350,7 +349,7 @@ class BallBearing:
         loads = self.ball_loads(q, angle)
         return float(0.4 * (loads * (loads / self.kappa) ** (2 / 3)).sum())
 
-    def displacement(self, load: ArrayLike, angle: float = 0.0) -> NDArray[np.float64]:
+    def displacement(self, load: ArrayLike, angle: float = 0.0) -> Array:
         """Static equilibrium q (6,) of the inner ring under a load (6,), θz held, outer ring fixed.
 
         Where the loaded balls leave a motion free (a ring resting on one ball rolls sideways), the
@@ -378,7 +377,7 @@ class BallBearing:
         shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
         from bearingdyn import core  # late: the compiled kernel is needed only here and in _evaluate
 
-        def stored(z: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], NDArray[np.float64], float]:
+        def stored(z: Array) -> tuple[float, Array, Array, float]:
             g, K, _, loads = core.bearing_force(self._kernel, z, still, turn, 0.0, shaft)
             # ∫κ s^{3/2} ds = (2/5) F s with s = (F/κ)^{2/3}
             return float(0.4 * (loads * (loads / self.kappa) ** (2 / 3)).sum()), g, K, float(loads.sum())

@@ -11,7 +11,7 @@ import math
 from typing import Any, Literal, NamedTuple
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.checks import positive, require
+from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_length
 
 Kind = Literal["deep groove", "angular contact"]
@@ -80,7 +80,7 @@ def estimate(
     d, D = positive("bore", bore), positive("outside", outside)
     B = positive("width", width)
     check_length("outside", D)
-    require(D > d, "outside", outside, f"must exceed the bore of {bore!r} m")
+    require(D > d, "outside", outside, f"it must exceed the bore of {bore!r} m")
     require(
         kind in ("deep groove", "angular contact"), "kind", kind, 'give "deep groove" or "angular contact"'
     )
@@ -164,7 +164,7 @@ CATALOGUE: dict[str, Entry] = _table()
 def entry(designation: str | int) -> Entry:
     """Typical geometry of a designation, its source beside it; ValueError if it is not listed."""
     listed = ", ".join(CATALOGUE)
-    require(str(designation) in CATALOGUE, "designation", designation, f"must be one of {listed}")
+    require(str(designation) in CATALOGUE, "designation", designation, f"it must be one of {listed}")
     return CATALOGUE[str(designation)]
 
 

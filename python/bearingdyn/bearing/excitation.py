@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bearingdyn.bearing.checks import number, positive, require
+from bearingdyn.checks import number, positive, require
+from bearingdyn.types import Array
 
 Body = Literal["inner", "outer", "ball"]
 BODIES = ("inner", "outer", "ball")
@@ -52,13 +52,13 @@ class Waviness:
     ball: int | None = None
 
     def __post_init__(self) -> None:
-        require(self.body in BODIES, "waviness.body", self.body, f"must be one of {BODIES}")
+        require(self.body in BODIES, "waviness.body", self.body, f"it must be one of {BODIES}")
         whole = isinstance(self.order, int) and self.order >= 0
-        require(whole, "waviness.order", self.order, "must be a whole number of waves, zero or more")
-        number("waviness.amplitude", self.amplitude, "must be a finite length in m")
-        number("waviness.phase", self.phase, "must be a finite angle in rad")
+        require(whole, "waviness.order", self.order, "it must be a whole number of waves, zero or more")
+        number("waviness.amplitude", self.amplitude, "it must be a finite length in m")
+        number("waviness.phase", self.phase, "it must be a finite angle in rad")
         known = self.direction in ("radial", "axial")
-        require(known, "waviness.direction", self.direction, 'must be "radial" or "axial"')
+        require(known, "waviness.direction", self.direction, 'it must be "radial" or "axial"')
         if self.ball is not None:
             on_ball = self.body == "ball" and self.ball >= 1
             require(on_ball, "waviness.ball", self.ball, 'names a ball from 1, with body "ball"')
@@ -101,10 +101,10 @@ class Pit:
     ball: int = 1
 
     def __post_init__(self) -> None:
-        require(self.body in BODIES, "defects.body", self.body, f"must be one of {BODIES}")
-        number("defects.angle", self.angle, "must be a finite angle in rad")
-        positive("defects.width", self.width, "must be a positive length in m")
-        positive("defects.depth", self.depth, "must be a positive length in m")
+        require(self.body in BODIES, "defects.body", self.body, f"it must be one of {BODIES}")
+        number("defects.angle", self.angle, "it must be a finite angle in rad")
+        positive("defects.width", self.width, "it must be a positive length in m")
+        positive("defects.depth", self.depth, "it must be a positive length in m")
         require(self.ball >= 1, "defects.ball", self.ball, "balls are counted from 1")
 
     def row(self, Z: int) -> tuple[float, ...]:
@@ -126,9 +126,9 @@ class Imperfections:
     ball_diameter: float = 0.0
     inner_radius: float = 0.0
     outer_radius: float = 0.0
-    waves: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 5)))
-    pits: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 5)))
-    oversize: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    waves: Array = field(default_factory=lambda: np.zeros((0, 5)))
+    pits: Array = field(default_factory=lambda: np.zeros((0, 5)))
+    oversize: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def none(self) -> bool:

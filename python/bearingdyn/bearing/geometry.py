@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from bearingdyn.bearing.checks import nonnegative, number, positive, require
+from bearingdyn.checks import nonnegative, number, positive, require
 from bearingdyn.magnitude import LARGEST_BALL, LARGEST_BODY, check_length
 
 PRELOADED = (
@@ -98,14 +98,16 @@ class Geometry:
             Pd = number(
                 "clearance", self.clearance, "the diametral clearance in metres must be zero or positive"
             )
-            require(Pd >= 0, "clearance", self.clearance, f"must be zero or positive, in metres; {PRELOADED}")
+            require(
+                Pd >= 0, "clearance", self.clearance, f"it must be zero or positive, in metres; {PRELOADED}"
+            )
             unit = f"above Dw/10 = {0.1 * self.Dw:.6g} m: is it in µm? the clearance is in m"
             require(Pd <= 0.1 * self.Dw, "clearance", self.clearance, unit)
             require(
                 Pd < 2 * self.A,
                 "clearance",
                 self.clearance,
-                f"must be less than 2A = {2 * self.A:.6g} m, A the groove centres' distance",
+                f"it must be less than 2A = {2 * self.A:.6g} m, A the groove centres' distance",
             )
         else:
             remedy = "the contact angle must be in radians, 0 <= angle < pi/2"

@@ -14,8 +14,8 @@ from typing import Literal
 
 import scipy
 
-from bearingdyn.bearing.checks import nonnegative, number, positive, require
 from bearingdyn.bearing.geometry import Geometry
+from bearingdyn.checks import nonnegative, number, positive, require
 from bearingdyn.material import Elastic
 
 
@@ -172,7 +172,7 @@ def race_contact(
 
     Raises ValueError if `race` is neither "inner" nor "outer".
     """
-    require(race in ("inner", "outer"), "race", race, 'must be "inner" or "outer"')
+    require(race in ("inner", "outer"), "race", race, 'it must be "inner" or "outer"')
     f, sign = (geometry.fi, -1.0) if race == "inner" else (geometry.fo, 1.0)
     return PointContact(
         Rx=geometry.Dw / 2 * (1 + sign * geometry.gamma),

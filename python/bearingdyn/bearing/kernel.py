@@ -8,11 +8,12 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.bearing.checks import nonnegative, number, require, vector
 from bearingdyn.bearing.excitation import Imperfections
+from bearingdyn.checks import nonnegative, number, require, vector
+from bearingdyn.types import Array
 
 Law: TypeAlias = Literal["constant", "table", "load"]
-KernelFields: TypeAlias = tuple[Law, float, NDArray[np.float64]]
+KernelFields: TypeAlias = tuple[Law, float, Array]
 
 
 @dataclass(frozen=True)
@@ -51,16 +52,16 @@ class TabulatedDamping:
         If the table is unsorted, ragged, too short, negative or not finite.
     """
 
-    delta: NDArray[np.float64]
-    c: NDArray[np.float64]
+    delta: Array
+    c: Array
 
     def __init__(self, delta: ArrayLike, c: ArrayLike) -> None:
         n = np.size(delta)
         require(n >= 2, "damping.delta", delta, "a table needs two points or more (else ConstantDamping)")
         x = vector("damping.delta", delta, (n,), "indentations in metres")
         y = vector("damping.c", c, (n,), "one damping in N s/m for each delta")
-        require(bool((np.diff(x) > 0).all()), "damping.delta", delta, "must be strictly increasing")
-        require(bool((y >= 0).all()), "damping.c", c, "must be zero or positive")
+        require(bool((np.diff(x) > 0).all()), "damping.delta", delta, "it must be strictly increasing")
+        require(bool((y >= 0).all()), "damping.c", c, "it must be zero or positive")
         for array in (x, y):
             array.flags.writeable = False
         object.__setattr__(self, "delta", x)
@@ -137,7 +138,7 @@ class BearingKernel:
     damping_law: Law
     damping_c: float
     """c in N s/m ("constant") or the damping time in s ("load"); 0 for "table"."""
-    damping_table: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2)))
+    damping_table: Array = field(default_factory=lambda: np.zeros((0, 2)))
     """(n, 2) rows (δ in m, c in N s/m); empty unless the law is "table"."""
     cage_ratio: float = 0.5
     """Cage speed over inner-ring speed."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.checks import number, require
+from bearingdyn.checks import number, require
 
 
 def fault_lines(
@@ -77,7 +77,7 @@ def waviness_lines(
     _whole("multiples", multiples)
     for n in ball_orders:
         even = isinstance(n, int) and n > 0 and n % 2 == 0
-        require(even, "ball_orders", ball_orders, "must be even: odd orders cancel across a ball")
+        require(even, "ball_orders", ball_orders, "it must be even: odd orders cancel across a ball")
     f = bearing.frequencies(number("speed", speed), contact_angle)
     turn, Z = abs(speed) / (2 * math.pi), bearing.Z
     lines: dict[str, float] = {}
@@ -98,4 +98,4 @@ def waviness_lines(
 
 
 def _whole(field: str, value: object) -> None:
-    require(isinstance(value, int) and value >= 1, field, value, "must be a whole number, one or more")
+    require(isinstance(value, int) and value >= 1, field, value, "it must be a whole number, one or more")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bearingdyn.bearing.checks import nonnegative, positive, require
 from bearingdyn.bearing.kernel import BearingKernel
 from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.checks import nonnegative, positive, require
+from bearingdyn.types import Index
 
 _SCALE = 1.0  # m; radial motion alone: no result depends on it
 
@@ -45,9 +45,9 @@ class LooseFit:
     def __post_init__(self) -> None:
         nonnegative("clearance", self.clearance, "diametral, in m, must be zero or positive")
         whole = self.stations % 1 == 0 and self.stations >= 3
-        require(whole, "stations", self.stations, "must be a whole number, 3 or more")
-        positive("kappa", self.kappa, "must be positive and finite, in N/m^1.5")
-        positive("hold", self.hold, "must be positive and finite, in N/m")
+        require(whole, "stations", self.stations, "it must be a whole number, 3 or more")
+        positive("kappa", self.kappa, "it must be positive and finite, in N/m^1.5")
+        positive("hold", self.hold, "it must be positive and finite, in N/m")
 
     @property
     def Z(self) -> int:
@@ -66,7 +66,9 @@ class LooseFit:
         axial, order, sine = series.columns
         require(not axial.any(), "series", series.terms, "a loose fit takes radial terms only")
         least = 2 * int(order.max()) + 1
-        require(self.stations >= least, "stations", self.stations, f"must be {least} or more for this ring")
+        require(
+            self.stations >= least, "stations", self.stations, f"it must be {least} or more for this ring"
+        )
         half = self.clearance / 2
         return BearingKernel(
             Z=self.Z,
@@ -84,7 +86,7 @@ class LooseFit:
             cage_ratio=0.0,
         )
 
-    def split(self, series: RacewaySeries) -> tuple[NDArray[np.intp], RacewaySeries, NDArray[np.intp]]:
+    def split(self, series: RacewaySeries) -> tuple[Index, RacewaySeries, Index]:
         """Places of the radial terms, their series, and places of the axial terms that `hold` acts on."""
         radial = [k for k, (axial, _, _) in enumerate(series.terms) if not axial]
         held = [k for k, (axial, order, _) in enumerate(series.terms) if axial and order <= 1]

@@ -10,8 +10,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from bearingdyn.bearing.checks import nonnegative, number, positive, require
 from bearingdyn.bearing.hertz import PointContact
+from bearingdyn.checks import nonnegative, number, positive, require
 
 _ROELANDS_PRESSURE = 1.96e8  # Pa
 _ROELANDS_LOG_VISCOSITY = 9.67  # −ln(6.31e-5 Pa s)
@@ -52,7 +52,7 @@ class Walther:
 
     def __post_init__(self) -> None:
         number("A", self.A)
-        positive("B", self.B, "must be positive: oils thin with temperature")
+        positive("B", self.B, "it must be positive: oils thin with temperature")
 
     @classmethod
     def from_two_points(cls, T1: float, nu1: float, T2: float, nu2: float) -> Walther:
@@ -63,7 +63,7 @@ class Walther:
         first, second = _kelvin("T1", T1), _kelvin("T2", T2)
         require(first < second, "T1, T2", (T1, T2), "temperatures in °C must increase")
         x, y = positive("nu1", nu1) * 1e6, positive("nu2", nu2) * 1e6
-        require(y >= 2, "nu2", nu2, "must be 2e-6 m²/s or more (give m²/s: 32 mm²/s is 32e-6)")
+        require(y >= 2, "nu2", nu2, "it must be 2e-6 m²/s or more (give m²/s: 32 mm²/s is 32e-6)")
         require(x > y, "nu1, nu2", (nu1, nu2), "an oil thins with temperature: nu1 must exceed nu2")
         a, b = math.log10(math.log10(x + 0.7)), math.log10(math.log10(y + 0.7))
         B = (a - b) / (math.log10(second) - math.log10(first))
@@ -131,7 +131,7 @@ class Lubricant:
     def viscosity(self, T: float, p: float = 0.0, law: Literal["roelands", "barus"] = "roelands") -> float:
         """Dynamic viscosity, Pa s, at T in °C and the pressure p in Pa."""
         eta0 = self.kinematic.viscosity(T) * self.density
-        require(law in ("roelands", "barus"), "law", law, 'must be "roelands" or "barus"')
+        require(law in ("roelands", "barus"), "law", law, 'it must be "roelands" or "barus"')
         if law == "barus":
             return barus(eta0, self.alpha, p)
         return roelands(eta0, roelands_exponent(eta0, self.alpha), p)
@@ -234,7 +234,7 @@ def dimensionless_film(M: float, L: float, D: float) -> float:
     """
     for name, value in (("M", M), ("L", L), ("D", D)):
         positive(name, value)
-    require(D <= 1, "D", D, "must be at most 1: rolling across the minor axis of the contact")
+    require(D <= 1, "D", D, "it must be at most 1: rolling across the minor axis of the contact")
     phi = 1 + 0.006 * math.log(D) + 0.63 * D ** (4 / 7)
     rigid_iso = 145 * (1 + 0.796 * D ** (14 / 15)) ** (-15 / 7) / (D * M**2)
     elastic_iso = 3.18 * phi ** (-14 / 25) * D ** (-1 / 15) * M ** (-2 / 15)
@@ -253,7 +253,7 @@ def _film_scales(contact: PointContact) -> tuple[float, float]:
         contact.Rx <= contact.Ry,
         "contact.Rx",
         contact.Rx,
-        f"must not exceed Ry = {contact.Ry!r} m: the formulas hold for rolling across the minor axis",
+        f"it must not exceed Ry is {contact.Ry!r} m; the formulas hold for rolling across the minor axis",
     )
     return 2 * contact.modulus, contact.Rx
 
@@ -261,11 +261,11 @@ def _film_scales(contact: PointContact) -> tuple[float, float]:
 def _roelands_log(eta0: float) -> float:
     log = math.log(positive("eta0", eta0, "the dynamic viscosity in Pa s must be positive"))
     log += _ROELANDS_LOG_VISCOSITY
-    require(log > 0, "eta0", eta0, "must exceed 6.31e-5 Pa s for Roelands' law (give Pa s, not mPa s)")
+    require(log > 0, "eta0", eta0, "it must exceed 6.31e-5 Pa s for Roelands' law (give Pa s, not mPa s)")
     return log
 
 
 def _kelvin(field: str, T: float) -> float:
     kelvin = number(field, T, "the temperature in °C must be finite") + _ZERO_CELSIUS
-    require(kelvin > 0, field, T, "must lie above absolute zero, −273.15 °C")
+    require(kelvin > 0, field, T, "it must lie above absolute zero, −273.15 °C")
     return kelvin

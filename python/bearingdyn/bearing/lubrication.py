@@ -10,7 +10,6 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.checks import number, positive, require
 from bearingdyn.bearing.hertz import resultant_damping
 from bearingdyn.bearing.kernel import ConstantDamping
 from bearingdyn.bearing.lubricant import (
@@ -20,6 +19,7 @@ from bearingdyn.bearing.lubricant import (
     wijnant_damping,
 )
 from bearingdyn.bearing.quasistatic import load_distribution
+from bearingdyn.checks import number, positive, require
 
 FilmLaw = Literal["nijenbanning-venner-moes", "hamrock-dowson"]
 
@@ -103,7 +103,7 @@ def lubricate(
     omega = number("speed", speed, "the inner-ring speed in rad/s must be finite")
     require(omega != 0, "speed", speed, "without speed there is no film")
     share = positive("starvation", starvation)
-    require(share <= 1, "starvation", starvation, "must be at most 1, fully flooded")
+    require(share <= 1, "starvation", starvation, "it must be at most 1, fully flooded")
     sigma = 0.0
     if roughness is not None:
         race, ball = roughness

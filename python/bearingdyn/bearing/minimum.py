@@ -13,10 +13,10 @@ from typing import TypeAlias
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
-Vector: TypeAlias = NDArray[np.float64]
-Law: TypeAlias = Callable[[Vector], tuple[float, Vector, Vector, float]]
+from bearingdyn.types import Array
+
+Law: TypeAlias = Callable[[Array], tuple[float, Array, Array, float]]
 """z (n,) -> energy J, its gradient (n,), its Hessian (n, n), and the sum of the contact loads N."""
 
 # bearings take 5 to 25 steps; a force known to 1e-12 of the load leaves displacements near round-off
@@ -27,12 +27,12 @@ _TOLERANCE = 1e-12
 class NoBalance(ArithmeticError):
     """No balance was found; z (n,) is where the search ended."""
 
-    def __init__(self, message: str, z: Vector) -> None:
+    def __init__(self, message: str, z: Array) -> None:
         super().__init__(message)
         self.z = z
 
 
-def minimum(law: Law, load: Vector, radius: float, start: Vector | None = None) -> Vector:
+def minimum(law: Law, load: Array, radius: float, start: Array | None = None) -> Array:
     """Coefficients z (n,) at which the gradient of the stored energy balances `load` (n,).
 
     Where the energy is flat (a ring that rests on one or two balls) the coordinate stays where it is.
@@ -85,14 +85,14 @@ def minimum(law: Law, load: Vector, radius: float, start: Vector | None = None) 
     )
 
 
-def _step(r: Vector, H: Vector, radius: float, negligible: float) -> Vector:
+def _step(r: Array, H: Array, radius: float, negligible: float) -> Array:
     """Minimiser of r·d + ½ d·H d over |d| ≤ radius (Moré & Sorensen 1983); zero where all is flat."""
     stiffness, modes = np.linalg.eigh(H)
     stiffness = np.maximum(stiffness, 0.0)
     force = modes.T @ r
     force[np.abs(force) <= negligible] = 0.0
 
-    def along(mu: float) -> Vector:
+    def along(mu: float) -> Array:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             return np.where(force == 0, 0.0, -force / (stiffness + mu))
 

@@ -11,8 +11,8 @@ import math
 from dataclasses import dataclass
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.checks import nonnegative, number, positive, require
 from bearingdyn.bearing.geometry import PRELOADED
+from bearingdyn.checks import nonnegative, number, positive, require
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 
@@ -51,7 +51,7 @@ class Seat:
         nonnegative("interference", self.interference, "diametral, in m, must be zero or positive")
         require(isinstance(self.material, Elastic), "material", self.material, "give a material.Elastic")
         nonnegative("expansion", self.expansion, "the thermal expansion in 1/K must be zero or positive")
-        number("warming", self.warming, "must be a finite temperature difference in K")
+        number("warming", self.warming, "it must be a finite temperature difference in K")
         if self.other is not None:
             require(self.other >= 0, "other", self.other, "a diameter in m must be zero or positive")
 
@@ -90,17 +90,19 @@ class Mounting:
     def __post_init__(self) -> None:
         positive("bore", self.bore)
         require(
-            positive("outside", self.outside) > self.bore, "outside", self.outside, "must exceed the bore"
+            positive("outside", self.outside) > self.bore, "outside", self.outside, "it must exceed the bore"
         )
         check_length("outside", self.outside)
         for name in ("inner", "outer", "balls"):
-            number(name, getattr(self, name), "must be a finite temperature difference in K")
+            number(name, getattr(self, name), "it must be a finite temperature difference in K")
         nonnegative("expansion", self.expansion)
         nonnegative("ball_expansion", self.ball_expansion)
         hollow = 0.0 if self.shaft.other is None else self.shaft.other
-        require(hollow < self.bore, "shaft.other", hollow, f"must be less than the bore of {self.bore!r} m")
+        require(
+            hollow < self.bore, "shaft.other", hollow, f"it must be less than the bore of {self.bore!r} m"
+        )
         around = math.inf if self.housing.other is None else self.housing.other
-        wide = f"must exceed the bearing's outside diameter of {self.outside!r} m"
+        wide = f"it must exceed the bearing's outside diameter of {self.outside!r} m"
         require(around > self.outside, "housing.other", around, wide)
 
     def clearance_change(self, bearing: BallBearing) -> float:
@@ -139,7 +141,7 @@ class Mounting:
         if bearing.clearance is not None:
             return dataclasses.replace(bearing, clearance=left)
         A = bearing.geometry.A
-        require(left < 2 * A, "clearance", left, f"must stay below 2A = {2 * A:.6g} m")
+        require(left < 2 * A, "clearance", left, f"it must stay below 2A = {2 * A:.6g} m")
         return dataclasses.replace(bearing, contact_angle=2 * math.asin(math.sqrt(left / (4 * A))))
 
 

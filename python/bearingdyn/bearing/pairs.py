@@ -7,13 +7,13 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.checks import nonnegative, positive, require, vector
 from bearingdyn.bearing.minimum import minimum
+from bearingdyn.checks import nonnegative, positive, require, vector
+from bearingdyn.types import Array
 
-Array = NDArray[np.float64]
 Arrangement = Literal["DB", "DF", "DT"]
 _MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
 """Reflection z → −z of a motion or of a load: axial vectors keep their component along z."""
@@ -68,9 +68,9 @@ class Pair:
     def __post_init__(self) -> None:
         require(isinstance(self.row, BallBearing), "row", self.row, "give a BallBearing")
         known = self.arrangement in ("DB", "DF", "DT")
-        require(known, "arrangement", self.arrangement, 'must be "DB", "DF" or "DT"')
+        require(known, "arrangement", self.arrangement, 'it must be "DB", "DF" or "DT"')
         positive("distance", self.distance, "between the rows, in metres, must be positive and finite")
-        remedy = "must be zero or positive, and finite"
+        remedy = "it must be zero or positive, and finite"
         if self.preload is not None:
             nonnegative("preload", self.preload, f"in m, {remedy}")
             both = self.preload_force is None

@@ -6,15 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import STATIC_PRESSURE, BallBearing
-from bearingdyn.bearing.checks import number, positive, require
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.running import Running
+from bearingdyn.checks import number, positive, require
 from bearingdyn.notice import warn
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 class BearingWarning(UserWarning):
@@ -166,10 +165,10 @@ def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Pas
     ArithmeticError
         If no equilibrium is found.
     """
-    require(isinstance(n, int) and n >= 1, "n", n, "must be a whole number of positions, one or more")
+    require(isinstance(n, int) and n >= 1, "n", n, "it must be a whole number of positions, one or more")
     brg = bearing.bearing if isinstance(bearing, Running) else bearing
     smooth = not (brg.waviness or brg.defects or brg.oversize)
-    require(smooth, "bearing", brg, "must have neither waviness, defects nor unequal balls")
+    require(smooth, "bearing", brg, "it must have neither waviness, defects nor unequal balls")
     angle = 2 * math.pi / brg.Z * np.arange(n) / n
     q = np.array([bearing.displacement(load, float(a)) for a in angle])
     K = np.array([bearing.stiffness(place, float(a)) for place, a in zip(q, angle, strict=True)])

@@ -19,13 +19,13 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.checks import number, require, vector
 from bearingdyn.bearing.minimum import minimum
+from bearingdyn.checks import number, require, vector
+from bearingdyn.types import Array
 
-Array = NDArray[np.float64]
 _STEP = 1e-30
 _ITERATIONS = 80
 # of the loads of a ball; beside it the round-off of distances, which a lightly loaded ball feels more
@@ -90,9 +90,11 @@ class Running:
     def __post_init__(self) -> None:
         require(isinstance(self.bearing, BallBearing), "bearing", self.bearing, "give a BallBearing")
         flaws = self.bearing.waviness or self.bearing.defects or self.bearing.oversize
-        require(not flaws, "bearing", self.bearing, "must have neither waviness, defects nor unequal balls")
+        require(
+            not flaws, "bearing", self.bearing, "it must have neither waviness, defects nor unequal balls"
+        )
         number("speed", self.speed, "the inner-ring speed in rad/s must be finite")
-        require(self.control in ("outer", "inner"), "control", self.control, 'must be "outer" or "inner"')
+        require(self.control in ("outer", "inner"), "control", self.control, 'it must be "outer" or "inner"')
 
     def balls(self, q: ArrayLike, angle: float = 0.0) -> Balls:
         """Loads, contact angles and inertia forces of the balls with the inner ring at q (6,), m and rad.

@@ -8,6 +8,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.types import Array
+
 
 @dataclass(frozen=True)
 class RacewaySeries:
@@ -51,7 +53,7 @@ class RacewaySeries:
         axial, order, sine = np.array(self.terms, dtype=np.intc).T.copy()
         return axial, order, sine
 
-    def rigid(self, arm: float) -> NDArray[np.float64]:
+    def rigid(self, arm: float) -> Array:
         """(n, 6) matrix from a rigid ring's motion (x, y, z, θx, θy, θz), tilts at `arm` in m, to the terms.
 
         Terms that a rigid ring does not have are zero.

@@ -9,8 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from bearingdyn.bearing.checks import nonnegative, number, positive, require
 from bearingdyn.bearing.excitation import BODIES, Body, Pit, Waviness
+from bearingdyn.checks import nonnegative, number, positive, require
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,9 @@ class WavinessSpectrum:
         nonnegative("spectrum.amplitude", self.amplitude, "in m, must be zero or positive, and finite")
         number("spectrum.exponent", self.exponent)
         whole = isinstance(self.order, int) and self.order >= 1
-        require(whole, "spectrum.order", self.order, "must be a whole number of waves, one or more")
+        require(whole, "spectrum.order", self.order, "it must be a whole number of waves, one or more")
         known = self.scatter in ("none", "rayleigh")
-        require(known, "spectrum.scatter", self.scatter, 'must be "none" or "rayleigh"')
+        require(known, "spectrum.scatter", self.scatter, 'it must be "none" or "rayleigh"')
 
     def at(self, order: int) -> float:
         """Amplitude by the law, m."""
@@ -77,15 +77,15 @@ class WavinessSpectrum:
 
         Raises ValueError naming the field, its value and what would be right.
         """
-        require(body in BODIES, "body", body, f"must be one of {BODIES}")
-        require(isinstance(seed, int) and seed >= 0, "seed", seed, "must be a whole number, zero or more")
+        require(body in BODIES, "body", body, f"it must be one of {BODIES}")
+        require(isinstance(seed, int) and seed >= 0, "seed", seed, "it must be a whole number, zero or more")
         on_ball = body == "ball"
         given = Z is not None and Z >= 1
         require(given == on_ball, "Z", Z, "give the number of balls with body 'ball', and only then")
         waves = []
         for order in orders:
             whole = isinstance(order, int) and order >= 1
-            require(whole, "orders", order, "must be whole numbers of waves, one or more")
+            require(whole, "orders", order, "it must be whole numbers of waves, one or more")
             for ball in range(1, (Z or 1) + 1):
                 random = np.random.default_rng([seed, order, ball])
                 phase = float(random.uniform(0, 2 * math.pi))
@@ -101,8 +101,8 @@ def diameter_scatter(Z: int, deviation: float, seed: int) -> tuple[float, ...]:
 
     Raises ValueError for a Z or seed that is no whole number, or a negative deviation.
     """
-    require(isinstance(Z, int) and Z >= 1, "Z", Z, "must be a whole number of balls")
-    require(isinstance(seed, int) and seed >= 0, "seed", seed, "must be a whole number, zero or more")
+    require(isinstance(Z, int) and Z >= 1, "Z", Z, "it must be a whole number of balls")
+    require(isinstance(seed, int) and seed >= 0, "seed", seed, "it must be a whole number, zero or more")
     sigma = nonnegative("deviation", deviation, "in m, must be zero or positive, and finite")
     return tuple(float(x) for x in sigma * np.random.default_rng(seed).standard_normal(Z))
 

@@ -27,7 +27,7 @@ def run_show(arguments: argparse.Namespace) -> tuple[str, int]:
         raise ValueError(
             f"{path}: " + ("is a folder, not a result file" if path.is_dir() else "no such file")
         )
-    held = {name: _describe(results.load(path, name)) for name in results.groups(path) or [""]}
+    held = {name: _describe(results.open_result(path, name)) for name in results.groups(path) or [""]}
     if arguments.json:
         return json.dumps({"file": str(path), "groups": held}, indent=1), GOOD
     return "\n\n".join(_listing(name, group) for name, group in held.items()), GOOD

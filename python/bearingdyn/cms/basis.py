@@ -12,9 +12,10 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.cms.full import FullModel
-from bearingdyn.cms.superelement import ComplexModulus, Float, Index
+from bearingdyn.cms.superelement import ComplexModulus
 from bearingdyn.fem.eigen import factorise, lowest_modes
 from bearingdyn.material import Maxwell
+from bearingdyn.types import Array, Index
 
 DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off
 
@@ -28,16 +29,16 @@ class Basis:
     frequency: (m,) frequencies of the fixed-interface modes, Hz.
     """
 
-    Psi: Float
-    K: Float
-    frequency: Float
+    Psi: Array
+    K: Array
+    frequency: Array
 
-    def reduce(self, A: Any, *, skew: bool = False) -> Float:
+    def reduce(self, A: Any, *, skew: bool = False) -> Array:
         """Psiᵀ A Psi for a symmetric (or skew) A, (r + m, r + m), round-off asymmetry removed."""
         a = self.Psi.T @ (A @ self.Psi)
         return np.asarray(0.5 * (a - a.T) if skew else 0.5 * (a + a.T))
 
-    def stiffness(self) -> Float:
+    def stiffness(self) -> Array:
         """Reduced stiffness, (r + m, r + m): constraint and fixed-interface modes do not couple in K."""
         return np.asarray(scipy.linalg.block_diag(self.K, np.diag((2.0 * np.pi * self.frequency) ** 2)))
 
@@ -51,18 +52,18 @@ class _Held:
     inner: Index
     blocks: list[tuple[Index, Any, Any, Any]]  # coordinates within inner, stiffness, mass, factors
 
-    def solve(self, load: Any) -> Float:
+    def solve(self, load: Any) -> Array:
         """Static motion (inner, m) under loads (inner, m), the interface held."""
         u = np.zeros(load.shape)
         for at, _, _, lu in self.blocks:
             u[at] = lu.solve(np.ascontiguousarray(load[at]))
         return u
 
-    def static(self, T: Float) -> Float:
+    def static(self, T: Array) -> Array:
         """Static motion (inner, r) that goes with interface motions T (held, r)."""
         return -self.solve(np.asarray(self.K[self.inner][:, self.held] @ T))
 
-    def modes(self, f_max: float | None, n_modes: int | None) -> tuple[Float, Float]:
+    def modes(self, f_max: float | None, n_modes: int | None) -> tuple[Array, Array]:
         """Rising frequencies (m,), Hz, and shapes (inner, m) of unit modal mass, the interface held."""
         limit = self.inner.size if n_modes is None else min(n_modes, self.inner.size)
         found = [(np.zeros(0), np.zeros((self.inner.size, 0)))]
@@ -194,7 +195,7 @@ def modulus_levels(
     return [low, high] if ratio <= 100.0 else [low, np.sqrt(np.multiply(low, high)).tolist(), high]
 
 
-def orthogonalise(shapes: Float, K: Any, M: Any) -> tuple[Float, Float]:
+def orthogonalise(shapes: Array, K: Any, M: Any) -> tuple[Array, Array]:
     """Combine shapes (n, m) into modes of each other: unit modal mass, diagonal stiffness.
 
     The shapes come with energies uᵀKu of at most about one; combinations with less than DISTINCT are
@@ -210,7 +211,7 @@ def orthogonalise(shapes: Float, K: Any, M: Any) -> tuple[Float, Float]:
     return 1.0 / (2.0 * np.pi * np.sqrt(inverse[order])), shapes @ (turn[:, order] / np.sqrt(inverse[order]))
 
 
-def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Float, inner: Index, rounds: int) -> list[Float]:
+def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Array, inner: Index, rounds: int) -> list[Array]:
     """Static answers (n, m) of the held model to the inertia of shapes (n, m), then to that of the answers.
 
     solve: static motion (inner, m) under loads (inner, m), the interfaces held; K, M: (n, n). They take over
@@ -253,7 +254,7 @@ def basis_of(
     rows = [model.outputs[name] for name in attach]
     load = scipy.sparse.vstack(rows).toarray().T if rows else np.zeros((model.n, 0))
 
-    extra: list[Float] = []
+    extra: list[Array] = []
     for level in levels:
         K = model.stiffness(level)
         at = _hold(K, model.M, b)

@@ -6,10 +6,10 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.cms.superelement import Float, Index
+from bearingdyn.types import Array, Index
 
 
-def modal_damping(M: ArrayLike, K: ArrayLike, zeta: float) -> Float:
+def modal_damping(M: ArrayLike, K: ArrayLike, zeta: float) -> Array:
     """Viscous damping (n, n), N s/m, that gives every free elastic mode of (M, K) the damping ratio zeta.
 
     C = M Φ diag(2 ζ ω) Φᵀ M with ΦᵀMΦ = I, rigid-body modes undamped: the same matrix serves the time and
@@ -43,7 +43,7 @@ def modal_damping(M: ArrayLike, K: ArrayLike, zeta: float) -> Float:
     return C
 
 
-def coupled_blocks(*matrices: Float) -> list[Index]:
+def coupled_blocks(*matrices: Array) -> list[Index]:
     """Coordinates that any nonzero entry of the (n, n) matrices couples, block by block."""
     pattern = scipy.sparse.csr_matrix(sum((np.asarray(A) != 0.0) for A in matrices))
     count, label = scipy.sparse.csgraph.connected_components(pattern, directed=False)

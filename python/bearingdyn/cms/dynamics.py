@@ -8,13 +8,10 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from bearingdyn.cms.full import FullModel
-from bearingdyn.cms.superelement import Float, Index
 from bearingdyn.fem.eigen import Factors, order_of
-
-Complex = NDArray[np.complex128]
+from bearingdyn.types import Array, Complex, Index
 
 DENSE_LIMIT = 500  # below this size LAPACK solves quicker than sparse factors
 RESIDUAL = 1e-10  # of a solve, over its right-hand side, after one refinement
@@ -48,7 +45,7 @@ class Dynamics:
     The order of elimination is found once.
     """
 
-    def __init__(self, model: FullModel, points: Any, damper: tuple[Float, Float] | None = None) -> None:
+    def __init__(self, model: FullModel, points: Any, damper: tuple[Array, Array] | None = None) -> None:
         faces = list(model.interfaces.values())
         self.model = model
         held = np.concatenate([f.dofs for f in faces])
@@ -141,7 +138,7 @@ class Dynamics:
         )
 
 
-def _one_pattern(matrices: Sequence[Any]) -> tuple[list[Float], Any, Any]:
+def _one_pattern(matrices: Sequence[Any]) -> tuple[list[Array], Any, Any]:
     """Data of square sparse matrices on the union of their patterns, and that pattern in csc form."""
     n = matrices[0].shape[0]
     sorted_ = []

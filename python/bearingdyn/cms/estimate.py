@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.cms.basis import Basis, orthogonalise
-from bearingdyn.cms.dynamics import Complex, Dynamics, Transfer
+from bearingdyn.cms.dynamics import Dynamics, Transfer
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.reduction import project
-from bearingdyn.cms.superelement import Float, Index
 from bearingdyn.fem.eigen import rigid_transfer
+from bearingdyn.types import Array, Complex, Index
 
 CHANGE = 0.1  # of the estimated error by the last full solve: below it, no further one is made
 
@@ -30,13 +30,13 @@ class ReductionError:
     solved: frequencies, Hz, at which the full model was solved.
     """
 
-    frequency: Float
-    by_load: Float
+    frequency: Array
+    by_load: Array
     exact: bool
-    solved: Float
+    solved: Array
 
     @property
-    def error(self) -> Float:
+    def error(self) -> Array:
         """The worst load's relative error at each frequency, (f,)."""
         return np.asarray(self.by_load.max(axis=1))
 
@@ -97,7 +97,7 @@ def reduction_error(
         transfer, *motion = case.dynamics.solve(omega[i])
         shapes.append(np.hstack(motion))
         truth[i] = case.response(transfer)
-    estimate: Float | None = None
+    estimate: Array | None = None
     while True:
         larger = case.enlarged(basis, shapes, omega[chosen])
         full = [case.response(t) for t in case.reduced(larger, omega)]
@@ -121,13 +121,13 @@ def reduction_error(
     return ReductionError(f, estimate, False, np.sort(f[chosen]))
 
 
-def _widest_gap(f: Float, chosen: Sequence[int]) -> int:
+def _widest_gap(f: Array, chosen: Sequence[int]) -> int:
     """The frequency farthest, on a logarithmic scale, from those chosen."""
     distance = np.abs(np.log(f[:, None] / f[list(chosen)])).min(axis=1)
     return int(np.argmax(distance))
 
 
-def _relative(reduced: Sequence[Complex], full: Sequence[Complex]) -> Float:
+def _relative(reduced: Sequence[Complex], full: Sequence[Complex]) -> Array:
     """Column by column ‖reduced − full‖/‖full‖, (frequencies, columns)."""
     return np.array(
         [
@@ -192,7 +192,7 @@ class _Case:
         scaled = t.receptance(self.free) * self.scale[:, None] / self.scale
         return np.asarray(scaled[:, self.columns])
 
-    def reduced(self, basis: Basis, omega: Float) -> list[Transfer]:
+    def reduced(self, basis: Basis, omega: Array) -> list[Transfer]:
         """Transfers of the model projected on a basis."""
         small = FullModel.of(project(self.model, basis))
         damper = None
@@ -202,7 +202,7 @@ class _Case:
         dynamics = Dynamics(small, self.points @ basis.Psi, damper)
         return [dynamics.solve(w)[0] for w in omega]
 
-    def enlarged(self, basis: Basis, shapes: Sequence[Any], omega: Float) -> Basis:
+    def enlarged(self, basis: Basis, shapes: Sequence[Any], omega: Array) -> Basis:
         """The basis with what full solutions (inner, columns) have besides."""
         inner = self.dynamics.inner
         K = self.model.K

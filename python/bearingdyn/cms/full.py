@@ -8,15 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.cms.superelement import (
-    Float,
-    Index,
-    Superelement,
-    Viscoelastic,
-    check_symmetry,
-    frozen,
-    frozen_sparse,
-)
+from bearingdyn.cms.superelement import Superelement, Viscoelastic, check_symmetry, frozen, frozen_sparse
+from bearingdyn.types import Array, Index
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +22,8 @@ class RigidInterface:
     """
 
     dofs: Index
-    T: Float
-    position: Float
+    T: Array
+    position: Array
 
     def __post_init__(self) -> None:
         dofs = np.array(self.dofs)

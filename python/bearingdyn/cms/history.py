@@ -13,16 +13,17 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.cms.full import FullModel
-from bearingdyn.cms.superelement import Float, Superelement
+from bearingdyn.cms.superelement import Superelement
 from bearingdyn.fem.eigen import factorise
+from bearingdyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
 class March:
     """What `march` recorded: time (steps + 1,), s, and motion, name -> (steps + 1, 6 or 3), m and rad."""
 
-    time: Float
-    motion: Mapping[str, Float]
+    time: Array
+    motion: Mapping[str, Array]
 
 
 def branch_weights(dt: float, modulus: float, tau: float) -> tuple[float, float, float]:

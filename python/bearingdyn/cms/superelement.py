@@ -9,12 +9,10 @@ from typing import Any, Protocol
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.series import RacewaySeries
-
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Complex, Index
 
 SYMMETRY = 1e-9  # largest accepted |A - Aᵀ| over the largest |A|: congruence stays far below it
 
@@ -26,7 +24,7 @@ class ComplexModulus(Protocol):
         """G*(ω) in Pa for ω in rad/s."""
 
 
-def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Float:
+def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     """A read-only copy. Raises ValueError, by the name, for another shape or an entry that is not finite."""
     array = np.array(value, dtype=np.float64)
     if array.shape != shape:
@@ -92,7 +90,7 @@ class Raceway:
 
     series: RacewaySeries
     arm: float
-    rows: Float
+    rows: Array
 
     def __post_init__(self) -> None:
         n = np.shape(self.rows)[-1] if np.ndim(self.rows) else 0
@@ -106,7 +104,7 @@ class Surface:
     """A surface of a part: ∫ v_n² dA = q̇ᵀ W q̇ of the normal velocity. area: m²; W: (n, n) symmetric, m²."""
 
     area: float
-    W: Float
+    W: Array
 
     def __post_init__(self) -> None:
         if not 0 < self.area < math.inf:
@@ -139,14 +137,14 @@ class Superelement:
     out of range or used twice, or a name used twice.
     """
 
-    M: Float
-    C: Float
-    K: Float
-    G: Float
+    M: Array
+    C: Array
+    K: Array
+    G: Array
     interfaces: Mapping[str, Index]
-    outputs: Mapping[str, Float] = field(default_factory=dict)
+    outputs: Mapping[str, Array] = field(default_factory=dict)
     viscoelastic: tuple[Viscoelastic, ...] = ()
-    N: Float | None = None
+    N: Array | None = None
     raceways: Mapping[str, Raceway] = field(default_factory=dict)
     surfaces: Mapping[str, Surface] = field(default_factory=dict)
 
@@ -180,7 +178,7 @@ class Superelement:
             interfaces[name] = index
         object.__setattr__(self, "interfaces", interfaces)
 
-        outputs: dict[str, Float] = {}
+        outputs: dict[str, Array] = {}
         for name, rows in self.outputs.items():
             if name in interfaces:
                 raise ValueError(f"outputs has {name!r}, the name of an interface ; choose another")
@@ -219,7 +217,7 @@ class Superelement:
         """Itself: what is reduced already is added to an application as it is."""
         return self
 
-    def rows(self, name: str) -> Float:
+    def rows(self, name: str) -> Array:
         """Rows (6, n) or (3, n) giving the motion of an interface or output point.
 
         Raises ValueError when the superelement has no such name.
@@ -231,7 +229,7 @@ class Superelement:
         known = sorted([*self.interfaces, *self.outputs])
         raise ValueError(f"no interface or output {name!r}; there are {known}")
 
-    def stiffness(self, omega: float = 0.0) -> NDArray[np.complex128]:
+    def stiffness(self, omega: float = 0.0) -> Complex:
         """Complex stiffness K + Σ 2 G*(ω) H, (n, n), N/m (paper (20)); ω in rad/s."""
         K = self.K.astype(np.complex128)
         for part in self.viscoelastic:

@@ -7,13 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.fem.input_file import blocks, fields, node
 from bearingdyn.fem.raw_mesh import RawMesh
 from bearingdyn.fem.solid_element import HEX20, TET10
-
-Index = NDArray[np.intp]
 
 SOLID = re.compile(r"C3D(\d+)")
 NODES = {20: 20, 10: 10, 8: 8, 4: 4}

@@ -13,12 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from bearingdyn.magnitude import LONGEST_SHAFT, THICKEST_SHAFT, check_length
 from bearingdyn.material import Elastic
-
-Float = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ def bending_wavelength(section: Section, material: Elastic, frequency: float) ->
     return 2.0 * math.pi * min(bending, shear)
 
 
-def element_matrices(section: Section, length: float, material: Elastic) -> tuple[Float, Float, Float]:
+def element_matrices(section: Section, length: float, material: Elastic) -> tuple[Array, Array, Array]:
     """Mass, stiffness and gyroscopic matrix, each (12, 12), of an element between two nodes.
 
     length: of the element, m. The gyroscopic force is Ω G ẋ on the left-hand side, G[θx, θy] = +Ip for a
@@ -134,7 +132,7 @@ def element_matrices(section: Section, length: float, material: Elastic) -> tupl
 
 
 def assemble(
-    z: Float, sections: Sequence[Section], material: Elastic
+    z: Array, sections: Sequence[Section], material: Elastic
 ) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix, scipy.sparse.csr_matrix]:
     """Mass, stiffness and gyroscopic matrix of a shaft, sparse, (6 n, 6 n).
 

@@ -7,18 +7,17 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.fem.ordering import elimination_order
-
-Float = NDArray[np.float64]
+from bearingdyn.types import Array, Index
 
 DENSE_LIMIT = 400  # below this size LAPACK's dense eigensolver is quicker than a factorisation and Lanczos
 DISSECT = 15_000  # above this size nested dissection of a solid fills less than minimum degree
 PANEL = 20  # columns SuperLU updates at once; 8, its default, is a quarter slower on large solids
 
 
-def rigid_motion(points: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> Float:
+def rigid_motion(points: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
     """Displacement of points that move rigidly with a reference point: u = d + θ × (p - reference).
 
     points: (n, 3), m. Returns (3 n, 6): the columns are unit x, y, z, θx, θy, θz of the reference
@@ -33,7 +32,7 @@ def rigid_motion(points: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> F
     return R.reshape(-1, 6)
 
 
-def rigid_transfer(positions: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> Float:
+def rigid_transfer(positions: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
     """Motion (6 n, 6) of six-coordinate points that move rigidly with a reference point.
 
     positions: (n, 3), m; coordinates x, y, z, θx, θy, θz at each point and at the reference.
@@ -45,12 +44,12 @@ def rigid_transfer(positions: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0))
     return R.reshape(-1, 6)
 
 
-def rigid_body_inertia(M: Any, R: Float) -> Float:
+def rigid_body_inertia(M: Any, R: Array) -> Array:
     """Mass matrix (6, 6) of the rigid motions R (n, 6): mass, first moments, inertia about the reference."""
     return np.asarray(R.T @ (M @ R))
 
 
-def rigid_body_residual(K: Any, R: Float) -> float:
+def rigid_body_residual(K: Any, R: Array) -> float:
     """max|K R| / max(|K| |R|) of rigid motions R (n, k): round-off, unless K resists rigid motion."""
     scale = float(np.max(abs(K) @ np.abs(R)))
     return float(np.max(np.abs(K @ R))) / scale if scale > 0 else 0.0
@@ -59,7 +58,7 @@ def rigid_body_residual(K: Any, R: Float) -> float:
 class Factors:
     """Factors of a matrix eliminated in a given order; ``.solve(b)`` for b (n,) or (n, m)."""
 
-    def __init__(self, A: Any, order: NDArray[np.intp]) -> None:
+    def __init__(self, A: Any, order: Index) -> None:
         self.order = order
         self.lu = scipy.sparse.linalg.splu(
             scipy.sparse.csc_matrix(A[order][:, order]),
@@ -82,7 +81,7 @@ def factorise(A: Any) -> Any:
     return Factors(A, elimination_order(A)) if A.shape[0] > DISSECT else _by_minimum_degree(A)
 
 
-def pivots(A: Any) -> Float:
+def pivots(A: Any) -> Array:
     """Pivots (n,) of a sparse symmetric matrix, by its rows.
 
     As many are negative as eigenvalues are (Sylvester). −1 stands where rows were exchanged, which only a
@@ -98,7 +97,7 @@ def pivots(A: Any) -> Float:
     return own
 
 
-def order_of(A: Any) -> NDArray[np.intp]:
+def order_of(A: Any) -> Index:
     """Order of elimination (n,) for many matrices of one pattern, found once; see Factors."""
     return elimination_order(A) if A.shape[0] > DISSECT else np.argsort(_by_minimum_degree(A).perm_c)
 
@@ -111,7 +110,7 @@ def _by_minimum_degree(A: Any) -> Any:
 
 def lowest_modes(
     K: Any, M: Any, f_max: float = math.inf, n_modes: int | None = None, lu: Any = None
-) -> tuple[Float, Float]:
+) -> tuple[Array, Array]:
     """Rising frequencies (m,), Hz, and shapes (n, m) of unit modal mass of K φ = ω² M φ.
 
     K, M: (n, n) dense or sparse, positive definite. f_max, Hz, and n_modes bound the number of modes;

@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.fem.abaqus_mesh import read_inp
 from bearingdyn.fem.raw_mesh import RawMesh, finished
 from bearingdyn.fem.solid_mesh import SolidMesh
 from bearingdyn.magnitude import LARGEST_BODY
-
-Index = NDArray[np.intp]
+from bearingdyn.types import Index
 
 SOLID = {"hexahedron": 8, "hexahedron20": 20, "hexahedron27": 27, "tetra": 4, "tetra10": 10}
 FACE = ("triangle", "triangle6", "quad", "quad8", "quad9")

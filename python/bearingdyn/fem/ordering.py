@@ -13,8 +13,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Index
 
 PIVOTS = 20  # points from which distances are taken
 SMOOTHING = 10  # rounds of averaging over neighbours, which takes the steps out of the distances
@@ -41,7 +40,7 @@ def elimination_order(A: Any) -> Index:
     return np.argsort(rank[group], kind="stable")
 
 
-def _places(graph: Any) -> Float:
+def _places(graph: Any) -> Array:
     """Three coordinates (groups, 3) for the nodes of a graph."""
     far, nearest, distances = 0, np.full(graph.shape[0], np.inf), []
     for _ in range(min(PIVOTS, graph.shape[0])):
@@ -60,7 +59,7 @@ def _places(graph: Any) -> Float:
     return np.asarray(X)
 
 
-def _dissect(graph: Any, places: Float) -> Index:
+def _dissect(graph: Any, places: Array) -> Index:
     """Order (groups,): one side, then the other, then what separates them; and so on within each side."""
     waiting: list[tuple[Index, bool]] = [(np.arange(graph.shape[0]), False)]
     backwards: list[Index] = []
@@ -75,7 +74,7 @@ def _dissect(graph: Any, places: Float) -> Index:
     return np.concatenate(backwards[::-1])
 
 
-def _split(graph: Any, places: Float, nodes: Index) -> tuple[Index, Index, Index] | None:
+def _split(graph: Any, places: Array, nodes: Index) -> tuple[Index, Index, Index] | None:
     """Two sides of a set of nodes and the smallest separator found, across one of its two longest axes."""
     X = places[nodes] - places[nodes].mean(axis=0)
     axes = np.linalg.eigh(X.T @ X)[1]

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from bearingdyn.fem.revolution_mesh import SAME, Float, Index, RevolutionMesh, shape_functions
+from bearingdyn.fem.revolution_mesh import SAME, RevolutionMesh, shape_functions
+from bearingdyn.types import Array, Index
 
 # Place of the corners, the middles of the sides 01, 12, 23, 30 and the centre in RevolutionMesh.elements.
 ORDER = np.array([0, 6, 8, 2, 3, 7, 5, 1, 4])
@@ -73,7 +74,7 @@ def quadrilaterals(points: ArrayLike, cells: ArrayLike, region: ArrayLike | None
     return RevolutionMesh(r=r, z=z, elements=elements, region=tags.astype(np.intp))
 
 
-def _completed(r: Float, z: Float, quads: Index) -> tuple[Float, Float, Index]:
+def _completed(r: Array, z: Array, quads: Index) -> tuple[Array, Array, Index]:
     """Nodes and (m, 9) cells with the middles of the sides and the centres there."""
     p = np.stack([r, z], axis=-1)
     count = quads.shape[1]
@@ -90,12 +91,12 @@ def _completed(r: Float, z: Float, quads: Index) -> tuple[Float, Float, Index]:
     return p[:, 0], p[:, 1], quads
 
 
-def _smallest_jacobian(r: Float, z: Float, nine: Index) -> Float:
+def _smallest_jacobian(r: Array, z: Array, nine: Index) -> Array:
     """Determinant nearest to a change of sign over each element's nodes and Gauss points, m²; (m,).
 
     Its sign is that of the element where it is the same everywhere; else it is zero.
     """
-    grid: NDArray[np.float64] = np.array([-1.0, -np.sqrt(0.6), 0.0, np.sqrt(0.6), 1.0])
+    grid: Array = np.array([-1.0, -np.sqrt(0.6), 0.0, np.sqrt(0.6), 1.0])
     _, N_xi, N_eta = shape_functions(np.repeat(grid, 5), np.tile(grid, 5))
     ordered = np.empty_like(nine)
     ordered[:, ORDER] = nine
@@ -106,7 +107,7 @@ def _smallest_jacobian(r: Float, z: Float, nine: Index) -> Float:
     return np.where(low > tiny, low, np.where(high < -tiny, high, 0.0))
 
 
-def _check_joined(r: Float, z: Float, nine: Index, size: float) -> None:
+def _check_joined(r: Array, z: Array, nine: Index, size: float) -> None:
     from scipy.sparse.csgraph import connected_components  # late: both load much, and few bring meshes
     from scipy.spatial import cKDTree
 

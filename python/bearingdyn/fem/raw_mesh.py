@@ -6,13 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.fem.solid_element import KINDS
 from bearingdyn.fem.solid_mesh import SolidMesh, merged, second_order
-
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Index
 
 CORNERS = {8: 20, 4: 10}  # nodes of a linear element, and of the quadratic one made of it
 
@@ -27,7 +24,7 @@ class RawMesh:
     surfaces: name -> nodes.
     """
 
-    points: Float
+    points: Array
     cells: tuple[Index, ...]
     numbers: Index
     regions: Mapping[str, Index]
@@ -124,7 +121,7 @@ def _regions(raw: RawMesh, chosen: Sequence[str] | None) -> dict[str, Index]:
 
 
 def _upgraded(
-    points: Float, corners: Index, regions: Mapping[str, Index], surfaces: Mapping[str, Index], numbers: Index
+    points: Array, corners: Index, regions: Mapping[str, Index], surfaces: Mapping[str, Index], numbers: Index
 ) -> SolidMesh:
     """Linear elements made second-order; middle nodes join the surfaces on whose faces they lie."""
     points, elements, ends = second_order(points, corners)

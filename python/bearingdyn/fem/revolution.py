@@ -18,7 +18,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.fem.revolution_mesh import Float, Index, RevolutionMesh, shape_functions
+from bearingdyn.fem.revolution_mesh import RevolutionMesh, shape_functions
+from bearingdyn.types import Array, Index
 
 AXIAL = (0, 2)  # components U, W of order 0
 TORSION = (1,)  # component V of order 0
@@ -40,9 +41,9 @@ class Harmonic:
     components: tuple[int, ...]
     indices: NDArray[np.intc]
     indptr: NDArray[np.intc]
-    mass: Float
-    volumetric: Float
-    deviatoric: Float
+    mass: Array
+    volumetric: Array
+    deviatoric: Array
     free: Index
 
     @property
@@ -74,7 +75,7 @@ class Harmonic:
             u[3 * axis + 1] = -u[3 * axis]
         return u
 
-    def rigid_shapes(self, nodes: Index, reference: float = 0.0) -> Float:
+    def rigid_shapes(self, nodes: Index, reference: float = 0.0) -> Array:
         """Rigid motions of some nodes about the point z = reference of the axis, (nodes·components, 1 or 2).
 
         Order 0: z, or θz. Order 1: x and θy of the cosine family; in the sine family the same shapes are
@@ -90,7 +91,7 @@ class Harmonic:
             return np.stack([zero, one], axis=1).reshape(-1, 1)
         raise ValueError(f"order {self.order} with components {self.components} holds no rigid motion")
 
-    def point_rows(self, r: float, z: float, phi: float, u: Float, sine: bool = False) -> Float:
+    def point_rows(self, r: float, z: float, phi: float, u: Array, sine: bool = False) -> Array:
         """Displacement x, y, z (3, m) at the point (r, z, φ) of shapes u (n, m); sine: the turned family.
 
         Raises ValueError for a point outside the section.
@@ -104,7 +105,7 @@ class Harmonic:
         )
         return np.asarray(self.turned(phi, sine) @ local)
 
-    def turned(self, phi: ArrayLike, sine: bool = False) -> Float:
+    def turned(self, phi: ArrayLike, sine: bool = False) -> Array:
         """Displacement x, y, z at azimuths φ (...,) of unit U, V, W, (..., 3, 3); sine: the turned family."""
         phi, n = np.asarray(phi, dtype=np.float64), self.order
         cos, sin = np.cos(n * phi), np.sin(n * phi)
@@ -118,7 +119,7 @@ class Harmonic:
 
 def _element_matrices(
     mesh: RevolutionMesh, n: int, components: tuple[int, ...]
-) -> tuple[Float, Float, Float]:
+) -> tuple[Array, Array, Array]:
     """Mass (m, 9, 9) of one component, volumetric and deviatoric stiffness (m, 9c, 9c) of every element."""
     x, w = np.polynomial.legendre.leggauss(3)
     xi, eta = np.repeat(x, 3), np.tile(x, 3)
@@ -165,8 +166,8 @@ def _element_matrices(
 
 
 def _scatter(
-    mesh: RevolutionMesh, c: int, regions: int, blocks: Sequence[Float]
-) -> tuple[NDArray[np.intc], NDArray[np.intc], list[Float]]:
+    mesh: RevolutionMesh, c: int, regions: int, blocks: Sequence[Array]
+) -> tuple[NDArray[np.intc], NDArray[np.intc], list[Array]]:
     """Sum element matrices (m, 9c, 9c) into csc indices, indptr and data (regions, nonzeros)."""
     nodes = mesh.r.size
     key = (

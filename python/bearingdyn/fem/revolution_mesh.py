@@ -9,10 +9,8 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Index
 
 SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
 
@@ -42,13 +40,13 @@ class Rectangle:
 SIDES = np.array([[0, 3, 6], [6, 7, 8], [8, 5, 2], [2, 1, 0]])
 
 
-def lagrange(x: Float) -> tuple[Float, Float]:
+def lagrange(x: Array) -> tuple[Array, Array]:
     """Quadratic Lagrange functions of the nodes -1, 0, 1 and their derivatives, (points, 3) each."""
     N = np.stack([0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)], axis=-1)
     return N, np.stack([x - 0.5, -2 * x, x + 0.5], axis=-1)
 
 
-def shape_functions(xi: Float, eta: Float) -> tuple[Float, Float, Float]:
+def shape_functions(xi: Array, eta: Array) -> tuple[Array, Array, Array]:
     """Nine functions N, ∂N/∂ξ, ∂N/∂η at points (q,), (q, 9) each, numbered as RevolutionMesh.elements."""
     (a, da), (b, db) = lagrange(xi), lagrange(eta)
     return tuple((f[:, :, None] * g[:, None, :]).reshape(-1, 9) for f, g in ((a, b), (da, b), (a, db)))  # type: ignore[return-value]
@@ -64,8 +62,8 @@ class RevolutionMesh:
     region: (m,) index of the region each element lies in.
     """
 
-    r: Float
-    z: Float
+    r: Array
+    z: Array
     elements: Index
     region: Index
 
@@ -139,7 +137,7 @@ def _merge(values: Iterable[float], size: float) -> list[float]:
     return lines
 
 
-def graded_line(a: float, b: float, first: float, cap: float, growth: float) -> Float:
+def graded_line(a: float, b: float, first: float, cap: float, growth: float) -> Array:
     """Points from a to b, symmetric: steps near `first` at the ends, growing by `growth` up to `cap`."""
     steps: list[float] = []
     step, reach, half = min(first, cap), 0.0, 0.5 * (b - a)
@@ -157,7 +155,7 @@ def graded_line(a: float, b: float, first: float, cap: float, growth: float) -> 
 
 def _grid(
     cuts: Sequence[float], spans: Sequence[tuple[float, float, bool]], thin: float, refinement: float
-) -> Float:
+) -> Array:
     """Grid lines along one axis, through all cuts, graded where a graded rectangle spans the interval.
 
     thin: smallest width, across either axis, of the graded rectangles (or of all when none is graded), m.
@@ -175,7 +173,7 @@ def _grid(
     return np.concatenate([*pieces, [cuts[-1]]])
 
 
-def _moved(lines: Float, fixed: Sequence[float], wanted: Iterable[float]) -> Float:
+def _moved(lines: Array, fixed: Sequence[float], wanted: Iterable[float]) -> Array:
     """Grid lines with the nearest of them moved to each wanted place; a fixed one gets a new neighbour."""
     held = {float(v) for v in fixed}
     for v in wanted:

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.fem.solid_element import HEX20, HEX27, TET10, SolidElement, points, shapes
 from bearingdyn.fem.solid_mesh import SolidMesh
 from bearingdyn.material import Elastic
-
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array
 
 CHUNK = 1024  # elements whose matrices are in memory at a time, 54 MB a matrix of 27-node bricks
 
@@ -32,7 +30,7 @@ class SolidMatrices:
     volumetric: (3n, 3n) ∫BᵀmmᵀB dV, m, by the bulk modulus. deviatoric: (3n, 3n) ∫BᵀT2B dV, m, by 2G.
     """
 
-    points: Float
+    points: Array
     mass: scipy.sparse.csr_matrix
     volumetric: scipy.sparse.csr_matrix
     deviatoric: scipy.sparse.csr_matrix
@@ -79,7 +77,7 @@ def assemble_solid(
     row, column = pairs // n, pairs % n
     indptr = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=n))])
 
-    def block_matrix(values: Float) -> scipy.sparse.csr_matrix:
+    def block_matrix(values: Array) -> scipy.sparse.csr_matrix:
         data = np.ascontiguousarray(values.transpose(2, 0, 1))
         return scipy.sparse.bsr_matrix((data, column, indptr), shape=(3 * n, 3 * n)).tocsr()
 
@@ -93,7 +91,7 @@ def assemble_solid(
     )
 
 
-def _element_matrices(kind: SolidElement, p: Float, incompressible: bool) -> tuple[Float, Float, Float]:
+def _element_matrices(kind: SolidElement, p: Array, incompressible: bool) -> tuple[Array, Array, Array]:
     """Mass (m, k, k) of a component, volumetric and deviatoric stiffness (m, 3k, 3k); p: (m, k, 3) nodes."""
     X, w = points(kind)
     N = shapes(kind, X)[0]
@@ -119,7 +117,7 @@ def _element_matrices(kind: SolidElement, p: Float, incompressible: bool) -> tup
     return mass, volumetric, deviatoric.reshape(count, 3 * k, 3 * k)
 
 
-def _gradients(kind: SolidElement, p: Float, X: Float, w: Float) -> tuple[Float, Float]:
+def _gradients(kind: SolidElement, p: Array, X: Array, w: Array) -> tuple[Array, Array]:
     """∂N_i/∂x_a at points X (q, 3), (m, 3 k, q) with 3 i + a the row, and weights times volume (m, q)."""
     reference = shapes(kind, X)[1]  # (q, k, 3)
     J = np.einsum("mka,qkb->mqab", p, reference, optimize=True)
@@ -127,7 +125,7 @@ def _gradients(kind: SolidElement, p: Float, X: Float, w: Float) -> tuple[Float,
     return D.reshape(len(p), len(w), -1).transpose(0, 2, 1), np.linalg.det(J) * w
 
 
-def _pressures(kind: SolidElement, p: Float, X: Float, N: Float) -> Float:
+def _pressures(kind: SolidElement, p: Array, X: Array, N: Array) -> Array:
     """Functions that keep the pressure of nearly incompressible elements, (m, q, modes).
 
     1 in tetrahedra; 1, x, y, z in bricks, in the place itself, not on the unit brick: there a skewed element

@@ -10,10 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Index
 
 BRICK = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 BRICK_EDGES = (
@@ -50,7 +48,7 @@ class SolidElement:
         return len(self.corners) + len(self.edges) + (len(self.faces) + 1 if self.centres else 0)
 
     @property
-    def places(self) -> Float:
+    def places(self) -> Array:
         """Nodes on the unit brick or simplex, (nodes, 3)."""
         c = np.array(self.corners, dtype=np.float64)
         middles = [c[list(group)].mean(axis=0) for group in self.edges]
@@ -78,7 +76,7 @@ TET10 = SolidElement("tet10", TET, TET_EDGES, TET_FACES, False, "ElementTetP2", 
 KINDS = {kind.nodes: kind for kind in (HEX20, HEX27, TET10)}
 
 
-def _shapes(interpolation: str, places: Float, X: Float) -> tuple[Float, Float]:
+def _shapes(interpolation: str, places: Array, X: Array) -> tuple[Array, Array]:
     """Functions (points, nodes) and their gradients (points, nodes, dimensions) at X (points, dimensions)."""
     import skfem
 
@@ -90,12 +88,12 @@ def _shapes(interpolation: str, places: Float, X: Float) -> tuple[Float, Float]:
     return N, np.stack([gradient.T for _, gradient in pairs], axis=1)
 
 
-def shapes(kind: SolidElement, X: Float) -> tuple[Float, Float]:
+def shapes(kind: SolidElement, X: Array) -> tuple[Array, Array]:
     """Shape functions (q, k) and their gradients (q, k, 3) at points X (q, 3) of the unit element."""
     return _shapes(kind.interpolation, kind.places, X)
 
 
-def face_shapes(kind: SolidElement, X: Float) -> tuple[Float, Float]:
+def face_shapes(kind: SolidElement, X: Array) -> tuple[Array, Array]:
     """Shape functions (q, f) and gradients (q, f, 2) of a face, nodes as in face_nodes, at X (q, 2)."""
     sides = len(kind.faces[0])
     c = np.array([(0, 0), (1, 0), (1, 1), (0, 1)] if sides == 4 else [(0, 0), (1, 0), (0, 1)], dtype=float)
@@ -104,7 +102,7 @@ def face_shapes(kind: SolidElement, X: Float) -> tuple[Float, Float]:
     return _shapes(kind.face_interpolation, places, X)
 
 
-def gauss(n: int, dimensions: int) -> tuple[Float, Float]:
+def gauss(n: int, dimensions: int) -> tuple[Array, Array]:
     """Gauss points (n^d, d) and weights of the unit square or cube, n a direction."""
     x, w = np.polynomial.legendre.leggauss(n)
     grid = np.meshgrid(*[0.5 * (x + 1.0)] * dimensions, indexing="ij")
@@ -112,7 +110,7 @@ def gauss(n: int, dimensions: int) -> tuple[Float, Float]:
     return np.stack([g.ravel() for g in grid], axis=1), np.prod([g.ravel() for g in weights], axis=0)
 
 
-def simplex_points(dimensions: int) -> tuple[Float, Float]:
+def simplex_points(dimensions: int) -> tuple[Array, Array]:
     """Points (q, d) and weights of the unit triangle or tetrahedron, exact to order 4 (scikit-fem's)."""
     import skfem
     from skfem.quadrature import get_quadrature
@@ -121,13 +119,13 @@ def simplex_points(dimensions: int) -> tuple[Float, Float]:
     return np.ascontiguousarray(X.T), w
 
 
-def points(kind: SolidElement, reduced: bool = False) -> tuple[Float, Float]:
+def points(kind: SolidElement, reduced: bool = False) -> tuple[Array, Array]:
     """Integration points (q, 3) and weights: 3×3×3, reduced 2×2×2; of tetrahedra exact to order 4."""
     if kind is TET10:
         return simplex_points(3)
     return gauss(2 if reduced else 3, 3)
 
 
-def face_points(kind: SolidElement) -> tuple[Float, Float]:
+def face_points(kind: SolidElement) -> tuple[Array, Array]:
     """Integration points (q, 2) and weights of a face."""
     return simplex_points(2) if kind is TET10 else gauss(3, 2)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
@@ -25,9 +25,7 @@ from bearingdyn.fem.solid_element import (
     points,
     shapes,
 )
-
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Index
 
 MIDDLE = 0.3  # a middle node may lie this far from the middle of its edge, in lengths of the edge
 
@@ -40,9 +38,9 @@ class SurfaceSamples:
     interpolation: (q, n) sparse, a nodal field's values at the points.
     """
 
-    positions: Float
-    normals: Float
-    weights: Float
+    positions: Array
+    normals: Array
+    weights: Array
     interpolation: Any
 
     @property
@@ -51,7 +49,7 @@ class SurfaceSamples:
         return float(self.weights.sum())
 
     @property
-    def centroid(self) -> Float:
+    def centroid(self) -> Array:
         """Centre of the area, (3,), m."""
         return np.asarray(self.weights @ self.positions / self.weights.sum())
 
@@ -92,7 +90,7 @@ class SolidMesh:
     hang together, an element in no region or in two, and an empty surface.
     """
 
-    points: Float
+    points: Array
     elements: Index
     regions: Mapping[str, Index] = field(default_factory=dict)
     surfaces: Mapping[str, Index] = field(default_factory=dict)
@@ -213,7 +211,7 @@ class SolidMesh:
                 "check the order of its nodes, or refine the mesh"
             )
 
-    def _jacobians(self, X: Float, elements: Any = slice(None)) -> Float:
+    def _jacobians(self, X: Array, elements: Any = slice(None)) -> Array:
         """∂x_a/∂ξ_b at points X (q, 3): (m, q, 3, 3)."""
         gradient = shapes(self.kind, X)[1]
         return np.asarray(
@@ -237,7 +235,7 @@ class SolidMesh:
             raise ValueError(f"the mesh has no surface {name!r}; it has {sorted(self.surfaces)}")
         return self.surfaces[name]
 
-    def with_surface(self, name: str, where: Callable[[Float], Any]) -> SolidMesh:
+    def with_surface(self, name: str, where: Callable[[Array], Any]) -> SolidMesh:
         """The mesh with one more surface: the nodes of the boundary for whose points (k, 3) `where` is true.
 
         Raises ValueError if there is none, or the name is taken.
@@ -250,7 +248,7 @@ class SolidMesh:
             raise ValueError(f"surface {name!r} is empty: no node of the boundary satisfies the condition")
         return replace(self, surfaces={**self.surfaces, name: chosen})
 
-    def with_region(self, name: str, where: Callable[[Float], Any]) -> SolidMesh:
+    def with_region(self, name: str, where: Callable[[Array], Any]) -> SolidMesh:
         """The mesh with the elements for whose middles (m, 3) `where` is true made a region of that name.
 
         Raises ValueError if there is none, or the name is taken.
@@ -331,7 +329,7 @@ class SolidMesh:
         )
 
 
-def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Float, Index, Index]:
+def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Array, Index, Index]:
     """Middle nodes for straight-edged bricks (m, 8) or tetrahedra (m, 4).
 
     Returns points (n', 3), the given ones first; elements (m, 20) or (m, 10); and the ends (n' − n, 2)
@@ -345,7 +343,7 @@ def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Float, Index, I
     return np.vstack([p, p[ends].mean(axis=1)]), elements, ends
 
 
-def merged(points: ArrayLike, tolerance: float) -> tuple[Float, Index]:
+def merged(points: ArrayLike, tolerance: float) -> tuple[Array, Index]:
     """Points with those closer than the tolerance made one; and for each given point its new number."""
     p = np.asarray(points, dtype=np.float64)
     pairs = cKDTree(p).query_pairs(tolerance, output_type="ndarray")

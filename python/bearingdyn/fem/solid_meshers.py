@@ -8,19 +8,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.fem.solid_element import HEX20, HEX27
 from bearingdyn.fem.solid_mesh import SolidMesh, merged, second_order
-
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Index
 
 BRICKS = (HEX20.name, HEX27.name)
 SIDES = ("x-", "x+", "y-", "y+", "z-", "z+")
 
 
-def crowded(a: float, b: float, count: int) -> Float:
+def crowded(a: float, b: float, count: int) -> Array:
     """Grid lines from a to b, crowded towards both: (a + b)/2 − (b − a)/2 cos(πi/count), i = 0...count.
 
     A soft layer bonded to something stiff has singular stresses where its free edge meets the bond.
@@ -193,7 +191,7 @@ def _angles(angle: tuple[float, float] | None, around: int) -> tuple[float, floa
     return start, end
 
 
-def _lines(stops: list[float], size: float, least: int = 1) -> Float:
+def _lines(stops: list[float], size: float, least: int = 1) -> Array:
     """Grid lines through all stops, no step longer than size, at least ``least`` steps between two stops."""
     sorted_stops = np.unique(np.round(np.array(stops), 12))
     parts = [sorted_stops[:1]]
@@ -202,21 +200,21 @@ def _lines(stops: list[float], size: float, least: int = 1) -> Float:
     return np.concatenate(parts)
 
 
-def _patch(x: Float, y: Float) -> tuple[Float, Index]:
+def _patch(x: Array, y: Array) -> tuple[Array, Index]:
     """Points (k, 2) and quadrilaterals (m, 4) of a structured grid; x and y are (rows, columns)."""
     i = np.arange(x.size).reshape(x.shape)
     quads = np.stack([i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]], axis=-1).reshape(-1, 4)
     return np.stack([x.ravel(), y.ravel()], axis=-1), quads
 
 
-def _joined(patches: Sequence[tuple[Float, Index]], tolerance: float) -> tuple[Float, Index]:
+def _joined(patches: Sequence[tuple[Array, Index]], tolerance: float) -> tuple[Array, Index]:
     """Patches as one; points within the tolerance become one."""
     offsets = np.cumsum([0] + [len(p) for p, _ in patches])
     plane, label = merged(np.vstack([p for p, _ in patches]), tolerance)
     return plane, label[np.vstack([q + o for (_, q), o in zip(patches, offsets[:-1], strict=True)])]
 
 
-def _extruded(plane: Float, quads: Index, z: Float) -> tuple[Float, Index]:
+def _extruded(plane: Array, quads: Index, z: Array) -> tuple[Array, Index]:
     """Points (k, 3) and bricks (m, 8) of a plane mesh at heights z."""
     points = np.hstack([np.tile(plane, (len(z), 1)), np.repeat(z, len(plane))[:, None]])
     lower = (quads[None] + len(plane) * np.arange(len(z) - 1)[:, None, None]).reshape(-1, 4)

@@ -1,6 +1,6 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
-from bearingdyn.material.direct import FractionalZener, PowerLaw, TabulatedModulus
+from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData, group_isotherms
 from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix

@@ -11,9 +11,9 @@ from itertools import pairwise
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 _EDGE = 1e-12  # of an interval between two poles, which brackets the zero from inside
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.notice import warn
+from bearingdyn.types import Array, Complex
 
 Mode = Literal["shear", "tension"]
 
@@ -48,10 +49,10 @@ class DMAData:
         or frequencies run to and fro within an isotherm.
     """
 
-    frequency: NDArray[np.float64]
-    temperature: NDArray[np.float64]
-    storage: NDArray[np.float64]
-    loss: NDArray[np.float64]
+    frequency: Array
+    temperature: Array
+    storage: Array
+    loss: Array
     mode: Mode
     source: str = "arrays"
     isotherm: NDArray[np.int64] | None = None
@@ -76,7 +77,7 @@ class DMAData:
                     "as many"
                 )
         if self.mode not in ("shear", "tension"):
-            raise ValueError(f"{self.source}: mode = {self.mode!r}: must be 'shear' (G) or 'tension' (E)")
+            raise ValueError(f"{self.source}: mode is {self.mode!r}; it must be 'shear' (G) or 'tension' (E)")
         if not np.all(np.isfinite(self.temperature) & (self.temperature > -273.15)):
             raise ValueError(f"{self.source}: temperature: every value must be finite and above -273.15 °C")
         for name, unit in (("frequency", "Hz"), ("storage", "Pa"), ("loss", "Pa")):
@@ -103,7 +104,7 @@ class DMAData:
         self._store("isotherm", labels.astype(np.int64))
         self._check_isotherms(labels)
 
-    def _store(self, name: str, values: NDArray[np.float64] | NDArray[np.int64]) -> None:
+    def _store(self, name: str, values: Array | NDArray[np.int64]) -> None:
         values.flags.writeable = False
         object.__setattr__(self, name, values)
 
@@ -125,7 +126,7 @@ class DMAData:
             )
 
     @property
-    def tan_delta(self) -> NDArray[np.float64]:
+    def tan_delta(self) -> Array:
         """Loss factor tan δ = loss/storage of each point, (n,); not finite where storage is zero."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(self.loss / self.storage)
@@ -137,7 +138,7 @@ class DMAData:
         return self.isotherm
 
     @property
-    def isotherm_temperatures(self) -> NDArray[np.float64]:
+    def isotherm_temperatures(self) -> Array:
         """Mean temperature of each isotherm, °C, rising."""
         return np.bincount(self.labels, self.temperature) / np.bincount(self.labels)
 
@@ -179,7 +180,7 @@ class DMAData:
         """
         if self.mode != "tension":
             raise ValueError(
-                f"{self.source}: mode = {self.mode!r}: only a measurement in tension is converted"
+                f"{self.source}: mode is {self.mode!r}; only a measurement in tension is converted"
             )
         modulus, note = shear_modulus(self.storage + 1j * self.loss, K, nu)
         return replace(
@@ -221,9 +222,7 @@ def check_range(dma: DMAData) -> None:
         )
 
 
-def shear_modulus(
-    modulus: NDArray[np.complex128], K: float | None, nu: float | None
-) -> tuple[NDArray[np.complex128], str]:
+def shear_modulus(modulus: Complex, K: float | None, nu: float | None) -> tuple[Complex, str]:
     """Complex shear modulus of a complex modulus in tension, Pa, by K or by nu, and a note that says how.
 
     Raises ValueError unless exactly one is given and in its range.
@@ -232,19 +231,19 @@ def shear_modulus(
         raise ValueError("to_shear: give either the bulk modulus, K=2e9, or Poisson's ratio, nu=0.5")
     if nu is not None:
         if not 0 <= nu <= 0.5:
-            raise ValueError(f"nu = {nu!r}: Poisson's ratio must lie between 0 and 0.5")
+            raise ValueError(f"nu is {nu!r}; Poisson's ratio must lie between 0 and 0.5")
         return modulus / (2 * (1 + nu)), f"tension turned into shear by E*/2(1 + nu), nu = {nu:g}"
     assert K is not None  # one of the two is given
     if not (K > 0 and np.isfinite(K)):
-        raise ValueError(f"K = {K!r} Pa: must be positive and finite")
+        raise ValueError(f"K is {K!r} Pa; it must be positive and finite")
     if not np.all(modulus.real < 9 * K):
         raise ValueError(
-            f"K = {K:g} Pa: must exceed a ninth of the tensile modulus, here {modulus.real.max():.4g} Pa"
+            f"K is {K:g} Pa; it must exceed a ninth of the tensile modulus, here {modulus.real.max():.4g} Pa"
         )
     return 3 * K * modulus / (9 * K - modulus), f"tension turned into shear by 3KE*/(9K - E*), K = {K:g} Pa"
 
 
-def first_unsorted(frequency: NDArray[np.float64], labels: NDArray[np.int64]) -> int | None:
+def first_unsorted(frequency: Array, labels: NDArray[np.int64]) -> int | None:
     """Index of the first point whose frequency turns back within its isotherm, None if there is none."""
     found = []
     for k in np.unique(labels):

@@ -40,19 +40,19 @@ class Elastic:
 
     def __post_init__(self) -> None:
         if not (self.E > 0 and math.isfinite(self.E)):
-            raise ValueError(f"Elastic.E = {self.E!r} Pa: Young's modulus must be positive and finite")
+            raise ValueError(f"Elastic.E is {self.E!r} Pa; Young's modulus must be positive and finite")
         if not self.E >= SOFTEST:
             raise ValueError(
-                f"Elastic.E = {self.E!r} Pa: below {SOFTEST:g} Pa, softer than any rubber; is it in GPa or "
+                f"Elastic.E is {self.E!r} Pa; below {SOFTEST:g} Pa, softer than any rubber; is it in GPa or "
                 "MPa? E is in Pa"
             )
         if not -1 < self.nu < 0.5:
             raise ValueError(
-                f"Elastic.nu = {self.nu!r}: Poisson's ratio must lie strictly between -1 and 0.5 "
+                f"Elastic.nu is {self.nu!r}; Poisson's ratio must lie strictly between -1 and 0.5 "
                 "(for a nearly incompressible material take 0.4999, or Maxwell with a bulk modulus)"
             )
         if not (self.density > 0 and math.isfinite(self.density)):
-            raise ValueError(f"Elastic.density = {self.density!r} kg/m³: must be positive and finite")
+            raise ValueError(f"Elastic.density is {self.density!r} kg/m³; it must be positive and finite")
         check_density("Elastic.density", self.density)
 
     @property

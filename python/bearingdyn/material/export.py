@@ -37,7 +37,7 @@ def to_abaqus_frequency(material: Maxwell, frequency: ArrayLike, name: str = "RU
     if f.ndim != 1 or f.size == 0 or not (np.all(f > 0) and np.all(np.isfinite(f))):
         raise ValueError("frequency: must be a list of positive, finite values, Hz")
     if not material.G0 > 0:
-        raise ValueError("Maxwell.G0 = 0: Abaqus refers frequency data to a long-term modulus above zero")
+        raise ValueError("Maxwell.G0 is 0; Abaqus refers frequency data to a long-term modulus above zero")
     modulus = material.complex_modulus(2 * np.pi * f) / material.G0
     rows = zip(modulus.imag, 1 - modulus.real, f, strict=True)
     lines = _abaqus_head(material, name, material.G0, "LONG TERM")
@@ -83,7 +83,7 @@ def to_ansys(material: Maxwell, number: int = 1) -> str:
     """
     _check_prony(material, "ANSYS")
     if not (isinstance(number, int) and number > 0):
-        raise ValueError(f"number = {number!r}: a material number must be a positive integer")
+        raise ValueError(f"number is {number!r}; a material number must be a positive integer")
     total = material.G_instantaneous
     E, nu = elastic_constants(total, material.K)
     lines = [
@@ -125,7 +125,7 @@ def to_calculix(material: Maxwell, frequency: float, name: str = "RUBBER") -> st
     not positive.
     """
     if not (frequency > 0 and math.isfinite(frequency)):
-        raise ValueError(f"frequency = {frequency!r} Hz: must be positive and finite")
+        raise ValueError(f"frequency is {frequency!r} Hz; it must be positive and finite")
     modulus = complex(material.complex_modulus(2 * math.pi * frequency))
     E, nu = elastic_constants(modulus.real, material.K)
     return "\n".join(

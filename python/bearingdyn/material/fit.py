@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import shear_modulus
@@ -21,8 +20,7 @@ from bearingdyn.material.projection import Limits, Points, Polished, Projection,
 from bearingdyn.material.report import FitReport, OutsideBand
 from bearingdyn.material.tts import MasterCurve
 from bearingdyn.notice import warn
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 _MOST = 20  # branches tried by n = "auto"
 _SPREADS = (0.0, 0.4, -0.3)  # decades by which the starts are wider than the band
@@ -91,15 +89,15 @@ def fit_maxwell(
     (5, True)
     """
     if n != "auto" and not (isinstance(n, int) and n >= 1):
-        raise ValueError(f"n = {n!r}: the number of branches must be a positive integer, or 'auto'")
+        raise ValueError(f"n is {n!r}; the number of branches must be a positive integer, or 'auto'")
     for name, value in (("K", K), ("density", density)):
         if not (value > 0 and math.isfinite(value)):
-            raise ValueError(f"{name} = {value!r}: must be positive and finite")
+            raise ValueError(f"{name} is {value!r}; it must be positive and finite")
     if not (tolerance > 0 and math.isfinite(tolerance)):
-        raise ValueError(f"tolerance = {tolerance!r}: must be positive and finite")
+        raise ValueError(f"tolerance is {tolerance!r}; it must be positive and finite")
     if not (isinstance(bootstrap, int) and bootstrap >= 0):
         raise ValueError(
-            f"bootstrap = {bootstrap!r}: the number of refits must be zero or a positive integer"
+            f"bootstrap is {bootstrap!r}; the number of refits must be zero or a positive integer"
         )
     points = _inside(master, band, K, 1 if n == "auto" else n)
     held = dict(fixed or {}) | ({} if dashpot else {"eta0": 0.0})
@@ -153,7 +151,7 @@ def fit_dense(
     """
     for name, value in (("K", K), ("density", density), ("per_decade", per_decade)):
         if not (value > 0 and math.isfinite(value)):
-            raise ValueError(f"{name} = {value!r}: must be positive and finite")
+            raise ValueError(f"{name} is {value!r}; it must be positive and finite")
     points = _inside(master, band, K, "dense")
     times, x = points.dense(per_decade)
     model = Maxwell(float(x[0]), x[1:-1], times, float(x[-1]), K=K, density=density)
@@ -233,7 +231,7 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
         band = (low, high)
     f_lo, f_hi = float(band[0]), float(band[1])
     if not 0 < f_lo < f_hi < math.inf:
-        raise ValueError(f"band = {band!r} Hz: must be a lower and a higher frequency, both positive")
+        raise ValueError(f"band is {band!r} Hz; it must be a lower and a higher frequency, both positive")
     keep = (master.frequency >= f_lo) & (master.frequency <= f_hi)
     count = int(np.count_nonzero(keep))
     needed = n + 2 if isinstance(n, int) else 3

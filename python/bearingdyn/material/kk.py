@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.material.dma import DMAData
+from bearingdyn.types import Array
 
-Array = NDArray[np.float64]
 Reason = Literal["negative modulus", "fixture resonance"]
 
 LIMIT = 1.5

@@ -12,7 +12,6 @@ from typing import Literal
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from bearingdyn.material.shift import (
     WLF,
@@ -23,8 +22,8 @@ from bearingdyn.material.shift import (
     ShiftTable,
 )
 from bearingdyn.material.superpose import Superposition
+from bearingdyn.types import Array
 
-Array = NDArray[np.float64]
 LawName = Literal["wlf", "arrhenius", "joined", "free"]
 
 _LOG_STEEPEST = np.log(1e4)  # ln of the largest C1 sought: at it the law is a straight line
@@ -87,7 +86,7 @@ def require_isotherms(name: LawName, count: int) -> None:
     needed = _numbers(name) + 1
     if count < max(2, needed):
         raise ValueError(
-            f"law = {name!r} has {needed} constants, the data {count} isotherms: take a simpler law or 'free'"
+            f"law is {name!r} with {needed} constants, the data {count} isotherms; take a simpler law or 'free'"
         )
 
 
@@ -109,7 +108,7 @@ def fit_law(T: Array, shifts: Array, T_ref: float, name: LawName, pinned: bool =
         offset = 0.0 if pinned else float(scipy.interpolate.PchipInterpolator(T, shifts)(T_ref))
         return ShiftTable(tuple(T), tuple(shifts - offset), T_ref), offset
     if not np.polyfit(T, shifts, 1)[0] < 0:
-        raise ValueError(f"law = {name!r}: the shifts do not fall with temperature; take law='free'")
+        raise ValueError(f"law is {name!r}; the shifts do not fall with temperature; take law='free'")
     form = _form(name, T, T_ref)
     free = 0 if pinned else 1
 

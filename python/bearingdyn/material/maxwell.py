@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.magnitude import check_bulk, check_density
 from bearingdyn.material.creep import creep_compliance
@@ -15,11 +15,12 @@ from bearingdyn.material.report import FitReport, OutsideBand
 from bearingdyn.material.retune import Retunable
 from bearingdyn.material.shift import Law, RhoT, law_from_dict, law_to_dict
 from bearingdyn.notice import warn
+from bearingdyn.types import Array, Complex
 
 _ROUNDING = 1.001  # of the edges of a band
 
 
-def _branches(name: str, values: ArrayLike) -> NDArray[np.float64]:
+def _branches(name: str, values: ArrayLike) -> Array:
     array = np.array(values, dtype=np.float64)
     if array.ndim != 1:
         raise ValueError(
@@ -80,8 +81,8 @@ class Maxwell(Retunable):
     """
 
     G0: float
-    G: NDArray[np.float64]
-    tau: NDArray[np.float64]
+    G: Array
+    tau: Array
     eta0: float
     K: float
     density: float
@@ -130,10 +131,12 @@ class Maxwell(Retunable):
     def _validate(self) -> None:
         for name, value, unit in (("G0", self.G0, "Pa"), ("eta0", self.eta0, "Pa s")):
             if not (value >= 0 and math.isfinite(value)):
-                raise ValueError(f"Maxwell.{name} = {value!r} {unit}: must be zero or positive, and finite")
+                raise ValueError(
+                    f"Maxwell.{name} is {value!r} {unit}; it must be zero or positive, and finite"
+                )
         for name, value, unit in (("K", self.K, "Pa"), ("density", self.density, "kg/m³")):
             if not (value > 0 and math.isfinite(value)):
-                raise ValueError(f"Maxwell.{name} = {value!r} {unit}: must be positive and finite")
+                raise ValueError(f"Maxwell.{name} is {value!r} {unit}; it must be positive and finite")
         if self.G.size != self.tau.size:
             raise ValueError(
                 f"Maxwell.G has {self.G.size} branches, Maxwell.tau {self.tau.size}: each strength needs "
@@ -141,9 +144,9 @@ class Maxwell(Retunable):
             )
         for i, (G, tau) in enumerate(zip(self.G.tolist(), self.tau.tolist(), strict=True)):
             if not (G >= 0 and math.isfinite(G)):
-                raise ValueError(f"Maxwell.G[{i}] = {G!r} Pa: must be zero or positive, and finite")
+                raise ValueError(f"Maxwell.G[{i}] is {G!r} Pa; it must be zero or positive, and finite")
             if not (tau > 0 and math.isfinite(tau)):
-                raise ValueError(f"Maxwell.tau[{i}] = {tau!r} s: must be positive and finite")
+                raise ValueError(f"Maxwell.tau[{i}] is {tau!r} s; it must be positive and finite")
         if not self.G0 + self.eta0 + self.G.sum() > 0:
             raise ValueError(
                 "Maxwell: G0, every G and eta0 are zero: the material would carry no shear at all"
@@ -151,9 +154,9 @@ class Maxwell(Retunable):
         check_density("Maxwell.density", self.density)
         check_bulk("Maxwell.K", self.K, self._stiffest())
         if self.temperature is not None and not math.isfinite(self.temperature):
-            raise ValueError(f"Maxwell.temperature = {self.temperature!r} °C: must be finite")
+            raise ValueError(f"Maxwell.temperature is {self.temperature!r} °C; it must be finite")
         if self.band is not None and not 0 < self.band[0] < self.band[1] < math.inf:
-            raise ValueError(f"Maxwell.band = {self.band!r} Hz: must be a lower and a higher frequency")
+            raise ValueError(f"Maxwell.band is {self.band!r} Hz; it must be a lower and a higher frequency")
 
     def _stiffest(self) -> float:
         """|G*| at the upper end of the band, or right after a step where there is none, Pa."""
@@ -191,7 +194,7 @@ class Maxwell(Retunable):
         """Modulus G0 + Σ G_i right after a step of strain, Pa (the impulse of eta0 left out)."""
         return self.G0 + float(self.G.sum())
 
-    def complex_modulus(self, omega: ArrayLike) -> NDArray[np.complex128]:
+    def complex_modulus(self, omega: ArrayLike) -> Complex:
         """Complex shear modulus G*(ω) = G0 + iωη0 + Σ G_i iωτ_i/(1 + iωτ_i), Pa.
 
         Parameters
@@ -212,7 +215,7 @@ class Maxwell(Retunable):
         branch = x / (1 + x * x) * (x + 1j)
         return np.asarray(self.G0 + 1j * omega * self.eta0 + branch @ self.G)
 
-    def _warn_outside(self, omega: NDArray[np.float64]) -> None:
+    def _warn_outside(self, omega: Array) -> None:
         if self.band is None or omega.size == 0:
             return
         f = np.abs(omega[omega != 0]) / (2 * np.pi)
@@ -225,17 +228,17 @@ class Maxwell(Retunable):
                 OutsideBand,
             )
 
-    def loss_factor(self, omega: ArrayLike) -> NDArray[np.float64]:
+    def loss_factor(self, omega: ArrayLike) -> Array:
         """Loss factor η = tan δ = G″/G′ at angular frequencies ω, rad/s; infinite where G′ = 0."""
         modulus = self.complex_modulus(omega)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(modulus.real > 0, modulus.imag / modulus.real, np.inf)
 
-    def tan_delta(self, omega: ArrayLike) -> NDArray[np.float64]:
+    def tan_delta(self, omega: ArrayLike) -> Array:
         """The loss factor under its other name, :meth:`loss_factor`."""
         return self.loss_factor(omega)
 
-    def relaxation(self, t: ArrayLike) -> NDArray[np.float64]:
+    def relaxation(self, t: ArrayLike) -> Array:
         """Relaxation modulus G_rel(t), Pa, at times t ≥ 0, s, any shape (paper eq. 6).
 
         The dashpot adds an impulse η0·δ(t) at t = 0, which is left out.
@@ -245,7 +248,7 @@ class Maxwell(Retunable):
             raise ValueError("t: a relaxation modulus exists for times t >= 0 s only")
         return np.asarray(self.G0 + np.exp(-t[..., None] / self.tau) @ self.G)
 
-    def creep(self, t: ArrayLike) -> NDArray[np.float64]:
+    def creep(self, t: ArrayLike) -> Array:
         """Creep compliance J(t), 1/Pa, at times t ≥ 0, s, any shape: strain under a unit step of stress.
 
         Exact: iωJ* = 1/G* expanded in its poles, which lie between those of G*. With a dashpot J(0) = 0; with
@@ -253,12 +256,12 @@ class Maxwell(Retunable):
         """
         return creep_compliance(self.G0, self.G, self.tau, self.eta0, t)
 
-    def spectrum(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def spectrum(self) -> tuple[Array, Array]:
         """Discrete relaxation spectrum: times, s, rising, and strengths, Pa, of the branches; (N,) each."""
         order = np.argsort(self.tau, kind="stable")
         return self.tau[order], self.G[order]
 
-    def stress(self, strain_rate: ArrayLike, dt: ArrayLike) -> NDArray[np.float64]:
+    def stress(self, strain_rate: ArrayLike, dt: ArrayLike) -> Array:
         """Deviatoric stress history under a strain-rate history, by the history update of the C core.
 
         s = 2·G0·e + 2·η0·ė + Σ S_i, from e = 0 and S_i = 0 at the first sample, exact for a rate linear

@@ -17,8 +17,7 @@ from bearingdyn.material.spectrum import (
     dense_times,
     solve_strengths,
 )
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array, Complex, Index
 
 MARGIN = math.log(10.0)  # a relaxation time may lie a decade outside the band
 
@@ -49,7 +48,7 @@ class Points:
         """Rows of G′ over those of G″, relative to what was measured."""
         return np.vstack([storage / self.storage[:, None], loss / self.loss[:, None]])
 
-    def deviations(self, modulus: NDArray[np.complex128]) -> tuple[Array, Array]:
+    def deviations(self, modulus: Complex) -> tuple[Array, Array]:
         """ln(model/measured) of G′ and of tan δ."""
         tan = np.log(modulus.imag / modulus.real) - np.log(self.loss / self.storage)
         return np.log(modulus.real / self.storage), tan
@@ -112,13 +111,13 @@ class Limits:
                 )
             if len(pair) != 2 or not 0 <= pair[0] <= pair[1] or math.isnan(pair[1]) or math.isinf(pair[0]):
                 raise ValueError(
-                    f"{what}[{name!r}] = {pair!r}: must be a lower and an upper value, both >= 0"
+                    f"{what}[{name!r}] is {pair!r}; it must be a lower and an upper value, both >= 0"
                 )
             if name in strengths:
                 lower[strengths.index(name)], upper[strengths.index(name)] = pair
             else:
                 if not pair[1] > 0 or (name in fixed and not pair[0] > 0):
-                    raise ValueError(f"{what}[{name!r}] = {pair!r} s: a relaxation time must be positive")
+                    raise ValueError(f"{what}[{name!r}] is {pair!r} s; a relaxation time must be positive")
                 i = times.index(name)
                 log_lower[i] = math.log(pair[0]) if pair[0] > 0 else min(span[0], math.log(pair[1]) - 1)
                 log_upper[i] = math.log(pair[1]) if math.isfinite(pair[1]) else max(span[1], log_lower[i])
@@ -288,7 +287,7 @@ def _filled(first: Array, free: NDArray[np.bool_], theta: Array) -> Array:
     return p
 
 
-def _strength_names(rank: NDArray[np.intp]) -> list[str]:
+def _strength_names(rank: Index) -> list[str]:
     return ["G0", *(f"G{r + 1}" for r in rank), "eta0"]
 
 

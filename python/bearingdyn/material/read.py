@@ -76,7 +76,7 @@ def read_dma(
     ([4000000.0, 5000000.0, 2000000.0, 3000000.0], [0, 0, 1, 1])
     """
     if temperature is not None and not -273.15 < temperature < 1e4:
-        raise ValueError(f"temperature = {temperature!r} °C: must be a temperature in °C")
+        raise ValueError(f"temperature is {temperature!r} °C; it must be a temperature in °C")
     sources = read_source(Path(data)) if isinstance(data, str | Path) else [source_of(data)]
     source, table = _first_table(sources, columns or {}, units or {}, drop_invalid, temperature, mode is None)
     header = source.at(table.header_line)
@@ -93,7 +93,7 @@ def read_dma(
             raise ValueError(f"{header}: {NO_LETTER}")
     elif table.mode is not None and table.mode != mode:
         raise ValueError(
-            f"{header}: the header says {table.mode}, mode = {mode!r}: give the right mode, or name the "
+            f"{header}: the header says {table.mode}, mode is {mode!r}; give the right mode, or name the "
             "right "
             "columns"
         )

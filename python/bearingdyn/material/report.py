@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from bearingdyn.types import Array
 
 
 class OutsideBand(UserWarning):
     """A material model is used at a frequency it was not fitted at."""
 
 
-def _none() -> NDArray[np.float64]:
+def _none() -> Array:
     return np.empty((0, 0))
 
 
@@ -53,9 +54,9 @@ class FitReport:
     tan_delta_rms: float
     tan_delta_max: float
     names: tuple[str, ...]
-    covariance: NDArray[np.float64] = field(compare=False, repr=False)
+    covariance: Array = field(compare=False, repr=False)
     floor: tuple[float, float] = (0.0, 0.0)
-    bootstrap: NDArray[np.float64] = field(default_factory=_none, compare=False, repr=False)
+    bootstrap: Array = field(default_factory=_none, compare=False, repr=False)
 
     @property
     def standard_errors(self) -> dict[str, float]:

@@ -7,18 +7,19 @@ from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
+
+from bearingdyn.types import Array, Complex
 
 
 class Retunable:
     """What a Maxwell model offers to be made harder, softer, or more lossy."""
 
     G0: float
-    G: NDArray[np.float64]
-    tau: NDArray[np.float64]
+    G: Array
+    tau: Array
     eta0: float
 
-    def complex_modulus(self, omega: Any) -> NDArray[np.complex128]:
+    def complex_modulus(self, omega: Any) -> Complex:
         """Complex shear modulus at ω rad/s, Pa; given by the model."""
         raise TypeError("Retunable has no modulus of its own")
 
@@ -31,10 +32,10 @@ class Retunable:
         The loss factor is unchanged at every frequency.
         """
         if not (modulus > 0 and math.isfinite(modulus)):
-            raise ValueError(f"modulus = {modulus!r} Pa: must be positive and finite")
+            raise ValueError(f"modulus is {modulus!r} Pa; it must be positive and finite")
         magnitude = float(np.abs(self.complex_modulus(omega)))
         if not magnitude > 0:
-            raise ValueError(f"omega = {omega!r} rad/s: |G*| is zero there, no scaling can change it")
+            raise ValueError(f"omega is {omega!r} rad/s; |G*| is zero there, no scaling can change it")
         factor = modulus / magnitude
         return self._with(G0=self.G0 * factor, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
 
@@ -59,7 +60,7 @@ class Retunable:
             If the material has no spring or no branches, or the loss factor is out of reach.
         """
         if not (omega > 0 and math.isfinite(omega)):
-            raise ValueError(f"omega = {omega!r} rad/s: must be positive and finite")
+            raise ValueError(f"omega is {omega!r} rad/s; it must be positive and finite")
         modulus = complex(self.complex_modulus(omega))
         branches = modulus - self.G0
         if not (self.G0 > 0 and branches.imag > 0):
@@ -69,7 +70,7 @@ class Retunable:
         limit = branches.imag / branches.real if branches.real > 0 else math.inf
         if not 0 < loss_factor < limit:
             raise ValueError(
-                f"loss_factor = {loss_factor!r}: must lie between 0 and {limit:.4g}, "
+                f"loss_factor is {loss_factor!r}; it must lie between 0 and {limit:.4g}, "
                 "that of the branches alone at this frequency"
             )
         factor = loss_factor * self.G0 / (branches.imag - loss_factor * branches.real)
@@ -98,12 +99,12 @@ class Retunable:
             If omega is not positive or the loss factor out of reach.
         """
         if not (omega > 0 and math.isfinite(omega)):
-            raise ValueError(f"omega = {omega!r} rad/s: must be positive and finite")
+            raise ValueError(f"omega is {omega!r} rad/s; it must be positive and finite")
         modulus = complex(self.complex_modulus(omega))
         present = modulus.imag / modulus.real
         if not present < loss_factor < 1:
             raise ValueError(
-                f"loss_factor = {loss_factor!r}: must lie between the present {present:.4g} and 1"
+                f"loss_factor is {loss_factor!r}; it must lie between the present {present:.4g} and 1"
             )
         strength = 2 * (loss_factor * modulus.real - modulus.imag) / (1 - loss_factor)
         G, tau = np.append(self.G, strength), np.append(self.tau, 1 / omega)

@@ -11,7 +11,9 @@ from typing import Any, Protocol
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from bearingdyn.types import Array
 
 GAS_CONSTANT = 8.31446261815324
 """Molar gas constant, J/(mol K), exact in the SI of 2019."""
@@ -29,13 +31,13 @@ class ShiftLaw(Protocol):
     def T_ref(self) -> float:
         """Reference temperature, °C."""
 
-    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+    def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at the temperatures T, °C; same shape as T."""
 
 
 def _finite(name: str, value: float) -> None:
     if not math.isfinite(value):
-        raise ValueError(f"{name} = {value!r}: must be a finite number")
+        raise ValueError(f"{name} is {value!r}; it must be a finite number")
 
 
 @dataclass(frozen=True)
@@ -65,9 +67,9 @@ class WLF:
         _finite("WLF.T_ref", self.T_ref)
         for name, value in (("C1", self.C1), ("C2", self.C2)):
             if not (value > 0 and math.isfinite(value)):
-                raise ValueError(f"WLF.{name} = {value!r}: must be positive and finite")
+                raise ValueError(f"WLF.{name} is {value!r}; it must be positive and finite")
 
-    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+    def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C.
 
         Raises
@@ -104,11 +106,11 @@ class Arrhenius:
 
     def __post_init__(self) -> None:
         if not (self.Ea > 0 and math.isfinite(self.Ea)):
-            raise ValueError(f"Arrhenius.Ea = {self.Ea!r} J/mol: must be positive and finite")
+            raise ValueError(f"Arrhenius.Ea is {self.Ea!r} J/mol; it must be positive and finite")
         if not (self.T_ref > -ZERO_CELSIUS and math.isfinite(self.T_ref)):
-            raise ValueError(f"Arrhenius.T_ref = {self.T_ref!r} °C: must lie above -273.15 °C")
+            raise ValueError(f"Arrhenius.T_ref is {self.T_ref!r} °C; it must lie above -273.15 °C")
 
-    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+    def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C; ValueError at or below absolute zero."""
         kelvin = np.asarray(T, dtype=float) + ZERO_CELSIUS
         if not np.all(kelvin > 0):
@@ -148,12 +150,12 @@ class Joined:
         _finite("Joined.T_ref", self.T_ref)
         for name, value in (("C1", self.C1), ("C2", self.C2), ("Ea", self.Ea)):
             if not (value > 0 and math.isfinite(value)):
-                raise ValueError(f"Joined.{name} = {value!r}: must be positive and finite")
+                raise ValueError(f"Joined.{name} is {value!r}; it must be positive and finite")
         for name, value in (("Tg", self.Tg), ("T_ref", self.T_ref)):
             if not (value > -ZERO_CELSIUS and math.isfinite(value)):
-                raise ValueError(f"Joined.{name} = {value!r} °C: must lie above -273.15 °C")
+                raise ValueError(f"Joined.{name} is {value!r} °C; it must lie above -273.15 °C")
 
-    def _from_transition(self, T: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _from_transition(self, T: Array) -> Array:
         above = np.maximum(T - self.Tg, 0.0)
         below = np.minimum(T, self.Tg) + ZERO_CELSIUS
         slope = self.Ea / (GAS_CONSTANT * math.log(10))
@@ -161,7 +163,7 @@ class Joined:
             -self.C1 * above / (self.C2 + above) + slope * (1 / below - 1 / (self.Tg + ZERO_CELSIUS))
         )
 
-    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+    def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C; ValueError at or below absolute zero."""
         T = np.asarray(T, dtype=float)
         if not np.all(T > -ZERO_CELSIUS):
@@ -201,15 +203,15 @@ class ShiftTable:
             raise ValueError("ShiftTable.log_aT: every shift must be finite")
         self._check(np.asarray(self.T_ref))
 
-    def _check(self, T: NDArray[np.float64]) -> None:
+    def _check(self, T: Array) -> None:
         if not np.all((T >= self.T[0]) & (T <= self.T[-1])):
             raise ValueError(
-                f"T = {T.tolist()!r} °C: free shifts are known from {self.T[0]:.6g} to {self.T[-1]:.6g} °C "
+                f"T is {T.tolist()!r} °C; free shifts are known from {self.T[0]:.6g} to {self.T[-1]:.6g} °C "
                 "only "
                 "(take law='wlf' or 'arrhenius' to go beyond)"
             )
 
-    def log_shift(self, T: ArrayLike) -> NDArray[np.float64]:
+    def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C; ValueError outside the table."""
         T = np.asarray(T, dtype=float)
         self._check(T)
@@ -234,18 +236,18 @@ class RhoT:
 
     def __post_init__(self) -> None:
         if not (self.T_ref > -ZERO_CELSIUS and math.isfinite(self.T_ref)):
-            raise ValueError(f"RhoT.T_ref = {self.T_ref!r} °C: must lie above -273.15 °C")
+            raise ValueError(f"RhoT.T_ref is {self.T_ref!r} °C; it must lie above -273.15 °C")
         if not 0 <= self.expansion < 1e-2:
             raise ValueError(
-                f"RhoT.expansion = {self.expansion!r} 1/K: must lie between 0 and 0.01 (rubber: 6e-4)"
+                f"RhoT.expansion is {self.expansion!r} 1/K; it must lie between 0 and 0.01 (rubber: 6e-4)"
             )
 
-    def factor(self, T: ArrayLike) -> NDArray[np.float64]:
+    def factor(self, T: ArrayLike) -> Array:
         """b_T at T, °C; same shape as T. ValueError where ρT is not positive."""
         T = np.asarray(T, dtype=float)
         density = 1 + self.expansion * (T - self.T_ref)
         if not (np.all(T > -ZERO_CELSIUS) and np.all(density > 0)):
-            raise ValueError(f"T = {T.tolist()!r} °C: ρT must be positive")
+            raise ValueError(f"T is {T.tolist()!r} °C; ρT must be positive")
         return np.asarray((T + ZERO_CELSIUS) / (self.T_ref + ZERO_CELSIUS) / density)
 
 
@@ -276,6 +278,6 @@ def law_from_dict(data: dict[str, Any]) -> Law:
         case {"law": "free", "T": T, "log_aT": log_aT, "T_ref": T_ref}:
             return ShiftTable(tuple(T), tuple(log_aT), T_ref)
     raise ValueError(
-        f"law = {data!r}: must hold law 'wlf' (C1, C2), 'arrhenius' (Ea), 'joined' (C1, C2, Tg, Ea) or "
+        f"law is {data!r}; it must hold law 'wlf' (C1, C2), 'arrhenius' (Ea), 'joined' (C1, C2, Tg, Ea) or "
         "'free' (T, log_aT), and T_ref"
     )

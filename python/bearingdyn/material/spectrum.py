@@ -13,9 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 def branch_columns(omega: Array, tau: Array) -> tuple[Array, Array]:

@@ -26,8 +26,7 @@ from bearingdyn.material.spectrum import (
     dense_times,
     solve_strengths,
 )
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 _SEARCH, _FINE = 5, 12  # times per decade while the prior is chosen, and at the end
 _LOSS_WEIGHT = 0.42  # of a relative deviation of G″ against one of G′, where the prior is at work

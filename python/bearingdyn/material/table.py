@@ -10,7 +10,6 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.material.block import Block, aligned, cell_at, factors_of, units_row
 from bearingdyn.material.columns import (
@@ -26,6 +25,7 @@ from bearingdyn.material.columns import (
 )
 from bearingdyn.material.source import Row, Source, Splitter
 from bearingdyn.notice import warn
+from bearingdyn.types import Array
 
 _MISSING = ("", "-", "--", "---", "nan", "n/a", "na", "null", "none", "#n/a")
 _TEMPERATURE_LINE = re.compile(
@@ -39,7 +39,7 @@ KNOWN = (*UNITS, "isotherm")
 class Table:
     """Columns by quantity, Hz, °C and Pa, the rows they stand on, and what was assumed."""
 
-    values: dict[str, NDArray[np.float64]]
+    values: dict[str, Array]
     lines: tuple[int, ...]
     header_line: int
     mode: Literal["shear", "tension"] | None

@@ -21,8 +21,7 @@ from bearingdyn.material.laws import LawName, fit_law, fit_law_to_data, require_
 from bearingdyn.material.shift import ZERO_CELSIUS, Law, RhoT
 from bearingdyn.material.superpose import Superposed, Superposition, first_shifts
 from bearingdyn.notice import warn
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 _JITTER = 0.5  # K; as far as a mean temperature may miss the one that was meant
 _FAR = 100.0  # K; a T_ref further outside the data is taken for kelvin
@@ -100,7 +99,7 @@ class MasterCurve:
         ValueError unless exactly one of K, Pa, and nu is given, in its range, and the curve is in tension.
         """
         if self.mode != "tension":
-            raise ValueError(f"mode = {self.mode!r}: only a measurement in tension is converted")
+            raise ValueError(f"mode is {self.mode!r}; only a measurement in tension is converted")
         modulus, note = shear_modulus(self.storage + 1j * self.loss, K, nu)
         notes = (*self.notes, note)
         known = None if K is None else float(K)
@@ -158,21 +157,21 @@ def master_curve(
     J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
     """
     if law not in ("wlf", "arrhenius", "joined", "free"):
-        raise ValueError(f"law = {law!r}: must be 'wlf', 'arrhenius', 'joined' or 'free'")
+        raise ValueError(f"law is {law!r}; it must be 'wlf', 'arrhenius', 'joined' or 'free'")
     if law_from not in ("shifts", "data") or (law, law_from) == ("free", "data"):
         raise ValueError(
-            f"law_from = {law_from!r}: must be 'shifts', or 'data' with a law that has constants"
+            f"law_from is {law_from!r}; it must be 'shifts', or 'data' with a law that has constants"
         )
     if not -ZERO_CELSIUS < T_ref < 1e4:
-        raise ValueError(f"T_ref = {T_ref!r} °C: must be a temperature in °C")
+        raise ValueError(f"T_ref is {T_ref!r} °C; it must be a temperature in °C")
     if smoothness is not None and not 0 <= smoothness < np.inf:
-        raise ValueError(f"smoothness = {smoothness!r}: must be zero or positive")
+        raise ValueError(f"smoothness is {smoothness!r}; it must be zero or positive")
     check_range(dma)
     used, left_out = _cleaned(dma, clean)
     if vertical is not None:
         vertical = RhoT(float(T_ref)) if vertical == "rhoT" else vertical
         if vertical.T_ref != T_ref:
-            raise ValueError(f"vertical = {vertical!r}: its T_ref must be that of the curve, {T_ref:g} °C")
+            raise ValueError(f"vertical is {vertical!r}; its T_ref must be that of the curve, {T_ref:g} °C")
         factor = vertical.factor(used.temperature)
         used = replace(used, storage=used.storage / factor, loss=used.loss / factor)
     T = _temperatures(used, T_ref)
@@ -275,13 +274,12 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
         )
     if not T[0] - _FAR <= T_ref <= T[-1] + _FAR:
         raise ValueError(
-            f"T_ref = {T_ref:g} °C lies more than {_FAR:g} K outside the measured {T[0]:.4g} to "
+            f"T_ref is {T_ref:g} °C, more than {_FAR:g} K outside the measured {T[0]:.4g} to "
             f"{T[-1]:.4g} °C: no shift law reaches there; is it in kelvin? T_ref is in °C"
         )
     if not T[0] - _JITTER <= T_ref <= T[-1] + _JITTER:
         warn(
-            f"T_ref = {T_ref:g} °C lies outside the measured {T[0]:.4g} to {T[-1]:.4g} °C: the law "
-            "extrapolates",
+            f"T_ref is {T_ref:g} °C, outside the measured {T[0]:.4g} to {T[-1]:.4g} °C: the law extrapolates",
         )
     return T
 
@@ -297,7 +295,7 @@ def _by_hand(T: Array, start: Array, shifts: Mapping[float, float]) -> tuple[Arr
                 f"shifts: {temperature!r} °C names no isotherm, or one already named; there are {have} °C"
             )
         if not np.isfinite(shift):
-            raise ValueError(f"shifts[{temperature!r}] = {shift!r}: must be a finite log10 a_T")
+            raise ValueError(f"shifts[{temperature!r}] is {shift!r}; it must be a finite log10 a_T")
         held[k], values[k] = True, shift
     correction = np.interp(T, T[held], (values - start)[held])
     return np.where(held, values, start + correction), held

@@ -8,16 +8,14 @@ from functools import cached_property
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from bearingdyn.bearing.series import RacewaySeries
 from bearingdyn.fem.eigen import rigid_transfer
 from bearingdyn.fem.revolution import ALL, AXIAL, TORSION, Harmonic
 from bearingdyn.fem.revolution_mesh import RevolutionMesh
 from bearingdyn.parts.section import Face, Groove, Surface, find_face, groove_weights
+from bearingdyn.types import Array, Index
 
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
 Components = tuple[int, ...]
 
 # Coordinates (of x, y, z, θx, θy, θz) and signs of an interface's rigid shapes, for the cosine and the sine
@@ -35,7 +33,7 @@ class Track:
     """A groove on a mesh: nodes (k,), weights (2, k, 2) of U and W, its series, arm and plane z, m."""
 
     nodes: Index
-    weights: Float
+    weights: Array
     series: RacewaySeries
     order: int
     arm: float
@@ -77,7 +75,7 @@ class Boundaries:
         twist = [(0, TORSION, 1)] if self.faces else []
         return [(0, AXIAL, 1), *twist, *((n, ALL, 2) for n in range(1, highest + 1))]
 
-    def held(self, h: Harmonic) -> tuple[Index, Float]:
+    def held(self, h: Harmonic) -> tuple[Index, Array]:
         """Coordinates on rigid faces, without those removed on the axis, and their shapes, a column each.
 
         In orders above 1 a rigid face does not move: there are no columns.
@@ -90,7 +88,7 @@ class Boundaries:
         R = scipy.linalg.block_diag(*[h.rigid_shapes(f.nodes, f.reference) for f in faces])
         return at[kept], R[kept]
 
-    def averages(self, h: Harmonic) -> Float:
+    def averages(self, h: Harmonic) -> Array:
         """Rows (2 t, n): radial and axial coefficient of this order of each groove that has it."""
         rows = [np.zeros((0, h.n))]
         for track in self._with(h):
@@ -104,7 +102,7 @@ class Boundaries:
     def _with(self, h: Harmonic) -> list[Track]:
         return [t for t in self.tracks.values() if h.order <= t.order and 0 in h.components]
 
-    def place(self, h: Harmonic, copy: int) -> tuple[Index, Float]:
+    def place(self, h: Harmonic, copy: int) -> tuple[Index, Array]:
         """Coordinates and signs of the columns of `held` and then of the rows of `averages`, in a copy."""
         index: list[int] = []
         sign: list[float] = []
@@ -119,7 +117,7 @@ class Boundaries:
                 sign += [1.0, 1.0]
         return np.array(index, dtype=np.intp), np.array(sign)
 
-    def rigid_motion(self, n: int) -> Float:
+    def rigid_motion(self, n: int) -> Array:
         """Rigid motions (n, 5 or 6) of the body about the origin in n coordinates, internal ones at rest."""
         R = np.zeros((n, 6))
         for name, face in self.faces.items():

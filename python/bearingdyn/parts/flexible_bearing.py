@@ -9,25 +9,24 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import BallBearing
-from bearingdyn.bearing.checks import vector
 from bearingdyn.bearing.minimum import minimum
+from bearingdyn.checks import vector
 from bearingdyn.cms import Superelement
 from bearingdyn.parts.flexible_ring import FlexibleRing
-
-Float = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 class _State(NamedTuple):
-    z: Float
+    z: Array
     """(n,) coefficients of the raceway, m."""
-    g: Float
+    g: Array
     """(n,) force of the inner ring on the relative coefficients, N."""
-    K: Float
+    K: Array
     """(n, n) tangent of the balls, N/m."""
-    loads: Float
+    loads: Array
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class FlexibleBearing:
         return self.ring.superelement()
 
     @cached_property
-    def raceway_stiffness(self) -> Float:
+    def raceway_stiffness(self) -> Array:
         """Static stiffness (n, n) of the raceway's coefficients, the ring's outside held, N/m."""
         element = self._element
         K = element.stiffness().real
@@ -69,10 +68,10 @@ class FlexibleBearing:
         return np.asarray(0.5 * (S + S.T))
 
     @cached_property
-    def _relative(self) -> Float:
+    def _relative(self) -> Array:
         return self.bearing.coefficients(self._element.raceways["raceway"].series)
 
-    def _press(self, relative: Float, angle: float) -> tuple[float, Float, Float, Float]:
+    def _press(self, relative: Array, angle: float) -> tuple[float, Array, Array, Array]:
         """Energy of the balls, force, tangent and loads at relative coefficients."""
         from bearingdyn import core  # late: only here is the compiled kernel needed
 
@@ -88,7 +87,7 @@ class FlexibleBearing:
         own = self._relative @ vector("q", q, (6,), "(x, y, z, θx, θy, θz) of the inner ring")
         S = self.raceway_stiffness
 
-        def stored(z: Float) -> tuple[float, Float, Float, float]:
+        def stored(z: Array) -> tuple[float, Array, Array, float]:
             energy, g, K, loads = self._press(own - z, angle)
             return energy + 0.5 * float(z @ S @ z), S @ z - g, S + K, float(loads.sum())
 
@@ -97,22 +96,22 @@ class FlexibleBearing:
         _, g, K, loads = self._press(own - z, angle)
         return _State(z, g, K, loads)
 
-    def raceway(self, q: ArrayLike, angle: float = 0.0) -> Float:
+    def raceway(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Displacement (n,) of the raceway, m, coefficients as in RacewaySeries.up_to(ring.order)."""
         return self._settle(q, angle).z
 
-    def force(self, q: ArrayLike, angle: float = 0.0) -> Float:
+    def force(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Load (6,), N and N m, that holds the inner ring at q: +∇V, with the ring settled."""
         return np.asarray(self._relative.T @ self._settle(q, angle).g)
 
-    def stiffness(self, q: ArrayLike, angle: float = 0.0) -> Float:
+    def stiffness(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Tangent stiffness (6, 6) ∂force/∂q, the ring following; N/m, N and N m."""
         K = self._settle(q, angle).K
         # balls and ring in series: K − K (S + K)⁻¹ K
         series = K - K @ scipy.linalg.solve(self.raceway_stiffness + K, K, assume_a="pos")
         return np.asarray(self._relative.T @ (0.5 * (series + series.T)) @ self._relative)
 
-    def ball_loads(self, q: ArrayLike, angle: float = 0.0) -> Float:
+    def ball_loads(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Contact load (Z,) of each ball, N, balls in the order of their azimuth."""
         return self._settle(q, angle).loads
 
@@ -122,7 +121,7 @@ class FlexibleBearing:
         own = self._relative @ np.asarray(q, dtype=np.float64)
         return self._press(own - z, angle)[0] + 0.5 * float(z @ self.raceway_stiffness @ z)
 
-    def displacement(self, load: ArrayLike, angle: float = 0.0) -> Float:
+    def displacement(self, load: ArrayLike, angle: float = 0.0) -> Array:
         """Static equilibrium q (6,) of the inner ring under a load (6,), θz held, the housing fixed.
 
         Raises ValueError on a wrong shape, ArithmeticError if no equilibrium is found.
@@ -133,7 +132,7 @@ class FlexibleBearing:
         unit = np.diag([1.0, 1.0, 1.0, 1 / self.bearing.arm, 1 / self.bearing.arm])
         J = np.hstack([B[:, :5] @ unit, -np.eye(len(S))])
 
-        def stored(x: Float) -> tuple[float, Float, Float, float]:
+        def stored(x: Array) -> tuple[float, Array, Array, float]:
             energy, g, K, loads = self._press(J @ x, angle)
             z = x[5:]
             gradient = J.T @ g

@@ -13,9 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from bearingdyn.cms import FullModel, RigidInterface, Superelement, reduce
 from bearingdyn.fem.exchange import FEMatrices
-
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +25,7 @@ class NodeSet:
     reference: (x, y, z), m, of the six coordinates; default: the mean of the nodes' positions.
     """
 
-    nodes: Sequence[int] | Callable[[Float], NDArray[np.bool_]]
+    nodes: Sequence[int] | Callable[[Array], NDArray[np.bool_]]
     reference: tuple[float, float, float] | None = None
 
 
@@ -87,7 +85,7 @@ class Imported:
         """The body reduced onto its interfaces and the fixed-interface modes up to f_max."""
         return reduce(self.full_model(), f_max=self.f_max, damping=self.damping, held=self.held)
 
-    def _points(self) -> Float:
+    def _points(self) -> Array:
         assert self.matrices.points is not None
         return self.matrices.points
 
@@ -168,13 +166,13 @@ class Imported:
 
 def at_radius(
     radius: float, axial: tuple[float, float] = (-math.inf, math.inf), tolerance: float = 1e-6
-) -> Callable[[Float], NDArray[np.bool_]]:
+) -> Callable[[Array], NDArray[np.bool_]]:
     """Choice of the nodes on a cylinder about z, for NodeSet.
 
     radius: m. axial: z from, to, m. tolerance: m, as fine as the file's digits.
     """
 
-    def choose(p: Float) -> NDArray[np.bool_]:
+    def choose(p: Array) -> NDArray[np.bool_]:
         near = np.abs(np.hypot(p[:, 0], p[:, 1]) - radius) <= tolerance
         return np.asarray(near & (p[:, 2] >= axial[0] - tolerance) & (p[:, 2] <= axial[1] + tolerance))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.cms import Superelement
 from bearingdyn.magnitude import check_length
@@ -15,6 +15,7 @@ from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.section import Cylinder, Region, ViscoelasticSolid
+from bearingdyn.types import Array, Complex
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class Layer:
             refinement=self.refinement,
         )
 
-    def stiffness(self, omega: float = 0.0) -> NDArray[np.complex128]:
+    def stiffness(self, omega: float = 0.0) -> Complex:
         """Quasi-static stiffness (12, 12), inner interface then outer, N/m, N, N m: solved anew at G*(ω).
 
         omega: rad/s.
@@ -96,7 +97,7 @@ class Layer:
         """Its surface; see Revolved.outline."""
         return self.body.outline()
 
-    def nominal_strain(self, relative: ArrayLike) -> NDArray[np.float64]:
+    def nominal_strain(self, relative: ArrayLike) -> Array:
         """Nominal strain max |t + θ × ρ| / (r_outer − r_inner) under a relative motion of the interfaces.
 
         relative: (..., 6) motion (t, θ) of one interface against the other, m and rad. ρ runs over both

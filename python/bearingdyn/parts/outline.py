@@ -7,7 +7,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from bearingdyn.fem.revolution_mesh import Float, Index
+from bearingdyn.types import Array, Index
 
 AZIMUTHS = 48  # around a body of revolution
 
@@ -20,9 +20,9 @@ class Outline:
     rows: (3 p, n): x, y, z of every point from the coordinates of the part's superelement.
     """
 
-    points: Float
+    points: Array
     faces: Index
-    rows: Float
+    rows: Array
 
 
 @runtime_checkable
@@ -33,12 +33,12 @@ class Outlined(Protocol):
         """Its surface."""
 
 
-def azimuths() -> Float:
+def azimuths() -> Array:
     """The azimuths, rad, at which bodies of revolution are drawn."""
     return np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False)
 
 
-def revolved(r: Float, z: Float, lines: Index) -> tuple[Float, Index, Index]:
+def revolved(r: Array, z: Array, lines: Index) -> tuple[Array, Index, Index]:
     """Lines (s, 2) of a section turned about z: points, quadrilaterals, and the section's points (k,) used.
 
     r, z: points of the section, m. The points (k · AZIMUTHS, 3) come circle by circle. Lines without length
@@ -58,20 +58,20 @@ def revolved(r: Float, z: Float, lines: Index) -> tuple[Float, Index, Index]:
     return points.reshape(-1, 3), faces.reshape(-1, 4), used
 
 
-def cylinder(r_inner: float, r_outer: float, z: tuple[float, float]) -> tuple[Float, Index]:
+def cylinder(r_inner: float, r_outer: float, z: tuple[float, float]) -> tuple[Array, Index]:
     """Points and faces of a ring about z (a disc where r_inner is 0), m."""
     r, height = np.array([r_inner, r_outer, r_outer, r_inner]), np.repeat(z, 2)
     return revolved(r, height, np.array([[0, 1], [1, 2], [2, 3], [3, 0]]))[:2]
 
 
-def box(sides: Float) -> tuple[Float, Index]:
+def box(sides: Array) -> tuple[Array, Index]:
     """Points (8, 3) and faces (6, 4) of a box of these sides (3,), m, about the origin."""
     corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     return corners * sides, np.array(faces)
 
 
-def carried(motion: Float, arms: Float) -> Float:
+def carried(motion: Array, arms: Array) -> Array:
     """Rows (3 p, n) of points carried by rigid bodies: u = t + θ × arm.
 
     motion: (6, n) of one body, or (p, 6, n) of one for each point; arms: (p, 3), m.

@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.cms import (
     Basis,
@@ -30,8 +29,7 @@ from bearingdyn.parts.outline import Outline, azimuths, revolved
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.section import Cylinder, EndFace, Groove, Patch, Region, Surface, shape_moduli
-
-Float = NDArray[np.float64]
+from bearingdyn.types import Array, Complex, Index
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +42,8 @@ class RevolvedModes:
     """
 
     order: int
-    frequency: Float
-    shapes: Float
+    frequency: Array
+    shapes: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +179,7 @@ class Revolved:
             self._boundaries, self._bulk, self._density, self.f_max, self.mesh.size, self.inertia
         )
 
-    def stiffness(self, omega: float = 0.0) -> NDArray[np.complex128]:
+    def stiffness(self, omega: float = 0.0) -> Complex:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
 
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
@@ -210,13 +208,13 @@ class Revolved:
                 S[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (k + k.T)
         return S
 
-    def _free_of_rigid_motion(self, n: int) -> Float:
+    def _free_of_rigid_motion(self, n: int) -> Array:
         """Projector (n, n) that takes rigid motion out: what round-off leaves of its stiffness."""
         Q = np.linalg.qr(self._boundaries.rigid_motion(n))[0]
         return np.asarray(np.eye(n) - Q @ Q.T)
 
     @cached_property
-    def _families(self) -> list[tuple[Harmonic, Float, int, int]]:
+    def _families(self) -> list[tuple[Harmonic, Array, int, int]]:
         """Each family with its shapes, the number of constraint shapes among them, and its copies."""
         levels = shape_moduli(self.regions, self.moduli)
         found = []
@@ -231,7 +229,7 @@ class Revolved:
         internal = (copies * int(Psi.shape[1] - fixed) for _, Psi, fixed, copies in self._families)
         return self._boundaries.n + sum(internal)
 
-    def _placed(self) -> Iterator[tuple[Harmonic, Float, list[tuple[NDArray[np.intp], Float]]]]:
+    def _placed(self) -> Iterator[tuple[Harmonic, Array, list[tuple[Index, Array]]]]:
         """Each family with its shapes, and the coordinates and signs of these in each of its copies."""
         end = self._boundaries.n
         for h, Psi, fixed, copies in self._families:
@@ -370,7 +368,7 @@ class Revolved:
             if name not in self.interfaces:
                 raise ValueError(f"fixed has {name!r}; the interfaces are {sorted(self.interfaces)}")
         rate = self._shape_maker().slow_rate(shear)
-        found: list[tuple[float, Float]] = []
+        found: list[tuple[float, Array]] = []
         for components in (AXIAL, TORSION) if order == 0 else ((0, 1, 2),):
             h = self._harmonic(order, components)
             held = [h.coordinates(self._boundaries.faces[name].nodes) for name in names]

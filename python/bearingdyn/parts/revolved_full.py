@@ -7,14 +7,12 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from bearingdyn.cms import Basis, FullModel, RigidInterface, Viscoelastic
 from bearingdyn.fem.revolution import Harmonic
 from bearingdyn.material import Elastic
 from bearingdyn.parts.section import Face, Patch, Region
-
-Float = NDArray[np.float64]
+from bearingdyn.types import Array
 
 Copies = Sequence[tuple[Sequence[int], Sequence[float]]]  # coordinates and signs of each copy of a family
 
@@ -42,8 +40,8 @@ def full_model(
     K: list[Any] = []
     E: list[Any] = []
     H: list[list[Any]] = [[] for _ in rubbers]
-    dofs: dict[str, list[Float]] = {name: [] for name in faces}
-    T: dict[str, list[Float]] = {name: [] for name in faces}
+    dofs: dict[str, list[Array]] = {name: [] for name in faces}
+    T: dict[str, list[Array]] = {name: [] for name in faces}
     rows: dict[str, list[Any]] = {name: [] for name in outputs}
     start = 0
     for h, copies in families:
@@ -86,7 +84,7 @@ def full_model(
 
 def full_basis(
     model: FullModel,
-    families: Sequence[tuple[Harmonic, Float, int, Copies]],
+    families: Sequence[tuple[Harmonic, Array, int, Copies]],
     level: Sequence[float],
 ) -> Basis:
     """The shapes of the families in the coordinates of `full_model`.

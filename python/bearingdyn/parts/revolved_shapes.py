@@ -9,14 +9,12 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from bearingdyn.cms import inertia_shapes, orthogonalise
 from bearingdyn.fem.eigen import factorise, lowest_modes
 from bearingdyn.fem.revolution import Harmonic
 from bearingdyn.parts.boundaries import Boundaries
-
-Float = NDArray[np.float64]
+from bearingdyn.types import Array
 
 ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it is rigid motion
 
@@ -74,7 +72,7 @@ class ShapeMaker:
             A = A + hold * scipy.sparse.csr_matrix(L.T) @ scipy.sparse.csr_matrix(L)
         return factorise(A)
 
-    def basis(self, h: Harmonic, levels: Sequence[Sequence[float]]) -> tuple[Float, int]:
+    def basis(self, h: Harmonic, levels: Sequence[Sequence[float]]) -> tuple[Array, int]:
         """Basis (n, columns) of a family: constraint shapes, then internal ones; and the number of the first.
 
         Internal are the differences of constraint shapes between moduli, which vanish on the boundaries,
@@ -100,7 +98,7 @@ class ShapeMaker:
         _, internal = orthogonalise(internal, K, M)
         return np.hstack([static, internal]), static.shape[1]
 
-    def _inertia_shapes(self, h: Harmonic, K: Any, M: Any, level: Sequence[float]) -> list[Float]:
+    def _inertia_shapes(self, h: Harmonic, K: Any, M: Any, level: Sequence[float]) -> list[Array]:
         """Answers (n, m), at rest on the boundaries, to the inertia of the constraint shapes at a modulus."""
         inner = np.setdiff1d(h.free, self.boundaries.held(h)[0])
         if not inner.size:
@@ -108,19 +106,19 @@ class ShapeMaker:
         static = self.constraint_shapes(h, level)[0]
         lu = self._held(h, K)
 
-        def answer(load: Float) -> Float:
+        def answer(load: Array) -> Array:
             u = np.zeros((h.n, load.shape[1]))
             u[inner] = lu.solve(load)
             return self._beyond(h, u, static)[inner]
 
         return inertia_shapes(answer, K, M, static, inner, self.inertia)
 
-    def _beyond(self, h: Harmonic, shapes: Float, static: Float) -> Float:
+    def _beyond(self, h: Harmonic, shapes: Array, static: Array) -> Array:
         """Shapes (n, m) at rest on the interfaces, less the constraint shapes that move the grooves alike."""
         faces = self.boundaries.held(h)[1].shape[1]
         return np.asarray(shapes - static[:, faces:] @ (self.boundaries.averages(h) @ shapes))
 
-    def _modes_beyond(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float], static: Float) -> Float:
+    def _modes_beyond(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float], static: Array) -> Array:
         """Modes (n, m) with interfaces held and grooves free, less the constraint shapes they move by."""
         at, _ = self.boundaries.held(h)
         inner = np.setdiff1d(h.free, at)

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.cms import modulus_levels
-from bearingdyn.fem.revolution_mesh import SAME, Float, Index, Rectangle, RevolutionMesh
+from bearingdyn.fem.revolution_mesh import SAME, Rectangle, RevolutionMesh
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import Elastic
+from bearingdyn.types import Array, Index
 
 HIGHEST = 64  # Fourier order of a raceway: far more than any number of balls asks for
 
@@ -122,7 +122,7 @@ class Line:
 class Where:
     """Face of the nodes on the section's outline where inside(r, z) is true; r, z (n,) arrays, m."""
 
-    inside: Callable[[Float, Float], Any]
+    inside: Callable[[Array, Array], Any]
 
 
 @dataclass(frozen=True)
@@ -170,8 +170,8 @@ class Groove:
 class Face:
     """An interface on a mesh: its nodes, sides (s, 3) and z of its reference point on the axis, m."""
 
-    nodes: NDArray[np.intp]
-    sides: NDArray[np.intp]
+    nodes: Index
+    sides: Index
     reference: float
 
 
@@ -232,9 +232,7 @@ def _with_middles(mesh: RevolutionMesh, nodes: Index) -> Index:
     return np.union1d(nodes, mesh.edges[both, 1])
 
 
-def groove_weights(
-    mesh: RevolutionMesh, face: Face, arm: float, z: float
-) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+def groove_weights(mesh: RevolutionMesh, face: Face, arm: float, z: float) -> tuple[Index, Array]:
     """Nodes (k,) and weights (2, k, 2): radial and axial motion of the groove centre from U and W there.
 
     The least-squares rigid motion of the section, u_r = a + φ (z − z_m), u_z = b − φ (r − r_m), taken at

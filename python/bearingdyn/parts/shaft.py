@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from bearingdyn.cms import Basis, FullModel, RigidInterface, Superelement, basis_of, project
 from bearingdyn.fem.beam import Section, assemble, bending_wavelength
 from bearingdyn.magnitude import LONGEST_SHAFT, check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
+from bearingdyn.types import Array, Index
 
 ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at f_max, 2e-4 at half of it
 
@@ -127,7 +127,7 @@ class Shaft:
         """Length of the shaft, m."""
         return math.fsum(s.length for s in self.sections)
 
-    def nodes(self) -> tuple[NDArray[np.float64], list[Section]]:
+    def nodes(self) -> tuple[Array, list[Section]]:
         """Node positions z (n,), m, rising, and the section of each of the n - 1 elements between them."""
         ends = np.concatenate([[0.0], np.cumsum([s.length for s in self.sections])])
         special = np.array([*self.seats.values(), *self.points.values(), *(d.z for d in self.discs)])
@@ -151,7 +151,7 @@ class Shaft:
         M, K, G = assemble(z, sections, self.material)
         n = 6 * len(z)
 
-        def coordinates(place: float) -> NDArray[np.intp]:
+        def coordinates(place: float) -> Index:
             return 6 * int(np.argmin(np.abs(z - place))) + np.arange(6)
 
         mass, gyro = np.zeros(n), scipy.sparse.lil_matrix((n, n))

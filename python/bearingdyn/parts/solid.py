@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 import scipy.sparse
-from numpy.typing import NDArray
 
 from bearingdyn.cms import (
     Basis,
@@ -31,8 +30,7 @@ from bearingdyn.magnitude import LARGEST_SOLID, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.section import ViscoelasticSolid
-
-Float = NDArray[np.float64]
+from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
 Material = Elastic | ViscoelasticSolid
@@ -66,7 +64,7 @@ class RigidSurface:
         """The names."""
         return (self.surface,) if isinstance(self.surface, str) else tuple(self.surface)
 
-    def place(self, mesh: SolidMesh) -> tuple[NDArray[np.intp], Float]:
+    def place(self, mesh: SolidMesh) -> tuple[Index, Array]:
         """Its nodes and reference point (3,), m. Raises ValueError as SolidMesh.surface does."""
         nodes = np.unique(np.concatenate([mesh.surface(name) for name in self.surfaces]))
         if not isinstance(self.reference, str):
@@ -180,7 +178,7 @@ class Solid:
         return self.materials
 
     @cached_property
-    def _faces(self) -> dict[str, tuple[NDArray[np.intp], Float]]:
+    def _faces(self) -> dict[str, tuple[Index, Array]]:
         found = {}
         for name, surface in self.interfaces.items():
             rigid = surface if isinstance(surface, RigidSurface) else RigidSurface(surface)
@@ -311,7 +309,7 @@ class Solid:
         W = rows.T @ (samples.weights[:, None] * rows)
         return Surface(samples.area, np.asarray(0.5 * (W + W.T)))
 
-    def stiffness(self, omega: float = 0.0) -> NDArray[np.complex128]:
+    def stiffness(self, omega: float = 0.0) -> Complex:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
 
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
@@ -337,7 +335,7 @@ class Solid:
         S = u.T @ (K @ u)
         return np.asarray(0.5 * (S + S.T), dtype=np.complex128)
 
-    def surface(self, name: str) -> tuple[SurfaceSamples, Float]:
+    def surface(self, name: str) -> tuple[SurfaceSamples, Array]:
         """A surface's integration points, and rows (q, n) giving their outward normal displacement.
 
         The rows act on the coordinates of `superelement`: with v = rows @ q̇ the radiated power of a plane

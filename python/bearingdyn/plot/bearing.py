@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import BallBearing, LoadDistribution, Lubricant, Running, fault_lines, lubricate
 from bearingdyn.bearing import waviness_lines as lines_of_waviness
 from bearingdyn.plot.frame import DASHES, colour, finish, halve, new_axes, some, style
 from bearingdyn.plot.motion import spectrum
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -123,7 +124,7 @@ def film(
     omega = np.asarray(speeds, dtype=np.float64)
     if omega.ndim != 1 or omega.size < 2 or not (omega > 0).all() or not (np.diff(omega) > 0).all():
         raise ValueError("speeds must be two or more positive numbers that increase, in rad/s")
-    grid: NDArray[np.float64] = np.atleast_1d(np.asarray(temperatures, dtype=np.float64))
+    grid: Array = np.atleast_1d(np.asarray(temperatures, dtype=np.float64))
     found = {
         float(T): [
             lubricate(

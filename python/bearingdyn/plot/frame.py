@@ -9,7 +9,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,7 +113,7 @@ def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
         ax.set_title(title, loc="left", pad=6.0 + 14.0 * rows)
 
 
-def engineering(axis: Axis, values: NDArray[np.float64], unit: str) -> str:
+def engineering(axis: Axis, values: Array, unit: str) -> str:
     """Write the ticks of an axis in the multiple of its unit that suits the values; returns that multiple.
 
     What is drawn stays in the unit given. A unit without prefix gets a power of ten: "10⁶", "10⁻⁸ kg". No
@@ -160,7 +161,7 @@ def _written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> 
         axis.set_minor_locator(LogLocator(subs=(1.5, 2, 3, 4, 6, 8) if decades < 0.8 else (2, 5)))
 
 
-def frame_log(ax: Axes, values: NDArray[np.float64]) -> None:
+def frame_log(ax: Axes, values: Array) -> None:
     """A log axis over the measured values, whatever else is drawn, its numbers written out."""
     low, high = float(values.min()), float(values.max())
     margin = max((high / low) ** 0.06, 1.05)

@@ -7,11 +7,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.material import DMAData, MasterCurve, Maxwell, OutsideBand, ShiftTable
 from bearingdyn.parts import Layer
 from bearingdyn.plot.frame import COLOURS, colour, finish, frame_log, halve, new_axes, some, style
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -173,7 +174,7 @@ def letter_of(mode: str) -> str:
     return "G" if mode == "shear" else "E"
 
 
-def temperature_scale(temperature: NDArray[np.float64]) -> Normalize:
+def temperature_scale(temperature: Array) -> Normalize:
     """Scale of the colours over these temperatures, °C."""
     from matplotlib.colors import Normalize
 

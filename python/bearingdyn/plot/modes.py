@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.plot.frame import RPM, colour, finish, new_axes, style
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -61,9 +62,7 @@ def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes 
     return ax
 
 
-def _crossings(
-    rpm: NDArray[np.float64], frequency: NDArray[np.float64], swinging: NDArray[np.bool_], order: float
-) -> NDArray[np.float64]:
+def _crossings(rpm: Array, frequency: Array, swinging: NDArray[np.bool_], order: float) -> Array:
     """Speed, rpm, and frequency, Hz, (n, 2), where modes (speed, mode) cross an order above standstill."""
     gap = frequency - order * rpm[:, None] / 60
     below, above = gap[:-1], gap[1:]
@@ -74,7 +73,7 @@ def _crossings(
     return np.asarray(found[found[:, 1] > 0])
 
 
-def _ring(ax: Axes, crossings: NDArray[np.float64]) -> None:
+def _ring(ax: Axes, crossings: Array) -> None:
     """Rings (n, 2), each with its speed written below to the right unless another stands there."""
     if not crossings.size:
         return
@@ -83,7 +82,7 @@ def _ring(ax: Axes, crossings: NDArray[np.float64]) -> None:
         markeredgecolor="0.2", label="crosses an order, rpm", zorder=4,
     )  # fmt: skip
     letter = NUMBER / 72 * ax.figure.dpi  # pixels
-    taken: list[NDArray[np.float64]] = []
+    taken: list[Array] = []
     for place in crossings[np.argsort(crossings[:, 0])]:
         at = ax.transData.transform(place)
         text = f"{place[0]:.0f}"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.analysis import BearingState
 from bearingdyn.plot.frame import (
@@ -22,6 +22,7 @@ from bearingdyn.plot.frame import (
     some,
     style,
 )
+from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
     import xarray
@@ -238,7 +239,7 @@ def ball_loads(loads: BearingState | ArrayLike, ax: Axes | None = None, *, angle
     return ax
 
 
-def _span(ax: Axes, *grids: NDArray[np.float64]) -> None:
+def _span(ax: Axes, *grids: Array) -> None:
     """The whole frequency range of the curves, on a log axis where it is wide and does not touch zero."""
     low, high = min(float(g.min()) for g in grids), max(float(g.max()) for g in grids)
     if low > 0 and high / low >= 50:
@@ -291,7 +292,7 @@ def _response_unit(quantity: str, output: str, input: str) -> str:
     return f"{f'({motion}{rate})' if rate else motion}/{'(N m)' if _is_rotation(input) else 'N'}"
 
 
-def continuous_phase(response: NDArray[np.complex128]) -> NDArray[np.float64]:
+def continuous_phase(response: Complex) -> Array:
     """Unwrapped phase, °, its first value in the turn below PHASE_END: no curve begins at that angle."""
     degrees = np.degrees(np.unwrap(np.angle(response)))
     return np.asarray(degrees - 360.0 * np.ceil((degrees[0] - PHASE_END) / 360.0))

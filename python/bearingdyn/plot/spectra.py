@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.material import DMAData, MasterCurve, Maxwell, kk_ratio, suspects
 from bearingdyn.material.kk import LIMIT
 from bearingdyn.plot.frame import COLOURS, colour, finish, new_axes, some, style
 from bearingdyn.plot.material import letter_of, temperature_bar, temperature_colour, temperature_scale
+from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -117,14 +117,14 @@ def spectrum_of(materials: Mapping[str, Maxwell], ax: Axes | None = None) -> Axe
     return ax
 
 
-def _scatter(ax: Axes, data: DMAData | MasterCurve, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
+def _scatter(ax: Axes, data: DMAData | MasterCurve, x: Array, y: Array) -> None:
     scale = temperature_scale(data.temperature)
     colours = [temperature_colour(scale, float(T)) for T in data.temperature]
     ax.scatter(x, y, c=colours, s=7, linewidths=0)
     temperature_bar([ax], scale)
 
 
-def _model(data: DMAData | MasterCurve, maxwell: Maxwell) -> NDArray[np.complex128]:
+def _model(data: DMAData | MasterCurve, maxwell: Maxwell) -> Complex:
     """Modulus of the model over its band, or the measured frequencies, in the mode of the data, Pa."""
     low, high = maxwell.band or (float(data.frequency.min()), float(data.frequency.max()))
     modulus = maxwell.complex_modulus(2 * np.pi * np.geomspace(low, high, 300))

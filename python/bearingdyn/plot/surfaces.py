@@ -6,18 +6,17 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.analysis import Equilibrium, MovedSurface, mode_surfaces
 from bearingdyn.application import Application
 from bearingdyn.plot.frame import STYLE, style
 from bearingdyn.system import System
+from bearingdyn.types import Array, Index
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 
 SWING = 0.08  # of the size of the structure, by which the largest motion is drawn
 MAP = "YlOrRd"
@@ -153,7 +152,7 @@ def _normals(polygons: Array) -> Array:
     return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None])
 
 
-def _sharp(points: Array, faces: NDArray[np.intp]) -> NDArray[np.intp]:
+def _sharp(points: Array, faces: Index) -> Index:
     """Edges (e, 2) at which a surface turns sharply, or ends."""
     normals = np.repeat(_normals(points[faces]), faces.shape[1], axis=0)
     sides = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)

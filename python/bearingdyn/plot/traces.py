@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.plot.frame import colour, engineering, finish, new_axes, some, stack, style
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -99,7 +99,7 @@ def time(
 
 def _trace(
     data: xarray.Dataset, channel: str, span: tuple[float, float] | None, about_mean: bool
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """Times, s, and samples to draw: all, or the extremes of each stretch in their order."""
     t = np.asarray(data["time"].values, dtype=np.float64)
     value = np.asarray(data["record"].sel(channel=channel).values, dtype=np.float64)

@@ -38,7 +38,7 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     >>> found = bd.modes(app)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     bd.save(found, Path(folder) / "modes.nc")
-    ...     again = bd.load(Path(folder) / "modes.nc")
+    ...     again = bd.open_result(Path(folder) / "modes.nc")
     >>> again.equals(found)
     True
     """
@@ -57,7 +57,7 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
         scratch.unlink(missing_ok=True)
 
 
-def load(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
+def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
     """Read a Dataset written by `save`, or what a run file holds so far, wholly into memory.
 
     Raises ValueError if the file does not exist, is no netCDF-4 file, or lacks the group.

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.system import QUANTITIES, RATES
+from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -123,7 +124,7 @@ def _ascii(text: str, width: int) -> str:
 
 
 def _dataset_58(
-    f: _Function, dim: str, abscissa: NDArray[np.float64], nodes: list[str], attrs: dict[str, object]
+    f: _Function, dim: str, abscissa: Array, nodes: list[str], attrs: dict[str, object]
 ) -> Iterator[str]:
     n = abscissa.size
     rounded = np.array([float(f"{value:.5e}") for value in (abscissa[0], abscissa[1] - abscissa[0])])

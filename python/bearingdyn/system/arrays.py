@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Part
@@ -24,8 +23,7 @@ from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
 from bearingdyn.bearing.series import RIGID, RacewaySeries
 from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.material import Maxwell
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array, Index
 
 # of a motion; the order is the number of derivatives
 QUANTITIES = ("displacement", "velocity", "acceleration")
@@ -247,7 +245,7 @@ class System:
             springs=tuple(replace(t, across=t.across @ T) for t in self.springs),
         )
 
-    def blocks(self) -> list[NDArray[np.intp]]:
+    def blocks(self) -> list[Index]:
         """Coordinates that the structure without its bearings couples, block by block."""
         touched = [np.abs(layer.L).sum(axis=1) for layer in self.layers]
         return coupled_blocks(self.M, self.C, self.K, self.G, self.N, *(np.outer(t, t) for t in touched))

@@ -6,15 +6,13 @@ import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.application import GRAVITY, GROUND, Application, HungFit
 from bearingdyn.bearing.series import RIGID
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System, factor
 from bearingdyn.system.held import check_held
 from bearingdyn.system.origin import noted
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array, Index
 
 
 def assemble(app: Application) -> System:
@@ -153,11 +151,11 @@ def _held(app: Application) -> tuple[tuple[str, ...], ...]:
     )
 
 
-def _coordinates(app: Application) -> tuple[dict[str, NDArray[np.intp]], int]:
+def _coordinates(app: Application) -> tuple[dict[str, Index], int]:
     """Global index of every part's coordinates (-1: held by the ground), and how many there are."""
     local = {name: np.full(element.n, -2, dtype=np.intp) for name, element in app.parts.items()}
 
-    def places(interface: str) -> tuple[str, NDArray[np.intp]]:
+    def places(interface: str) -> tuple[str, Index]:
         part, _, name = interface.partition(".")
         return part, app.parts[part].interfaces[name]
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bearingdyn.application import COMPONENTS
 from bearingdyn.system.arrays import TEST_SPRING, System, natural, static_modulus
-
-Array = NDArray[np.float64]
+from bearingdyn.types import Array
 
 
 def check_held(system: System, firm: Array) -> None:
@@ -67,7 +65,7 @@ def _check_creep(system: System, firm: Array, free: Array) -> None:
     creeping = creeping - free @ (free.T @ (system.M @ creeping))
     if np.abs(creeping.T @ load).max(initial=0.0) > 1e-9 * float(np.abs(shapes.T @ load).max()):
         raise ValueError(
-            f"layer {soft[0]!r} has G0 = 0: it creeps without end under a constant load and there is no "
+            f"layer {soft[0]!r} has G0 = 0; it creeps without end under a constant load and there is no "
             f"equilibrium; fit the material with a relaxed modulus G0 > 0"
         )
 

@@ -11,13 +11,11 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 
 from bearingdyn.fem.exchange.matrices import FEMatrices, Points, check_matrices
 from bearingdyn.fem.exchange.text import columns, existing, symmetric_from, whole
 from bearingdyn.fem.input_file import blocks, node
-
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Index
 
 
 def read_abaqus(
@@ -53,7 +51,7 @@ def read_abaqus(
     return check_matrices(matrices[0], matrices[1], points, labels=labels, **check)
 
 
-def _entries(path: Path) -> tuple[Index | None, Index, NDArray[np.float64]]:
+def _entries(path: Path) -> tuple[Index | None, Index, Array]:
     """Labels (l, 2) of node and direction, or None; row and column (e, 2) of each entry; values (e,)."""
     with path.open(encoding="ascii", errors="replace") as stream:
         first = next((line for line in stream if line.strip() and not line.lstrip().startswith("*")), "")

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bearingdyn.fem.eigen import pivots, rigid_body_residual, rigid_transfer
 from bearingdyn.fem.exchange.units import SI, Units
+from bearingdyn.types import Array, Index
 
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
 Points = ArrayLike | Mapping[int, ArrayLike]
 
 SYMMETRY = 1e-6  # files often carry six digits or so: larger differences are errors, not round-off
@@ -40,7 +39,7 @@ class FEMatrices:
 
     K: scipy.sparse.csr_matrix
     M: scipy.sparse.csr_matrix
-    points: Float | None = None
+    points: Array | None = None
     nodes: Index | None = None
     dofs: Index | None = None
 
@@ -68,7 +67,7 @@ class FEMatrices:
             return f"coordinate {coordinate}"
         return f"node {row if self.nodes is None else int(self.nodes[row])}, {DIRECTIONS[direction]}"
 
-    def rigid_motion(self, reference: ArrayLike) -> Float:
+    def rigid_motion(self, reference: ArrayLike) -> Array:
         """Motion (n, 6) of all coordinates as one rigid body about a reference point, m.
 
         Raises ValueError where the positions of the nodes are not known.
@@ -159,7 +158,7 @@ def _symmetric(name: str, A: scipy.sparse.csr_matrix) -> scipy.sparse.csr_matrix
     return A
 
 
-def _positions(points: Points, numbers: Index | None) -> tuple[Float, Index | None]:
+def _positions(points: Points, numbers: Index | None) -> tuple[Array, Index | None]:
     """Positions (k, 3) in the order of the nodes' numbers, and the numbers."""
     if not isinstance(points, Mapping):
         p = np.asarray(points, dtype=np.float64)

@@ -7,10 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
+from bearingdyn.types import Array, Index
 
 
 def existing(path: str | Path) -> Path:
@@ -21,7 +19,7 @@ def existing(path: str | Path) -> Path:
     return p
 
 
-def columns(path: Path, delimiter: str | None, widths: tuple[int, ...], kind: str) -> Float:
+def columns(path: Path, delimiter: str | None, widths: tuple[int, ...], kind: str) -> Array:
     """The numbers of a text file, (lines, columns); lines that begin with * are left out.
 
     Fortran's exponents (1.0D+05) are read too.
@@ -41,7 +39,7 @@ def columns(path: Path, delimiter: str | None, widths: tuple[int, ...], kind: st
     return table
 
 
-def whole(path: Path, table: Float) -> Index:
+def whole(path: Path, table: Array) -> Index:
     """Integers written among other numbers. Raises ValueError where they are none."""
     rounded = np.rint(table)
     if not np.all(np.abs(table - rounded) < 1e-9):
@@ -49,7 +47,7 @@ def whole(path: Path, table: Float) -> Index:
     return rounded.astype(np.intp)
 
 
-def symmetric_from(row: Index, column: Index, value: Float, n: int) -> scipy.sparse.csr_matrix:
+def symmetric_from(row: Index, column: Index, value: Array, n: int) -> scipy.sparse.csr_matrix:
     """The matrix whose entries a file lists: of one triangle, which is mirrored, or of both."""
     A = scipy.sparse.csr_matrix((value, (row, column)), shape=(n, n))
     # a triangle in the file's own order need not be one in another: what counts are entries with partners

@@ -1,0 +1,54 @@
+"""Checks of input that name the field, the value and the remedy; NaN fails every one of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bearingdyn.types import Array
+
+
+def require(ok: bool, field: str, value: object, remedy: str) -> None:
+    """Raise a ValueError naming field, value and remedy unless `ok`."""
+    if not ok:
+        raise ValueError(f"{field} is {value!r}; {remedy}")
+
+
+def number(field: str, value: object, remedy: str = "give one finite number") -> float:
+    """The value as a finite float; ValueError if it is anything else."""
+    try:
+        x = math.nan if isinstance(value, str) else float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; {remedy}") from None
+    require(math.isfinite(x), field, value, remedy)
+    return x
+
+
+def positive(field: str, value: object, remedy: str = "it must be positive and finite") -> float:
+    """The value as a float > 0; ValueError if it is anything else."""
+    x = number(field, value, remedy)
+    require(x > 0, field, value, remedy)
+    return x
+
+
+def nonnegative(field: str, value: object, remedy: str = "it must be zero or positive, and finite") -> float:
+    """The value as a float ≥ 0; ValueError if it is anything else."""
+    x = number(field, value, remedy)
+    require(x >= 0, field, value, remedy)
+    return x
+
+
+def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> Array:
+    """The value as a finite float array of the given shape; ValueError if it is anything else."""
+    try:
+        x = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; it must be real numbers, {meaning}") from None
+    require(
+        x.shape == tuple(shape), field, value, f"its shape is {x.shape}, it must be {tuple(shape)}: {meaning}"
+    )
+    require(bool(np.isfinite(x).all()), field, value, f"all entries must be finite: {meaning}")
+    return x

@@ -1,0 +1,289 @@
+"""Complex moduli for the direct harmonic analysis (paper §3.2): tabulated, a power law, fractional Zener.
+
+Each has `complex_modulus(omega)` like the Maxwell model, so that harmonic analyses take it as it is, `at(T)`
+if it has a shift law, and `maxwell(n, band)`, its approximation for the time domain with the error of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from bearingdyn.magnitude import check_density
+from bearingdyn.material.fit import fit_maxwell
+from bearingdyn.material.maxwell import Maxwell
+from bearingdyn.material.shift import Law, ShiftTable
+from bearingdyn.material.tts import MasterCurve
+from bearingdyn.types import Array, Complex
+
+_PER_DECADE = 40  # points at which a modulus is handed to the fit
+
+
+def _check(owner: str, positive: dict[str, float]) -> None:
+    for name, value in positive.items():
+        if not (value > 0 and math.isfinite(value)):
+            raise ValueError(f"{owner}.{name} is {value!r}; it must be positive and finite")
+    check_density(f"{owner}.density", positive["density"])
+
+
+def _approximate(
+    modulus: Callable[[ArrayLike], Complex],
+    band: tuple[float, float],
+    n: int | Literal["auto"],
+    K: float,
+    density: float,
+    law: Law | None,
+    temperature: float | None,
+    tolerance: float,
+) -> Maxwell:
+    """Maxwell model of a modulus in a band, Hz; its `fit` holds the rms and largest error."""
+    low, high = float(band[0]), float(band[1])
+    if not 0 < low < high < math.inf:
+        raise ValueError(f"band is {band!r} Hz; it must be a lower and a higher frequency, both positive")
+    count = max(40, round(_PER_DECADE * math.log10(high / low)))
+    f = np.geomspace(low, high, count)
+    f[0], f[-1] = low, high  # to the last bit
+    G = modulus(2 * np.pi * f)
+    T = 20.0 if temperature is None else temperature
+    stand_in = ShiftTable((T - 1.0, T + 1.0), (0.0, 0.0), T)
+    points = MasterCurve(
+        f, G.real, G.imag, np.full(count, T), "shear", T, {}, {}, law or stand_in, 0.0, (0.0, 0.0)
+    )
+    found = fit_maxwell(points, n, (low, high), K=K, density=density, tolerance=tolerance)
+    return replace(found, law=law, temperature=temperature)
+
+
+def _factor(law: Law | None, temperature: float | None, T: float) -> float:
+    if law is None or temperature is None:
+        raise ValueError("law is None: a material can be moved to another temperature only by a shift law")
+    return float(10 ** (law.log_shift(T) - law.log_shift(temperature)))
+
+
+@dataclass(frozen=True, eq=False)
+class TabulatedModulus:
+    """Complex shear modulus as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
+
+    Parameters
+    ----------
+    frequency
+        Hz, (n,), rising, at least two.
+    storage, loss
+        Shear moduli, Pa, (n,), positive.
+    K, density
+        Bulk modulus, Pa, and density, kg/m³.
+    law, temperature
+        Shift law, and the temperature, °C, the table holds at, for :meth:`at`.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range. Outside the table a modulus is refused, except at rest: the lowest
+        storage modulus.
+    """
+
+    frequency: Array
+    storage: Array
+    loss: Array
+    K: float
+    density: float
+    law: Law | None = None
+    temperature: float | None = None
+
+    def __post_init__(self) -> None:
+        _check("TabulatedModulus", {"K": self.K, "density": self.density})
+        for name in ("frequency", "storage", "loss"):
+            values = np.array(getattr(self, name), dtype=np.float64)
+            if values.ndim != 1 or values.size < 2 or values.size != np.size(self.frequency):
+                raise ValueError(
+                    f"TabulatedModulus.{name}: must be one-dimensional, two values or more, as many"
+                )
+            if not (np.all(values > 0) and np.all(np.isfinite(values))):
+                raise ValueError(f"TabulatedModulus.{name}: every value must be positive and finite")
+            values.flags.writeable = False
+            object.__setattr__(self, name, values)
+        if not np.all(np.diff(self.frequency) > 0):
+            raise ValueError("TabulatedModulus.frequency: must rise strictly, Hz")
+
+    @classmethod
+    def from_master(
+        cls, master: MasterCurve, *, K: float, density: float, per_decade: int = 10
+    ) -> TabulatedModulus:
+        """A master curve in shear as a table: points averaged geometrically in classes of frequency.
+
+        ValueError if the curve is in tension (``master.to_shear`` first).
+        """
+        if master.mode != "shear":
+            raise ValueError("master is in tension: convert it by master.to_shear(K=...) or to_shear(nu=...)")
+        logs = np.log(np.array([master.frequency, master.storage, master.loss]))
+        cell = np.floor(per_decade * logs[0] / math.log(10)).astype(np.int64)
+        kinds = np.unique(cell)
+        f, storage, loss = np.exp([[row[cell == c].mean() for c in kinds] for row in logs])
+        return cls(f, storage, loss, K, density, master.law, master.T_ref)
+
+    def complex_modulus(self, omega: ArrayLike) -> Complex:
+        """G*(ω), Pa, at ω rad/s, any shape; ValueError outside the table."""
+        omega = np.asarray(omega, dtype=np.float64)
+        f = np.abs(omega) / (2 * np.pi)
+        low, high = self.frequency[0], self.frequency[-1]
+        rest = f == 0
+        inside = rest | ((f >= low * (1 - 1e-9)) & (f <= high * (1 + 1e-9)))
+        if not np.all(inside):
+            raise ValueError(
+                f"omega = {omega[~inside].flat[0]:.6g} rad/s: the table reaches from {low:.6g} to "
+                f"{high:.6g} Hz"
+            )
+        x = np.log(np.clip(np.where(rest, low, f), low, high))
+        storage = np.exp(scipy.interpolate.PchipInterpolator(np.log(self.frequency), np.log(self.storage))(x))
+        tan = np.exp(
+            scipy.interpolate.PchipInterpolator(np.log(self.frequency), np.log(self.loss / self.storage))(x)
+        )
+        return np.asarray(storage * (1 + 1j * np.sign(omega) * tan))
+
+    def at(self, T: float) -> TabulatedModulus:
+        """The same material at T, °C: frequencies over a_T. ValueError if there is no law."""
+        factor = _factor(self.law, self.temperature, T)
+        return replace(self, frequency=self.frequency / factor, temperature=float(T))
+
+    def maxwell(
+        self,
+        n: int | Literal["auto"] = 5,
+        band: tuple[float, float] | None = None,
+        tolerance: float = 0.02,
+    ) -> Maxwell:
+        """Its Maxwell approximation in a band, Hz (the table unless given); `fit` holds the error."""
+        band = band or (float(self.frequency[0]), float(self.frequency[-1]))
+        return _approximate(
+            self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
+        )
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """Power law, the paper's "simple exponential function": G* = G_ref (iω/ω_ref)^α.
+
+    |G*| grows as ω^α and the loss factor is tan(απ/2) at all frequencies: the only causal modulus with a
+    constant loss factor.
+
+    Parameters
+    ----------
+    modulus
+        |G*| at the reference frequency, Pa.
+    exponent
+        α, 0 < α < 1.
+    frequency
+        Reference frequency, Hz.
+    K, density
+        Bulk modulus, Pa, and density, kg/m³.
+    law, temperature
+        Shift law, and the temperature, °C, the modulus holds at, for :meth:`at`.
+
+    Raises ValueError for a value outside its range or not finite. Reference: paper §3.2.
+    """
+
+    modulus: float
+    exponent: float
+    frequency: float
+    K: float
+    density: float
+    law: Law | None = None
+    temperature: float | None = None
+
+    def __post_init__(self) -> None:
+        values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
+        _check("PowerLaw", values)
+        if not 0 < self.exponent < 1:
+            raise ValueError(f"PowerLaw.exponent is {self.exponent!r}; it must lie between 0 and 1")
+
+    @classmethod
+    def of_loss_factor(
+        cls, modulus: float, loss_factor: float, frequency: float, *, K: float, density: float
+    ) -> PowerLaw:
+        """By the loss factor: α = (2/π) arctan η. ValueError unless it is positive."""
+        if not (loss_factor > 0 and math.isfinite(loss_factor)):
+            raise ValueError(f"loss_factor is {loss_factor!r}; it must be positive and finite")
+        return cls(modulus, 2 / math.pi * math.atan(loss_factor), frequency, K, density)
+
+    def complex_modulus(self, omega: ArrayLike) -> Complex:
+        """G*(ω), Pa, at ω rad/s, any shape; the conjugate at −ω, 0 at rest."""
+        x = np.asarray(omega, dtype=np.float64) / (2 * np.pi * self.frequency)
+        turn = np.exp(0.5j * np.pi * self.exponent * np.sign(x))
+        return np.asarray(self.modulus * np.abs(x) ** self.exponent * turn)
+
+    def at(self, T: float) -> PowerLaw:
+        """The same material at T, °C. ValueError if there is no law."""
+        factor = _factor(self.law, self.temperature, T)
+        return replace(self, frequency=self.frequency / factor, temperature=float(T))
+
+    def maxwell(
+        self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02
+    ) -> Maxwell:
+        """Its Maxwell approximation in a band, Hz; `fit` holds the error."""
+        return _approximate(
+            self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
+        )
+
+
+@dataclass(frozen=True)
+class FractionalZener:
+    """Fractional Zener model: G* = (G0 + G∞ (iωτ)^α)/(1 + (iωτ)^α).
+
+    Parameters
+    ----------
+    G0, G_inf
+        Relaxed and unrelaxed modulus, Pa, 0 ≤ G0 < G_inf.
+    tau
+        Relaxation time, s.
+    alpha
+        Order, 0 < alpha ≤ 1; 1 is the Maxwell model with one branch.
+    K, density
+        Bulk modulus, Pa, and density, kg/m³.
+    law, temperature
+        Shift law, and the temperature, °C, tau holds at, for :meth:`at`.
+
+    Reference: T. Pritz, J. Sound Vib. 195 (1996) 103.
+
+    Raises ValueError for a value outside its range or not finite.
+    """
+
+    G0: float
+    G_inf: float
+    tau: float
+    alpha: float
+    K: float
+    density: float
+    law: Law | None = field(default=None)
+    temperature: float | None = None
+
+    def __post_init__(self) -> None:
+        values = {"G_inf": self.G_inf, "tau": self.tau, "K": self.K, "density": self.density}
+        _check("FractionalZener", values)
+        if not 0 <= self.G0 < self.G_inf:
+            raise ValueError(
+                f"FractionalZener.G0 is {self.G0!r} Pa; it must lie between 0 and G_inf = {self.G_inf:g}"
+            )
+        if not 0 < self.alpha <= 1:
+            raise ValueError(f"FractionalZener.alpha is {self.alpha!r}; it must lie above 0 and be at most 1")
+
+    def complex_modulus(self, omega: ArrayLike) -> Complex:
+        """G*(ω), Pa, at ω rad/s, any shape; the conjugate at −ω, G0 at rest."""
+        x = np.asarray(omega, dtype=np.float64) * self.tau
+        power = np.abs(x) ** self.alpha * np.exp(0.5j * np.pi * self.alpha * np.sign(x))
+        return np.asarray((self.G0 + self.G_inf * power) / (1 + power))
+
+    def at(self, T: float) -> FractionalZener:
+        """The same material at T, °C. ValueError if there is no law."""
+        return replace(self, tau=self.tau * _factor(self.law, self.temperature, T), temperature=float(T))
+
+    def maxwell(
+        self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02
+    ) -> Maxwell:
+        """Its Maxwell approximation in a band, Hz; `fit` holds the error."""
+        return _approximate(
+            self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
+        )

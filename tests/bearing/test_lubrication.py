@@ -1,0 +1,135 @@
+"""Films at an operating point, put together here from the published formula and the races' own numbers."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from bearingdyn.bearing import BallBearing, Lubricant, Walther, lubricate
+from bearingdyn.bearing.catalogue import bearing
+from bearingdyn.bearing.lubricant import wijnant_damping
+
+OIL = Lubricant(Walther.iso_vg(32), density=870.0, alpha=2e-8)
+BRG = bearing("6305", clearance=10e-6)
+AXIAL = (0, 0, 300.0, 0, 0, 0)
+SPEED = 150.0
+
+
+def test_hamrock_dowson_film_of_each_race():
+    found = lubricate(BRG, OIL, 70.0, SPEED, AXIAL, law="hamrock-dowson")
+    # theory.md §2: ν(70 °C) = 11.186 mm²/s, five digits
+    eta0 = 11.186e-6 * 870
+    assert found.viscosity == pytest.approx(eta0, rel=5e-5)
+    state = BRG.ball_loads(BRG.displacement(AXIAL))
+    assert found.Q == pytest.approx(state.mean(), rel=1e-12)
+    alpha = math.asin(300.0 / state.sum())
+    gamma = 11.5 / 43.5 * math.cos(alpha)
+    us = 43.5e-3 / 2 * SPEED * (1 - gamma**2)
+    E = 210e9 / (1 - 0.3**2)
+    for race, f, film in (("inner", 0.52, found.film_inner), ("outer", 0.53, found.film_outer)):
+        # Rx = D/2 (1 ∓ D/dm), nominal angle 0
+        Rx = 11.5e-3 / 2 * (1 - 11.5 / 43.5 if race == "inner" else 1 + 11.5 / 43.5)
+        chi = getattr(BRG, f"{race}_contact").chi
+        U, G, W = eta0 * us / 2 / (E * Rx), 2e-8 * E, found.Q / (E * Rx**2)
+        expected = 2.69 * Rx * U**0.67 * G**0.53 * W**-0.067 * (1 - 0.61 * math.exp(-0.73 * chi))
+        # the digits of the viscosity
+        assert film == pytest.approx(expected, rel=5e-5)
+        assert f in (BRG.fi, BRG.fo)
+
+
+def test_both_films_act_on_one_spring():
+    found = lubricate(BRG, OIL, 40.0, SPEED, AXIAL)
+    wet = found.applied(BRG)
+    assert wet.film == found.film_inner + found.film_outer
+    # F = κ(δ + h_i + h_o)^{3/2} is what two films and two springs in series give: solve the pair by hand
+    h, k = (found.film_inner, found.film_outer), (BRG.inner_contact.kappa, BRG.outer_contact.kappa)
+    F = 200.0
+    apart = sum((F / kappa) ** (2 / 3) - film for kappa, film in zip(k, h, strict=True))
+    assert wet.kappa * (apart + wet.film) ** 1.5 == pytest.approx(F, rel=1e-12)
+    # the balls are pressed harder by what the films take from the clearance
+    assert wet.ball_loads(wet.displacement(AXIAL)).sum() != BRG.ball_loads(BRG.displacement(AXIAL)).sum()
+
+
+def test_starvation_and_roughness():
+    full = lubricate(BRG, OIL, 40.0, SPEED, AXIAL)
+    half = lubricate(BRG, OIL, 40.0, SPEED, AXIAL, starvation=0.5, roughness=(40e-9, 30e-9))
+    assert half.film == pytest.approx(0.5 * full.film, rel=1e-14)
+    # composite of 40 and 30 nm is 50 nm
+    assert half.lambda_inner == pytest.approx(half.film_inner / 50e-9, rel=1e-14)
+    assert half.lambda_outer == pytest.approx(half.film_outer / 50e-9, rel=1e-14)
+    assert full.lambda_inner == math.inf
+
+
+def test_film_grows_with_speed_and_cold():
+    films = [lubricate(BRG, OIL, T, s, AXIAL).film for T, s in ((70, 100.0), (70, 300.0), (40, 300.0))]
+    assert films[0] < films[1] < films[2]
+    assert lubricate(BRG, OIL, 70, -100.0, AXIAL).film == films[0]
+
+
+def test_unverified_damping_is_given_only_when_asked_for():
+    found = lubricate(BRG, OIL, 40.0, SPEED, AXIAL)
+    assert found.applied(BRG).damping == BRG.damping
+    assert found.applied(BRG, damping=True).damping.c == found.damping
+    # the form by hand, E' = 2 E*
+    c, F, us, eta0 = BRG.inner_contact, 50.0, 4.0, 0.02
+    E = 210e9 / (1 - 0.3**2)
+    group = eta0 * us / (E * c.Rx)
+    M, L = F / (E * c.Rx**2) * group**-0.75, 2e-8 * E * group**0.25
+    C = (0.98 - L / 60) * M ** -(0.83 - 0.008 * L)
+    expected = C * F / (F / c.kappa) ** (2 / 3) * 2 * c.semi_axes(F)[1] / us
+    assert wijnant_damping(c, F, us, eta0, 2e-8) == pytest.approx(expected, rel=1e-12)
+    assert "UNVERIFIED" in wijnant_damping.__doc__
+
+
+def test_kinematics_at_the_loaded_angle():
+    brg = BallBearing(9, 7.94e-3, 39.04e-3, 0.52, 0.53, clearance=10e-6)
+    f = brg.frequencies(100.0, math.radians(20))
+    # Harris: BPFO = Z/2 n (1 − D cosα/dm)
+    expected = 9 / 2 * 100 / (2 * math.pi) * (1 - 7.94 / 39.04 * math.cos(math.radians(20)))
+    assert f.BPFO == pytest.approx(expected, rel=1e-12)
+    assert brg.frequencies(100.0, 0.0) == brg.frequencies(100.0)
+    with pytest.raises(ValueError, match="contact_angle is "):
+        brg.frequencies(100.0, math.nan)
+
+
+@pytest.mark.parametrize("T", [-120.0, 400.0])
+def test_temperature_outside_the_viscosity_law_is_named(T):
+    with pytest.raises(ValueError, match=r"^T is .*outside the viscosity law.* °C"):
+        lubricate(BRG, OIL, T, SPEED, AXIAL)
+
+
+def test_viscosity_law_holds_up_to_its_ends():
+    # VG 32 reaches 2 mm²/s where lg lg 2.7 = A − B lg T, with theory.md's constants: 165 °C
+    end = 10 ** ((9.53082 - math.log10(math.log10(2.7))) / 3.74658) - 273.15
+    # constants of six digits, times ln 10 · 450 K
+    assert OIL.kinematic.viscosity(end - 0.01) == pytest.approx(2e-6, rel=1e-3)
+    with pytest.raises(ValueError, match=f"in -[0-9]+, {end:.0f} °C"):
+        OIL.kinematic.viscosity(end + 0.01)
+
+
+@pytest.mark.parametrize(
+    ("field", "change"),
+    [
+        ("lubricant", dict(lubricant="oil")),
+        ("law", dict(law="grubin")),
+        ("speed", dict(speed=0.0)),
+        ("speed", dict(speed=math.nan)),
+        ("starvation", dict(starvation=0.0)),
+        ("starvation", dict(starvation=1.1)),
+        ("roughness", dict(roughness=(1e-8, math.nan))),
+        ("T", dict(temperature=math.nan)),
+        ("load", dict(load=np.zeros(6))),
+    ],
+)
+def test_bad_input_is_named(field, change):
+    call = dict(bearing=BRG, lubricant=OIL, temperature=40.0, speed=SPEED, load=AXIAL)
+    with pytest.raises(ValueError, match=f"^{field} is "):
+        lubricate(**{**call, **change})
+
+
+def test_operating_point_leaves_the_bearing_alone():
+    wet = dataclasses.replace(BRG, film=1e-6)
+    assert lubricate(wet, OIL, 40.0, SPEED, AXIAL) == lubricate(BRG, OIL, 40.0, SPEED, AXIAL)

@@ -1,0 +1,266 @@
+"""The main job, examples/motor.py: its numbers, and that time and frequency domain tell one story on it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import motor
+import numpy as np
+import pytest
+import xarray
+
+import bearingdyn as bd
+from bearingdyn import core
+from rotors import motor_rubber
+from twins.linear_twin import discrete_response
+
+ENERGIES = ("kinetic", "elastic", "stored", "indentation")
+
+
+@cache
+def rubber() -> bd.Maxwell:
+    return motor_rubber()
+
+
+@cache
+def equilibrium(design: int, radial: float = 0.0) -> bd.Equilibrium:
+    return bd.equilibrium(motor.motor(motor.designs(rubber())[design], radial))
+
+
+def test_the_low_and_the_high_loss_rubber_are_equally_stiff_at_1_khz() -> None:
+    low, high = (d.rubber for d in motor.designs(rubber())[1:3])
+    assert low is not None
+    assert high is not None
+    omega = motor.ONE_KHZ
+    # by construction, to round-off
+    assert abs(high.complex_modulus(omega)) == pytest.approx(abs(low.complex_modulus(omega)), rel=1e-12)
+    assert float(high.loss_factor(omega)) == pytest.approx(0.30, rel=1e-12)
+
+
+def test_bending_modes_lie_near_the_papers() -> None:
+    # the issue's aim is 10 %; the geometry is our own choice
+    assert motor.bending_modes(equilibrium(0)) == pytest.approx(motor.PAPER_MODES, rel=0.10)
+
+
+@pytest.mark.parametrize("design", [1, 2])
+def test_the_layer_is_at_most_a_third_as_stiff_as_the_bearing_and_strained_by_at_most_5_percent(
+    design: int,
+) -> None:
+    variant = motor.designs(rubber())[design]
+    layer = variant.layer
+    assert layer is not None
+    eq, loaded = equilibrium(design), equilibrium(design, motor.RADIAL)
+    dynamic = abs(layer.stiffness(motor.ONE_KHZ)[0, 0])
+    # in the harmonic analysis' state (axial preload alone) and under the transient's radial load
+    for state in (eq, loaded):
+        assert dynamic <= state.bearings["left"].radial_stiffness / 3
+    relative = loaded.displacement("left_ring.centre") - loaded.displacement("left_housing.bore")
+    assert float(np.max(layer.nominal_strain(relative))) <= 0.05
+
+
+def test_both_bearings_share_the_axial_preload() -> None:
+    eq = equilibrium(0)
+    shares = [eq.bearings[side].g[2] for side in ("left", "right")]
+    assert sum(shares) == pytest.approx(motor.PRELOAD, rel=1e-9)  # statics, to Newton's tolerance
+    assert min(shares) > 0.45 * motor.PRELOAD
+
+
+def steady_amplitude(signal: np.ndarray, per_period: int) -> complex:
+    """Complex amplitude X of Re X e^{iωt}, ω = 2π/(per_period·dt), of a whole number of periods."""
+    n = np.arange(1, signal.size + 1)
+    return complex(2 * np.mean(signal * np.exp(-2j * np.pi * n / per_period)))
+
+
+@pytest.mark.parametrize("per_period", [800, 200])
+def test_the_march_is_its_own_transfer_function_and_the_harmonic_response(per_period: int) -> None:
+    dt = motor.STEP
+    frequency = 1 / (per_period * dt)
+    app = motor.motor(motor.designs(rubber())[2])
+    app.load("shaft.middle", (0, 1, 0, 0, 0, 0), frequency=frequency)
+    system = bd.equilibrium(app).linearised()
+    outputs = [*motor.OUTPUTS]
+    slowest = bd.modes(system, damped=True)["eigenvalue"].values.real.max()
+    settle = int(np.ceil(np.log(1e11) / -slowest / dt / per_period)) * per_period  # what is left: 1e-11
+    run = bd.transient(system, speed=0.0, dt=dt, steps=4 * per_period, settle=settle, record=outputs)
+    marched = np.array(
+        [steady_amplitude(run["record"].values[:, k], per_period) for k in range(len(outputs))]
+    )
+    force = system.row(motor.INPUT)
+    scheme = np.array([discrete_response(system, system.row(o), force, dt, per_period) for o in outputs])
+    assert np.linalg.norm(marched - scheme) < 1e-8 * np.linalg.norm(scheme)
+    # and the continuous response where (ωΔt)²/12 is below 1e-4: 1 % as the issue asks
+    continuous = bd.frequency_response(system, [frequency], [motor.INPUT], outputs)["response"].values[
+        0, :, 0
+    ]
+    assert np.linalg.norm(marched - continuous) < 0.01 * np.linalg.norm(continuous)
+
+
+def test_energy_of_the_running_motor_is_accounted_for() -> None:
+    eq = equilibrium(2, motor.RADIAL)
+    arguments = {"speed": motor.SPEED, "dt": motor.STEP, "record": [], "audit": True}
+    before = bd.transient(eq, steps=0, **arguments).attrs
+    after = bd.transient(eq, steps=20_000, **arguments).attrs
+    change = sum(after[f"energy_{e}"] - before[f"energy_{e}"] for e in ENERGIES)
+    fed = after["energy_load"] + after["energy_turning"]
+    lost = sum(after[f"energy_{e}"] for e in ("linear", "branch", "contact"))
+    assert lost > 0.0
+    # the issue's bound; powers are summed by the trapezoidal rule, second order in dt
+    assert abs(fed - lost - change) < 1e-4 * after["energy_throughput"]
+
+
+def test_the_motor_converges_with_second_order_while_no_contact_is_lost() -> None:
+    """Started from rest by a smooth force, at no speed, under axial preload: every ball stays loaded."""
+    app = motor.motor(motor.designs(rubber())[2])
+    t = np.linspace(0.0, 4e-3, 4001)
+    app.load("shaft.middle", (0, 40, 0, 0, 0, 0), time=t, value=np.sin(np.pi * t / 4e-3) ** 4)
+    eq = bd.equilibrium(app)
+    ends = []
+    for dt in (8e-6, 4e-6, 2e-6, 1e-6):
+        run = bd.transient(
+            eq,
+            speed=0.0,
+            dt=dt,
+            steps=round(3.2e-3 / dt),
+            record=["shaft.middle.y", "shaft.end.y", "left.loaded", "right.loaded"],
+            scheme=core.Scheme(dt, tolerance=1e-13),
+        )
+        assert (run["record"].values[:, 2:] == 7).all()
+        ends.append(run["record"].values[-1, :2])
+    steps = [np.linalg.norm(a - b) for a, b in pairwise(ends)]
+    orders = np.log2(np.array(steps[:-1]) / steps[1:])
+    assert orders[-1] > 1.9  # the issue's figure
+
+
+AUDIBLE = motor.AUDIBLE[::4]  # a step of 4 Hz; the sharpest resonance there is 2ζf = 7 Hz wide
+
+
+@pytest.mark.parametrize("design", [1, 2, 3])
+def test_the_layers_make_the_housings_radiate_less_over_1_to_5_khz(design: int) -> None:
+    """All the outside of both pedestals, for one point is not enough, as the paper says."""
+    bare, layered = (motor.radiated(equilibrium(k), AUDIBLE) for k in (0, design))
+    power = 10 * np.log10(layered.mean() / bare.mean())
+    curve = float((10 * np.log10(layered / bare)).mean())
+    print(f"equivalent radiated power: {power:.1f} dB, mean of the curve {curve:.1f} dB")
+    assert power < -10.0  # the issue's aim
+    # averaged in dB the stiffer, thin layer misses it: between resonances it isolates less
+    assert curve < (-10.0 if design < 3 else -6.0)
+
+
+def test_radiated_power_is_that_of_the_pedestals_faces() -> None:
+    """½ρc∫|v_n|²dA over top, front and back is part of that of the outside, which adds the two sides.
+
+    At 700 Hz the pedestals rock on their feet as cantilevers do: the mean square over a face is a quarter of
+    the square of the tip's, exactly so for Euler's beam in its first mode; in shear alone, a third.
+    """
+    eq = equilibrium(0)
+    faces = [f"left_housing.{face}" for face in ("top", "front", "back", "outside")]
+    found = bd.radiated_power(eq, [700.0, 2100.0], [motor.INPUT], faces)
+    top, front, back, outside = found["power"].values[:, :, 0].T
+    assert (top + front + back < outside).all()
+    tip = bd.frequency_response(eq, [700.0], [motor.INPUT], ["left_housing.top.z"], quantity="velocity")
+    square = abs(complex(tip["response"].values[0, 0, 0])) ** 2
+    part = motor.housing(2 * motor.RING[1])
+    face = part.width * part.height - np.pi * part.bore_diameter**2 / 4
+    for power in (front, back):
+        assert 0.25 < power[0] / (0.5 * 1.204 * 343.2 * face * square) < 1 / 3  # ρ and c of air at 20 °C
+    edges = (part.width + 2 * part.height) * part.length
+    area = found["area"].values
+    # the bore is a polygon of quadratic sides; 1e-3 is far above what that takes off
+    assert area == pytest.approx([part.width * part.length, face, face, 2 * face + edges], rel=1e-3)
+
+
+@pytest.mark.parametrize("design", [0, 2])
+def test_shares_of_energy_and_loss_sum_to_one(design: int) -> None:
+    found = motor.bending(equilibrium(design))
+    for kind in ("kinetic", "strain", "dissipation"):
+        # sums of some ten shares, to round-off
+        assert found.shares[kind].values.sum(axis=1) == pytest.approx(1.0, abs=1e-12)
+    # the loss and the eigenvalue give the damping ratio each on its own. Round-off of the eigenvalue, some
+    # 1e-16 of the largest (1e6 rad/s), is 1e-10 of the smallest real part (4 1/s)
+    damping = found.shares["damping"].values.sum(axis=1)
+    assert damping == pytest.approx(found.modes["damping_ratio"].values, rel=1e-6)
+
+
+def test_softer_layers_take_more_of_the_strain_energy_of_the_first_bending_mode() -> None:
+    shares = [float(motor.bending(equilibrium(k)).of("strain", "layer")[0]) for k in (0, 3, 1, 2)]
+    print([f"{100 * s:.0f} %" for s in shares])
+    assert shares[0] == 0.0
+    # the thin layer has least; of the thick ones that of high loss is softer below 1 kHz
+    assert shares == sorted(shares)
+    assert shares[1] > 0.2
+
+
+@pytest.mark.parametrize("design", [2, 3])
+def test_frequencies_rise_with_the_rubbers_modulus_by_half_its_share_of_the_strain_energy(
+    design: int,
+) -> None:
+    """Rayleigh: d ln ω = ½ Σ U_i d ln k_i of an undamped mode, to the first order; here by ±1 % of G."""
+    variant = motor.designs(rubber())[design]
+    assert variant.rubber is not None
+    size = abs(complex(variant.rubber.complex_modulus(motor.ONE_KHZ)))
+    frequency = []
+    for factor in (0.99, 1.01):
+        scaled = replace(variant, rubber=variant.rubber.with_modulus(factor * size, motor.ONE_KHZ))
+        found = motor.bending(bd.equilibrium(motor.motor(scaled)), damped=False)
+        frequency.append(found.modes["frequency"].values)
+    slope = np.log(frequency[1] / frequency[0]) / np.log(1.01 / 0.99)
+    share = motor.bending(equilibrium(design), damped=False).of("strain", "(shear)")
+    print(2 * slope / share - 1)
+    # central differences leave (0.01)² of second order; the two bearings share the preload a little otherwise
+    assert 2 * slope == pytest.approx(share, rel=5e-4)
+
+
+@pytest.mark.parametrize("design", [1, 2, 3])
+def test_layers_damp_a_mode_by_their_loss_factor_times_their_share_of_the_strain_energy(design: int) -> None:
+    """Ungar and Kerwin (1962): η = Σ U_i η_i / Σ U_i = 2ζ; the rubber's η is tan δ(ω)."""
+    material = motor.designs(rubber())[design].rubber
+    assert material is not None
+    found = motor.bending(equilibrium(design))
+    loss = np.asarray(material.loss_factor(2 * np.pi * found.modes["frequency"].values))
+    expected = 0.5 * loss * found.of("strain", "(shear)")
+    damping = found.of("damping", "(shear)")
+    print(expected / damping - 1)
+    # the formula takes G* at iω instead of at λ = (i − ζ)ω: an error of the order of ζ
+    assert (np.abs(expected / damping - 1) < found.modes["damping_ratio"].values).all()
+
+
+@cache
+def short_run() -> xarray.Dataset:
+    return motor.run(equilibrium(2, motor.RADIAL), settle=10_000, steps=26_000)  # two turns of the cage
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_contact_statistics_tell_of_the_loaded_balls_what_the_march_counts(side: str) -> None:
+    result = short_run()
+    counted = result["record"].sel(channel=f"{side}.loaded").values.astype(int)
+    found = bd.contact_statistics(result, side)
+    share = np.bincount(counted, minlength=8) / counted.size
+    assert found["loaded"].values == pytest.approx(share, abs=1e-12)  # two counts of the same samples
+    assert (1 - found["free"].values).sum() == pytest.approx(counted.mean(), rel=1e-12)
+    # in two turns of the cage every ball leaves the loaded zone twice, and is loaded as long as any other
+    turn = 2 * np.pi / (motor.bearing("6305", clearance=10e-6).cage_ratio * motor.SPEED)
+    assert 2 * turn == pytest.approx(26_000 * motor.STEP, rel=0.01)
+    assert (found["losses"].values >= 2).all()
+    # the record ends within 1 % of two turns
+    assert np.ptp(found["free"].values) < 0.01
+    # statics: the balls carry the radial load against their directions, so more than it together
+    both = sum(bd.contact_statistics(result, s)["mean"].values.sum() for s in ("left", "right"))
+    assert both > motor.RADIAL
+
+
+def test_heat_of_the_parts_is_what_the_audit_of_the_march_says_is_lost() -> None:
+    eq = equilibrium(2, motor.RADIAL)
+    arguments = {"speed": motor.SPEED, "dt": motor.STEP, "steps": 8000}
+    heat = bd.dissipation(eq, **arguments)["energy"]
+    audit = bd.transient(eq, record=[], audit=True, **arguments).attrs
+    of = {
+        "branch": heat.sel(part=["left_layer (shear)", "right_layer (shear)"]),
+        "contact": heat.sel(part=["left", "right"]),
+        "linear": heat.sel(part=["shaft", "left_housing", "right_housing"]),
+    }
+    for kind, parts in of.items():
+        # both by the trapezoidal rule; the audit also counts the step from the start
+        assert float(parts.sum()) == pytest.approx(audit[f"energy_{kind}"], rel=1e-3), kind
+    assert sum(p.size for p in of.values()) == heat.size

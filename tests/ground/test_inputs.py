@@ -1,0 +1,119 @@
+"""What was computed from what: equal content has one text and hash, different content another."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+from bearingdyn import inputs
+from bearingdyn.material import Maxwell
+from bearingdyn.parts import Layer, Section, Shaft
+
+RUBBER = Maxwell(1e6, [2e6], [1e-3], K=2e9, density=1200.0)
+
+
+class Held:
+    """An object that is no dataclass."""
+
+    def __init__(self, x):
+        self.x = x
+
+    def method(self):
+        return self.x
+
+
+def test_parts_become_json_that_names_every_dimension():
+    described = json.loads(inputs.text(Layer(0.026, 0.028, 0.016, RUBBER)))
+    assert described["class"].endswith("Layer")
+    assert (described["r_inner"], described["width"]) == (0.026, 0.016)
+    assert described["material"]["G"] == [2e6]
+
+
+def test_equal_parts_have_one_hash_also_in_another_process():
+    one, same = (Shaft([Section(0.1, 0.02)], seats={"a": 0.0}) for _ in range(2))
+    assert inputs.fingerprint(one) == inputs.fingerprint(same)
+    code = (
+        "from bearingdyn import inputs; from bearingdyn.parts import Section, Shaft\n"
+        "print(inputs.fingerprint(Shaft([Section(0.1, 0.02)], seats={'a': 0.0})))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == inputs.fingerprint(one)
+
+
+def test_what_a_part_has_computed_does_not_change_its_hash():
+    layer = Layer(0.026, 0.028, 0.016, RUBBER)
+    before = inputs.fingerprint(layer)
+    layer.stiffness()
+    assert inputs.fingerprint(layer) == before
+
+
+LARGE = np.arange(1000.0)
+DIFFERENT = [
+    1,
+    1.0,
+    "1",
+    None,
+    True,
+    1j,
+    math.inf,
+    -math.inf,
+    b"1",
+    [1],
+    {"a": 1},
+    LARGE,
+    LARGE + np.eye(1, 1000, 999)[0] * 1e-12,
+    LARGE.astype(np.float32),
+    np.zeros(100),
+    np.zeros(100, dtype=np.int64),
+    LARGE.reshape(10, 100),
+    scipy.sparse.eye(100),
+    scipy.sparse.eye(100) * 2,
+    Held(1),
+    Held(2),
+    Held(1).method,
+    Held(2).method,
+    math.sin,
+    functools.partial(math.pow, 2),
+    functools.partial(math.pow, 3),
+    RUBBER,
+    dataclasses.replace(RUBBER, K=2.1e9, fit=None),
+]
+
+
+def test_different_things_have_different_hashes():
+    assert len({inputs.fingerprint(thing) for thing in DIFFERENT}) == len(DIFFERENT)
+
+
+def test_order_of_a_mapping_and_kind_of_a_sequence_do_not_count():
+    assert inputs.fingerprint({"a": 1, "b": (2, 3)}) == inputs.fingerprint({"b": [2, 3], "a": 1})
+    assert inputs.fingerprint({3, 1, 2}) == inputs.fingerprint({2, 3, 1})
+    assert inputs.fingerprint(np.float64(0.1)) == inputs.fingerprint(0.1)
+
+
+def test_long_entries_are_told_by_their_digest_and_the_text_stays_an_attribute():
+    long = {"long": ["part"] * 20_000, "short": 1}
+    text = inputs.text(long)
+    assert len(text) < inputs.LONGEST
+    assert json.loads(text)["short"] == 1
+    assert inputs.text(long | {"long": ["Part"] * 20_000}) != text
+    assert len(inputs.text(["part"] * 20_000)) < 100
+
+
+def test_what_has_no_content_is_refused():
+    with pytest.raises(ValueError, match="cannot be told by its content"):
+        inputs.fingerprint({"x": object()})
+
+
+def test_what_has_no_content_stands_by_its_class_in_a_result():
+    """A part with an open file or the like can be computed with all the same."""
+    assert json.loads(inputs.text({"part": Held(object())})) == {
+        "part": {"class": f"{__name__}.Held", "x": {"class": "builtins.object"}}
+    }

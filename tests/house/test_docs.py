@@ -1,0 +1,68 @@
+"""The documentation: its snippets run and print what stands beside them, and it builds without a warning."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+matplotlib.use("Agg")
+
+ROOT = Path(__file__).resolve().parents[2]
+GUIDE = sorted((ROOT / "docs" / "guide").glob("*.md"))
+BLOCK = re.compile(r"^```(python|text)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+
+
+def test_there_is_a_guide_for_every_room() -> None:
+    assert {page.stem for page in GUIDE} >= {"material", "bearing", "parts", "application", "results"}
+
+
+@pytest.mark.parametrize("page", GUIDE, ids=lambda page: page.stem)
+def test_the_snippets_of_the_guide_run_and_print_what_stands_beside_them(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The python blocks of a page run in order, as one script; a text block is what the one before prints."""
+    import matplotlib.pyplot as plt
+
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {"__name__": page.stem}
+    text = page.read_text(encoding="utf-8")
+    blocks = [(m[1], m[2], text.count("\n", 0, m.start()) + 1) for m in BLOCK.finditer(text)]
+    assert any(kind == "python" for kind, _, _ in blocks)
+    printed = ""
+    for kind, body, line in blocks:
+        if kind == "text":
+            assert printed == body, f"{page.name}, line {line}: printed\n{printed}"
+            continue
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            exec(compile("\n" * line + body, str(page), "exec"), names)
+        printed = out.getvalue()
+    plt.close("all")
+
+
+@pytest.mark.slow
+def test_the_documentation_builds_without_a_warning(tmp_path: Path) -> None:
+    for package in ("sphinx", "myst_nb", "furo"):
+        pytest.importorskip(package, reason=f"{package} is not installed; pip install bearingdyn[docs]")
+    # what the notebooks show is tested by test_notebooks; here they are only rendered
+    path = os.pathsep.join(map(os.path.abspath, sys.path))
+    options = ["-W", "--keep-going", "-n", "-D", "nb_execution_mode=off", "-d", tmp_path / "doctrees"]
+    build = subprocess.run(
+        [sys.executable, "-m", "sphinx", *options, ROOT / "docs", tmp_path / "html"],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": path},
+        check=False,
+    )
+    assert build.returncode == 0, build.stderr[-4000:]
+    index = (tmp_path / "html" / "index.html").read_text(encoding="utf-8")
+    assert "master_curve(dma" in re.sub(r"<[^>]+>", "", index)  # the ten lines
+    assert (tmp_path / "html" / "api" / "material.html").stat().st_size > 50_000
+    assert (tmp_path / "html" / "notebooks" / "03_motor.html").is_file()

@@ -1,0 +1,392 @@
+"""The shape of the package: which room may import which, and what the C core may touch."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import importlib.util
+import re
+import shutil
+import struct
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import bearingdyn
+
+ROOT = Path(__file__).parents[2]
+CSRC = ROOT / "csrc"
+PACKAGE = ROOT / "python" / "bearingdyn"
+
+# ---------------------------------------------------------------- Python: imports run along the picture
+
+# A room may import the rooms of earlier rows, and nothing beside or after it. "" is bearingdyn/__init__.py.
+ORDER: tuple[tuple[str, ...], ...] = (
+    ("types",),
+    ("checks", "core", "inputs", "magnitude", "notice"),
+    ("material",),
+    ("bearing", "fem"),
+    ("cms",),
+    ("parts",),
+    ("application",),
+    ("system",),
+    ("runfile",),
+    ("results",),
+    ("analysis",),
+    ("plot", "study"),
+    ("",),
+    ("check", "demo"),
+    ("cli",),
+)
+ROW = {room: row for row, rooms in enumerate(ORDER) for room in rooms}
+
+# The door names, for the type checker alone, what passes through it.
+MAY_NAME_TYPES_OF_ANY_ROOM = {"core"}
+
+# Drawing is the end of the line: only these may reach it, and only inside a function.
+MAY_DRAW = {"", "cli", "demo", "study"}
+
+# Third-party packages a module may load when it is imported; the rest is imported inside functions.
+LOADED_AT_IMPORT = {"numpy", "scipy"}
+
+
+def module_name(path: Path) -> str:
+    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {module_name(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def room(module: str) -> str:
+    return module.partition(".")[2].partition(".")[0]
+
+
+@dataclass(frozen=True)
+class Import:
+    target: str  # full dotted name of the module
+    line: int
+    late: bool  # inside a function, or for the type checker alone
+    typing: bool  # for the type checker alone
+
+
+def imports(module: str) -> Iterator[Import]:
+    """Every import statement of a module, relative ones resolved."""
+    path = MODULES[module]
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+
+    def visit(node: ast.AST, late: bool, typing: bool) -> Iterator[Import]:
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield Import(alias.name, node.lineno, late, typing)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                above = package.split(".")[: len(package.split(".")) - node.level + 1]
+                base = ".".join([*above, base] if base else above)
+            for alias in node.names:
+                full = f"{base}.{alias.name}"
+                known = full in MODULES or full == "bearingdyn._core"
+                yield Import(full if known else base, node.lineno, late, typing)
+        late |= isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            late = typing = True
+        for child in ast.iter_child_nodes(node):
+            yield from visit(child, late, typing)
+
+    yield from visit(ast.parse(path.read_text(encoding="utf-8")), late=False, typing=False)
+
+
+def own_imports(module: str) -> list[Import]:
+    return [i for i in imports(module) if i.target.partition(".")[0] == "bearingdyn"]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_module_has_a_place_in_the_picture(module: str) -> None:
+    assert room(module) in ROW, f"{module}: give the room {room(module)!r} a row in ORDER"
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_imports_run_along_the_picture(module: str) -> None:
+    here = room(module)
+    wrong = [
+        f"{MODULES[module]}:{i.line}: {module} imports {i.target}"
+        for i in own_imports(module)
+        if i.target != "bearingdyn._core"
+        and not (i.typing and here in MAY_NAME_TYPES_OF_ANY_ROOM)
+        and room(i.target) not in (here, "plot")
+        and ROW.get(room(i.target), len(ORDER)) >= ROW[here]
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_nothing_imports_plot(module: str) -> None:
+    wrong = [
+        f"{MODULES[module]}:{i.line}"
+        for i in own_imports(module)
+        if room(i.target) == "plot" and room(module) != "plot" and not (i.late and room(module) in MAY_DRAW)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_one_room_imports_the_extension() -> None:
+    importers = {m for m in MODULES if any(i.target == "bearingdyn._core" for i in imports(m))}
+    assert importers <= {"bearingdyn.core"}
+
+
+def test_no_import_circles() -> None:
+    graph = {m: {i.target for i in own_imports(m)} & MODULES.keys() for m in MODULES}
+    done: set[str] = set()
+
+    def walk(module: str, trail: tuple[str, ...]) -> None:
+        assert module not in trail, " -> ".join((*trail[trail.index(module) :], module))
+        if module not in done:
+            for target in sorted(graph[module]):
+                walk(target, (*trail, module))
+            done.add(module)
+
+    for module in graph:
+        walk(module, ())
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_heavy_packages_are_imported_late(module: str) -> None:
+    at_import = {i.target.partition(".")[0] for i in imports(module) if not i.late}
+    extra = at_import - LOADED_AT_IMPORT - {"bearingdyn"} - sys.stdlib_module_names
+    assert not extra, f"{module} loads {sorted(extra)} when it is imported"
+
+
+@pytest.mark.parametrize("wanted", ["import bearingdyn", "from bearingdyn import *"])
+def test_importing_the_package_loads_numpy_and_scipy_at_most(wanted: str) -> None:
+    """Alone, and with every public name; the time is printed, not judged: the machine may be busy."""
+    code = (
+        f"import sys, time; before, began = set(sys.modules), time.perf_counter(); {wanted}\n"
+        "print(f'{time.perf_counter() - began:.3f} s')\n"
+        "new = (sys.modules[name] for name in set(sys.modules) - before)\n"
+        "print(*(m.__file__ for m in new if getattr(m, '__file__', None)), sep='\\n')"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    print(f"{wanted}: {run.stdout.splitlines()[0]}")
+    # by folder, not by name: Cython modules inside SciPy go by short names
+    installed = set(re.findall(r"(?:site|dist)-packages[/\\](\w+)", run.stdout))
+    # NumPy's f2py, which SciPy's linalg loads, takes charset_normalizer where it finds it
+    assert installed <= {"bearingdyn", "numpy", "scipy", "charset_normalizer"}
+    assert ("numpy" in installed) == ("*" in wanted)
+
+
+def test_public_names_live_where_the_stub_says() -> None:
+    stub = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8"))
+    named = {a.name: n.module for n in stub.body if isinstance(n, ast.ImportFrom) for a in n.names}
+    rooms = {name for name in named if name in bearingdyn.SUBPACKAGES}
+    assert rooms == set(bearingdyn.SUBPACKAGES)
+    assert named.keys() - rooms == set(bearingdyn.__all__)
+    for name, home in named.items():
+        assert home is not None
+        assert getattr(bearingdyn, name) is getattr(importlib.import_module(home), name)
+        assert name in dir(bearingdyn)
+    with pytest.raises(AttributeError, match="nonsense"):
+        _ = bearingdyn.nonsense
+
+
+# ---------------------------------------------------------------- C: what the sources may include
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)', re.MULTILINE)
+
+
+@pytest.mark.parametrize("path", sorted(CSRC.glob("*.[ch]")), ids=lambda p: p.name)
+def test_only_the_binding_includes_python_and_numpy(path: Path) -> None:
+    found = [h for h in INCLUDE.findall(path.read_text(encoding="utf-8")) if re.match("Python.h|numpy/", h)]
+    assert path.name == "_coremodule.c" or not found
+
+
+def test_build_names_every_c_file() -> None:
+    named = set(re.findall(r"'(\w+\.c)'", (CSRC / "meson.build").read_text(encoding="utf-8")))
+    assert named == {path.name for path in CSRC.glob("*.c")}
+
+
+# ---------------------------------------------------------------- C: what the compiled core contains
+
+# Files, streams, the process and the environment are none of the core's business.
+FORBIDDEN = frozenset(
+    "printf vprintf fprintf vfprintf dprintf puts fputs putchar putc fputc fwrite perror write stdout stderr "
+    "fopen open read getenv setlocale system signal time clock rand srand "
+    "exit _exit _Exit quick_exit abort longjmp raise __assert_fail".split()
+)
+ALLOCATORS = frozenset("malloc calloc realloc aligned_alloc posix_memalign strdup free".split())
+
+# Memory is taken when something is created or set up, and by one bearing asked by itself; never in a step.
+MAY_ALLOCATE = re.compile(r"bd_(\w+_(create|free)|prepare|start|work_choose|take_speed|bearing_single)$")
+
+WRITABLE = re.compile(r"\.(data|bss|tdata|tbss)(?!\.rel\.ro)|COMMON")
+
+
+@dataclass(frozen=True)
+class Symbol:
+    name: str
+    section: str  # "" where undefined
+    is_global: bool
+    is_object: bool
+
+
+PLACE = re.compile(r"\.(text|data\.rel\.ro\.local|data\.rel\.ro)\.")
+
+
+def plain(name: str) -> str:
+    """A function's or a table's name from that of its section."""
+    return PLACE.sub("", name, count=1)
+
+
+class Elf:
+    """The symbols and references of a 64-bit little-endian ELF file (System V gABI, chapters 4 and 5)."""
+
+    def __init__(self, path: Path) -> None:
+        self.data = path.read_bytes()
+        if self.data[:6] != b"\x7fELF\x02\x01":
+            pytest.skip(f"{path.name} is no 64-bit little-endian ELF file")
+        (start,) = struct.unpack_from("<Q", self.data, 0x28)
+        size, count, names = struct.unpack_from("<HHH", self.data, 0x3A)
+        # name, type, flags, address, offset, size, link, info, alignment, entry size
+        self.headers = [struct.unpack_from("<IIQQQQIIQQ", self.data, start + k * size) for k in range(count)]
+        self.sections = [self._text(self.headers[names], h[0]) for h in self.headers]
+
+    def _text(self, table: tuple[int, ...], offset: int) -> str:
+        begin = table[4] + offset
+        return self.data[begin : self.data.index(b"\0", begin)].decode()
+
+    def symbols(self, table: str = ".symtab") -> list[Symbol]:
+        header = self.headers[self.sections.index(table)]
+        found = []
+        for k in range(header[5] // 24):
+            name, info, _, section, _, _ = struct.unpack_from("<IBBHQQ", self.data, header[4] + 24 * k)
+            place = {0: "", 0xFFF1: "ABS", 0xFFF2: "COMMON"}.get(section)
+            found.append(
+                Symbol(
+                    name=self._text(self.headers[header[6]], name),
+                    section=self.sections[section] if place is None else place,
+                    is_global=info >> 4 != 0,
+                    is_object=info & 15 in (1, 6),
+                )
+            )
+        return found
+
+    def calls(self) -> Iterator[tuple[str, str]]:
+        """(function or constant table, symbol it refers to), for code compiled with a section for each."""
+        symbols = self.symbols()
+        for section, header in zip(self.sections, self.headers, strict=True):
+            if header[1] == 4 and PLACE.match(section.removeprefix(".rela")):  # SHT_RELA
+                for k in range(header[5] // 24):
+                    _, info = struct.unpack_from("<QQ", self.data, header[4] + 24 * k)
+                    to = symbols[info >> 32]
+                    # what is static is referred to by its section
+                    yield plain(section.removeprefix(".rela")), plain(to.name or to.section)
+
+    def needed(self) -> set[str]:
+        """The shared libraries it is linked with."""
+        header = self.headers[self.sections.index(".dynamic")]
+        entries = [struct.unpack_from("<qQ", self.data, header[4] + 16 * k) for k in range(header[5] // 16)]
+        return {self._text(self.headers[header[6]], value) for tag, value in entries if tag == 1}  # DT_NEEDED
+
+
+@pytest.fixture(scope="module")
+def core_objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Elf]:
+    """The core's files without the binding, compiled one by one, a section to each function and constant."""
+    compiler = shutil.which("cc") or shutil.which("gcc")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    folder = tmp_path_factory.mktemp("core")
+    objects = {}
+    for source in sorted(CSRC.glob("*.c")):
+        if source.name != "_coremodule.c":
+            target = folder / f"{source.stem}.o"
+            flags = ["-std=c11", "-fPIC", "-DNDEBUG", "-ffunction-sections", "-fdata-sections"]
+            flags += ["-DBD_ISA=base", "-DBD_WIDTH=2"]  # the hot files exist once per instruction set
+            subprocess.run([compiler, *flags, "-c", str(source), "-o", str(target)], check=True)
+            objects[source.name] = Elf(target)
+    return objects
+
+
+def test_c_globals_begin_with_bd(core_objects: dict[str, Elf]) -> None:
+    names = {
+        f"{file}: {s.name}"
+        for file, elf in core_objects.items()
+        for s in elf.symbols()
+        if s.is_global and s.section
+    }
+    assert names, "the core defines nothing"
+    assert not [n for n in names if not n.partition(": ")[2].startswith("bd_")]
+
+
+def test_core_has_no_writable_globals(core_objects: dict[str, Elf]) -> None:
+    wrong = [
+        f"{file}: {s.name} in {s.section}"
+        for file, elf in core_objects.items()
+        for s in elf.symbols()
+        if s.is_object and WRITABLE.match(s.section)
+    ]
+    assert not wrong
+
+
+def test_core_neither_prints_nor_exits(core_objects: dict[str, Elf]) -> None:
+    wrong = [
+        f"{file}: {s.name}"
+        for file, elf in core_objects.items()
+        for s in elf.symbols()
+        if not s.section and s.name in FORBIDDEN
+    ]
+    assert not wrong
+
+
+def reached_from(functions: set[str], objects: dict[str, Elf]) -> set[str]:
+    """Every function that a call of one of these may lead to, the C library's included."""
+    callees: dict[str, set[str]] = {}
+    for elf in objects.values():
+        for caller, callee in elf.calls():
+            callees.setdefault(caller, set()).add(callee)
+    reached: set[str] = set()
+    ahead = functions
+    while ahead:
+        reached |= ahead
+        ahead = set().union(*(callees.get(f, set()) for f in ahead)) - reached
+    return reached
+
+
+def test_core_allocates_only_where_it_creates_or_sets_up(core_objects: dict[str, Elf]) -> None:
+    public = {s.name for elf in core_objects.values() for s in elf.symbols() if s.is_global and s.section}
+    takers = {f for f in public if reached_from({f}, core_objects) & ALLOCATORS}
+    assert "bd_model_create" in takers, "allocations are no longer seen"
+    assert not {f for f in takers if not MAY_ALLOCATE.match(f)}
+
+
+def test_march_reaches_no_allocator_and_no_lapack(core_objects: dict[str, Elf]) -> None:
+    # the march calls the hot loops through a table
+    reached = reached_from({"bd_march", "bd_kernels_base"}, core_objects)
+    assert "bd_ehl_contacts_base" in reached, "the march no longer begins here: name its new beginning"
+    assert not reached & (ALLOCATORS | {"bd_solve_real", "bd_solve_complex"})
+
+
+@pytest.fixture(scope="module")
+def extension() -> Elf:
+    spec = importlib.util.find_spec("bearingdyn._core")
+    assert spec is not None, "the extension is not built"
+    assert spec.origin is not None
+    elf = Elf(Path(spec.origin))
+    if any("asan" in library for library in elf.needed()):
+        pytest.skip("built with the address sanitizer, which exports symbols of its own")
+    if any(symbol.name.startswith("__gcov") for symbol in elf.symbols(".dynsym")):
+        pytest.skip("built to count lines, which exports symbols of its own")
+    return elf
+
+
+def test_shared_object_exports_only_its_init_function(extension: Elf) -> None:
+    exported = {s.name for s in extension.symbols(".dynsym") if s.is_global and s.section}
+    assert exported == {"PyInit__core"}
+
+
+def test_shared_object_links_only_libc(extension: Elf) -> None:
+    families = {re.split(r"[-.]", library)[0] for library in extension.needed()}
+    assert families <= {"libc", "libm", "libpthread", "ld"}

@@ -1,0 +1,430 @@
+"""Studies: order, failures kept, resumption, spawned workers, the Pareto front."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bearingdyn as bd
+from bearingdyn import core, results, study
+from bearingdyn.study import store
+
+
+def natural_frequency(case):
+    """f = √(k/m)/2π of one mass on one spring."""
+    if case["m"] <= 0:
+        raise ValueError(f"m is {case['m']}; it must be positive")
+    return {"f": math.sqrt(case["k"] / case["m"]) / (2 * math.pi)}
+
+
+def threads_and_environment(case):
+    """Threads of this process after BLAS has worked, and what its environment says."""
+    A = np.ones((300, 300)) * case["x"]
+    _ = A @ A
+    return {
+        "threads": len(os.listdir("/proc/self/task")) if Path("/proc/self/task").is_dir() else 1,
+        "allowed": float(os.environ["OPENBLAS_NUM_THREADS"]),
+        "pid": os.getpid(),
+    }
+
+
+def fails_as_a_march_does(case):
+    """A SolverError holds a report and cannot be rebuilt from its message alone."""
+    raise core.SolverError("diverged", core.Report(-6, 7, 40, 0, 0, 0, 1e-3, 0.5, 0))
+
+
+def dies(case):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+class Counter:
+    """Counts its calls, and fails from the given one on."""
+
+    def __init__(self, fail_at=math.inf):
+        self.calls = 0
+        self.fail_at = fail_at
+
+    def __call__(self, case):
+        self.calls += 1
+        if self.calls >= self.fail_at:
+            raise RuntimeError("power cut")
+        return {"y": case["x"] ** 2}
+
+
+def one_thread():
+    return ThreadPoolExecutor(1)
+
+
+def test_grid_holds_every_combination_once_last_axis_fastest():
+    cases = study.grid(a=[1, 2], b=["u", "v", "w"])
+    assert [(c["a"], c["b"]) for c in cases] == [(1, "u"), (1, "v"), (1, "w"), (2, "u"), (2, "v"), (2, "w")]
+
+
+@pytest.mark.parametrize("axes", [{}, {"a": []}, {"a": [1], "b": []}])
+def test_empty_grid_is_refused(axes):
+    with pytest.raises(ValueError, match="at least one"):
+        study.grid(**axes)
+
+
+def test_spawned_workers_give_results_in_order_and_keep_failures():
+    masses = [4.0, 0.0, 1.0, 0.25]
+    seen = []
+    cases = study.sweep(
+        natural_frequency,
+        study.grid(k=[100.0], m=masses),
+        progress=lambda done, total: seen.append((done, total)),
+    )
+    assert [c.parameters["m"] for c in cases] == masses
+    # one operation after another in double precision: the same expression gives the same bits
+    assert [c.values.get("f") for c in cases] == [
+        None if m == 0 else math.sqrt(100.0 / m) / (2 * math.pi) for m in masses
+    ]
+    assert cases[1].error == "ValueError: m is 0.0; it must be positive"
+    assert [c.error for c in cases if c.parameters["m"] > 0] == [None] * 3
+    assert seen == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+def test_spawned_workers_run_blas_with_one_thread_and_the_environment_is_left_alone():
+    before = dict(os.environ)
+    cases = study.sweep(threads_and_environment, study.grid(x=[1.0, 2.0]))
+    assert [c.error for c in cases] == [None, None]
+    assert {c.values["allowed"] for c in cases} == {1.0}
+    assert {c.values["threads"] for c in cases} == {1.0}
+    assert os.getpid() not in {c.values["pid"] for c in cases}
+    assert dict(os.environ) == before
+
+
+def test_exception_that_cannot_be_sent_back_is_kept_in_words():
+    (case,) = study.sweep(fails_as_a_march_does, [{"x": 1.0}])
+    assert case.error == "SolverError: diverged"
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs a process that can be killed")
+def test_death_of_a_worker_says_what_may_be_wrong():
+    with pytest.raises(BrokenExecutor) as caught:
+        study.sweep(dies, [{"x": 1.0}])
+    assert "__main__" in caught.value.__notes__[0]
+
+
+class LosesEverySecond(Executor):
+    """An executor that reports a lost task as an error of its own, as a cluster does."""
+
+    def __init__(self):
+        self.count = 0
+
+    def submit(self, function, /, *args, **kwargs):
+        self.count += 1
+        future = Future()
+        if self.count % 2:
+            future.set_result(function(*args, **kwargs))
+        else:
+            future.set_exception(RuntimeError("the worker is gone"))
+        return future
+
+
+def test_case_that_the_executor_lost_fails_alone():
+    cases = study.sweep(Counter(), study.grid(x=[1.0, 2.0, 3.0]), LosesEverySecond())
+    assert [c.values.get("y") for c in cases] == [1.0, None, 9.0]
+    assert cases[1].error == "RuntimeError: the worker is gone"
+
+
+def test_cancelled_study_is_no_result(tmp_path):
+    class Cancels(LosesEverySecond):
+        def submit(self, function, /, *args, **kwargs):
+            future = super().submit(function, *args, **kwargs) if self.count == 0 else Future()
+            future.cancel()
+            future.set_running_or_notify_cancel() if future.cancelled() else None
+            return future
+
+    with pytest.raises(CancelledError):
+        study.sweep(Counter(), study.grid(x=[1.0, 2.0]), Cancels(), store=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 1  # what was finished is kept
+
+
+def test_interrupted_study_computes_only_what_is_missing(tmp_path):
+    cases = study.grid(x=[0.1, 0.2, 0.3, 0.4])
+    first = Counter(fail_at=3)
+    with one_thread() as pool:
+        before = study.sweep(first, cases, pool, store=tmp_path / "study")
+    assert [c.error for c in before] == [None, None, "RuntimeError: power cut", "RuntimeError: power cut"]
+    again = Counter()
+    with one_thread() as pool:
+        assert study.sweep(again, cases, pool, store=tmp_path / "study") == before  # failures are kept too
+    assert again.calls == 0
+    second, seen = Counter(), []
+    with one_thread() as pool:
+        after = study.sweep(
+            second, cases, pool, store=tmp_path / "study", retry=True,
+            progress=lambda n, total: seen.append(n),
+        )  # fmt: skip
+    assert second.calls == 2
+    assert seen == [2, 3, 4]
+    assert [c.values["y"] for c in after] == [x**2 for x in (0.1, 0.2, 0.3, 0.4)]  # exact through JSON
+    third = Counter()
+    with one_thread() as pool:
+        assert study.sweep(third, cases, pool, store=tmp_path / "study") == after
+    assert third.calls == 0
+
+
+def test_store_holds_one_readable_file_per_case_and_nothing_else(tmp_path):
+    with one_thread() as pool:
+        study.sweep(Counter(), study.grid(x=[1.0, 2.0]), pool, store=tmp_path)
+    kept = [json.loads(p.read_text()) for p in tmp_path.iterdir()]
+    assert sorted(k["parameters"]["x"] for k in kept) == [1.0, 2.0]
+    assert {k["function"] for k in kept} == {f"{__name__}.Counter"}
+    assert {k["version"] for k in kept} == {results.versions()["bearingdyn"]}
+
+
+def test_half_written_file_of_a_store_is_computed_again(tmp_path, caplog):
+    with one_thread() as pool:
+        study.sweep(Counter(), [{"x": 3.0}], pool, store=tmp_path)
+    (path,) = tmp_path.iterdir()
+    path.write_text(path.read_text()[:20])
+    again = Counter()
+    with one_thread() as pool:
+        (case,) = study.sweep(again, [{"x": 3.0}], pool, store=tmp_path)
+    assert (again.calls, case.values) == (1, {"y": 9.0})
+    assert "computed again" in caplog.text
+
+
+SCRIPT = """
+import sys, time
+from bearingdyn import study
+
+def square(case):
+    time.sleep(0.05)
+    return {"y": case["x"] ** 2}
+
+if __name__ == "__main__":
+    cases = study.sweep(square, study.grid(x=[float(i) for i in range(30)]), store=sys.argv[1])
+    print(sum(case.values["y"] for case in cases))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs a process that can be killed")
+def test_study_killed_outright_goes_on_where_it_stopped(tmp_path):
+    script, folder = tmp_path / "squares.py", tmp_path / "store"
+    script.write_text(SCRIPT)
+    command = [sys.executable, str(script), str(folder)]
+    with subprocess.Popen(command, start_new_session=True) as process:
+        while len(list(folder.glob("*.json"))) < 5:
+            assert process.poll() is None
+            time.sleep(0.01)
+        os.killpg(process.pid, signal.SIGKILL)  # its workers with it
+    before = {path: path.read_text() for path in folder.glob("*.json")}
+    assert 5 <= len(before) < 30
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert float(run.stdout) == sum(x**2 for x in range(30))
+    assert len(list(folder.glob("*.json"))) == 30
+    assert {path: path.read_text() for path in before} == before
+
+
+def test_infinite_and_missing_numbers_survive_the_store(tmp_path):
+    for _ in range(2):
+        with one_thread() as pool:
+            (case,) = study.sweep(undefined, [{"x": math.inf}], pool, store=tmp_path)
+        assert case.values["up"] == math.inf
+        assert math.isnan(case.values["none"])
+
+
+def undefined(case):
+    return {"up": case["x"], "none": np.float64("nan")}
+
+
+@dataclasses.dataclass(frozen=True)
+class Power:
+    """A function with a number of its own."""
+
+    n: int
+
+    def __call__(self, case):
+        return {"y": case["x"] ** self.n}
+
+
+def scaled(factor, case):
+    return {"y": factor * case["x"]}
+
+
+def test_store_tells_functions_and_what_is_bound_into_them_apart(tmp_path):
+    functions = [
+        Power(2),
+        Power(3),
+        functools.partial(scaled, 5.0),
+        functools.partial(scaled, 7.0),
+        Counter(),
+    ]
+    for _ in range(2):
+        with one_thread() as pool:
+            found = [study.sweep(f, [{"x": 2.0}], pool, store=tmp_path)[0].values["y"] for f in functions]
+        assert found == [4.0, 8.0, 10.0, 14.0, 4.0]
+    assert functions[-1].calls == 1
+    assert len(list(tmp_path.iterdir())) == 5
+
+
+def test_store_of_another_version_is_computed_again(tmp_path, monkeypatch):
+    for version in ("1", "2", "2"):
+        monkeypatch.setattr(store, "versions", lambda version=version: {"bearingdyn": version})
+        with one_thread() as pool:
+            study.sweep(Counter(), [{"x": 2.0}], pool, store=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def radial(case):
+    return {"k": float(case["layer"].stiffness()[0, 0].real) * case["factor"].sum()}
+
+
+def test_parts_and_arrays_are_parameters_told_by_their_content(tmp_path):
+    def cases():
+        layers = [bd.Layer(0.026, 0.028, w, bd.Elastic(3e6, 0.49, 1200.0)) for w in (0.01, 0.02)]
+        return study.grid(layer=layers, factor=[np.ones(3), np.arange(3.0)])
+
+    with one_thread() as pool:
+        first = study.sweep(radial, cases(), pool, store=tmp_path)
+        assert len(list(tmp_path.iterdir())) == 4
+        again = study.sweep(Counter(), cases(), pool)  # fails: what comes from the store does not call it
+        kept = study.sweep(radial, cases(), pool, store=tmp_path)
+    assert [c.values for c in kept] == [c.values for c in first]
+    assert all(c.error for c in again)
+    assert first[2].values["k"] > first[0].values["k"]  # wider is stiffer
+    table = study.table(first)
+    results.save(table, tmp_path / "study.nc")
+    assert len(set(table["layer"].values.tolist())) == 2
+    assert table["layer"].values[0].startswith("Layer ")
+
+
+def test_bar_goes_to_standard_error(capsys):
+    with one_thread() as pool:
+        study.sweep(Counter(), study.grid(x=[1.0, 2.0]), pool, progress=True)
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "2/2" in captured.err
+
+
+def test_sobol_fills_the_box_evenly_and_again_the_same():
+    """Of 2^m points of a Sobol sequence in base 2 each dyadic interval of 1/2^m holds one, in every axis."""
+    cases = study.sobol(16, 3, width=(0.01, 0.02), modulus=(1e5, 1e7, "log"))
+    assert cases == study.sobol(16, 3, width=(0.01, 0.02), modulus=(1e5, 1e7, "log"))
+    assert cases != study.sobol(16, 4, width=(0.01, 0.02), modulus=(1e5, 1e7, "log"))
+    width = [(c["width"] - 0.01) / 0.01 for c in cases]
+    modulus = [math.log10(c["modulus"] / 1e5) / 2 for c in cases]
+    for x in (width, modulus):
+        assert sorted(math.floor(16 * value) for value in x) == list(range(16))
+    assert study.sobol(8, 3, width=(0.01, 0.02), modulus=(1e5, 1e7, "log")) == cases[:8]
+
+
+@pytest.mark.parametrize(
+    ("n", "ranges", "message"),
+    [(0, {"a": (0, 1)}, "one case or more"), (4, {}, "at least one range"), (4, {"a": (1, 1)}, "low must be"),
+     (4, {"a": (0, 1, "log")}, "above 0"), (4, {"a": (1, 2, "lin")}, "range 'a'"),
+     (4, {"a": (0, math.nan)}, "low must be")],
+)  # fmt: skip
+def test_bad_sobol_is_refused(n, ranges, message):
+    with pytest.raises(ValueError, match=message):
+        study.sobol(n, **ranges)
+
+
+@pytest.mark.parametrize(
+    ("cases", "message"),
+    [
+        ([], "at least one case"),
+        ([{"x": math.nan}], "case 0: parameter 'x' is nan"),
+        ([{"x": 1.0}, {"x": [1.0]}], r"case 1: parameter 'x' is \[1.0\]"),
+        ([{"x": None}], "case 0: parameter 'x' is None"),
+        ([{"x": object()}], "case 0: parameter 'x': .*cannot be told by its content"),
+        ([{"x": 1.0}, {"y": 1.0}], r"case 1 has the parameters \['y'\]"),
+        ([{"x": 1.0}, {"x": "wide"}], "case 1: parameter 'x' is 'wide'"),
+    ],
+)
+def test_bad_cases_are_refused_before_any_work(cases, message):
+    counter = Counter()
+    with one_thread() as pool, pytest.raises(ValueError, match=message):
+        study.sweep(counter, cases, pool)
+    assert counter.calls == 0
+
+
+def test_function_that_no_other_process_can_import_is_refused():
+    with pytest.raises(ValueError, match="top level of a module"):
+        study.sweep(lambda case: {"y": 1.0}, [{"x": 1.0}])
+
+
+@pytest.mark.parametrize("returned", [1.0, {"y": "wide"}, {"y": 1j}, {"y": [1.0]}, None])
+def test_function_that_returns_no_numbers_fails_in_its_case(returned):
+    with one_thread() as pool:
+        (case,) = study.sweep(functools.partial(constant, returned), [{"x": 1.0}], pool)
+    assert case.error is not None
+    assert case.error.startswith("TypeError")
+
+
+def constant(value, case):
+    return value
+
+
+def test_table_has_parameters_as_coordinates_and_failures_as_nan(tmp_path):
+    cases = [
+        study.Case({"k": 1.0, "rubber": "soft"}, {"f": 2.0}),
+        study.Case({"k": 2.0, "rubber": "hard"}, {}, "ValueError: no"),
+    ]
+    table = study.table(cases)
+    results.save(table, tmp_path / "study.nc")
+    for data in (table, results.open_result(tmp_path / "study.nc")):
+        assert data["f"].dims == ("case",)
+        np.testing.assert_array_equal(data["f"], [2.0, math.nan])
+        assert data["rubber"].values.tolist() == ["soft", "hard"]
+        assert data["error"].values.tolist() == ["", "ValueError: no"]
+
+
+def test_table_carries_units_and_becomes_a_frame():
+    cases = [study.Case({"k": float(i)}, {"f": 2.0 * i}) for i in range(3)]
+    table = study.table(cases, {"k": "N/m", "f": "Hz"})
+    assert (table["k"].attrs["units"], table["f"].attrs["units"]) == ("N/m", "Hz")
+    with pytest.raises(ValueError, match="'z', which is no column"):
+        study.table(cases, {"z": "m"})
+    pytest.importorskip("pandas")
+    frame = table.to_dataframe()
+    assert frame["f"].tolist() == [0.0, 2.0, 4.0]
+    assert frame["k"].tolist() == [0.0, 1.0, 2.0]
+
+
+def test_value_with_the_name_of_a_parameter_is_refused():
+    with pytest.raises(ValueError, match="value 'k' has the name"):
+        study.table([study.Case({"k": 1.0}, {"k": 2.0})])
+
+
+def test_pareto_front_of_a_known_set():
+    """By hand: (1, 5), (2, 3), (4, 1) are the front, (2, 4) loses to (2, 3), (4, 3) to two, NaN to none."""
+    points = [(1, 5), (2, 4), (2, 3), (4, 3), (4, 1), (math.nan, 0), (2, 3)]
+    table = study.table([study.Case({"i": i}, {"a": a, "b": b}) for i, (a, b) in enumerate(points)])
+    expected = [True, False, True, False, True, False, True]
+    assert study.pareto(table, minimise=["a", "b"])["front"].values.tolist() == expected
+    mirrored = table.assign(b=-table["b"])
+    assert study.pareto(mirrored, minimise=["a"], maximise=["b"])["front"].values.tolist() == expected
+
+
+def test_pareto_of_one_aim_is_its_minimum_and_a_parameter_may_be_an_aim():
+    table = study.table([study.Case({"w": w}, {"a": a}) for w, a in ((3, 1.0), (1, 2.0), (2, 1.0))])
+    assert study.pareto(table, minimise=["a"])["front"].values.tolist() == [True, False, True]
+    assert study.pareto(table, minimise=["a", "w"])["front"].values.tolist() == [False, True, True]
+
+
+@pytest.mark.parametrize(
+    ("aims", "message"),
+    [({}, "at least one"), ({"minimise": ["z"]}, "'z' is no number"), ({"minimise": ["error"]}, "no number"),
+     ({"minimise": ["a"], "maximise": ["a"]}, "named twice")],
+)  # fmt: skip
+def test_bad_aims_are_refused(aims, message):
+    table = study.table([study.Case({"w": 1.0}, {"a": 1.0})])
+    with pytest.raises(ValueError, match=message):
+        study.pareto(table, **aims)
