@@ -86,7 +86,7 @@ def require_isotherms(name: LawName, count: int) -> None:
     needed = _numbers(name) + 1
     if count < max(2, needed):
         raise ValueError(
-            f"law is {name!r} with {needed} constants, the data {count} isotherms; take a simpler law or 'free'"
+            f"law is {name!r} with {needed} constants, the data {count} isotherms; take a simpler law"
         )
 
 
