@@ -283,7 +283,7 @@ typedef struct bd_scheme {
 
 /* From the eleventh iteration of a step on, corrections are halved; after this many the halves are below the smallest
  * double. A step cannot be interrupted, so that a larger limit could only hang. */
-enum { BD_ITERATIONS_LIMIT = 1000 };
+#define BD_ITERATIONS_LIMIT 1000
 
 typedef struct bd_fault {
     const char *field,

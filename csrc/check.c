@@ -82,6 +82,9 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
     return BD_OK;
 }
 
+#define TEXT_(x) #x
+#define TEXT(x) TEXT_(x)
+
 bd_fault bd_scheme_fault(const bd_scheme *scheme)
 {
     const bd_speed *speed = &scheme->speed;
@@ -95,7 +98,7 @@ bd_fault bd_scheme_fault(const bd_scheme *scheme)
         return (bd_fault){"tolerance", "positive"};
     if (scheme->max_iterations < 1 || scheme->max_iterations > BD_ITERATIONS_LIMIT)
         return (bd_fault){"max_iterations",
-                          "1 to 1000: a step cannot be interrupted, and gains nothing beyond"};
+                          "1 to " TEXT(BD_ITERATIONS_LIMIT) ", as a step cannot be interrupted"};
     if (speed->n < 1 || !all_finite(speed->time, (size_t)speed->n) ||
         !increasing(speed->time, speed->n))
         return (bd_fault){"times", "one or more finite times, each later than the one before"};

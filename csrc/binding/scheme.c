@@ -53,7 +53,7 @@ int bd_py_parse_scheme(PyObject *keep, PyObject *dict, bd_scheme *scheme)
 }
 
 const char bd_py_check_scheme_doc[] =
-    PyDoc_STR("check_scheme(scheme)\n--\n\nRaises what `march` would about a scheme.");
+    PyDoc_STR("check_scheme($module, scheme, /)\n--\n\nRaises what `march` would about a scheme.");
 
 PyObject *bd_py_check_scheme(PyObject *module, PyObject *dict)
 {

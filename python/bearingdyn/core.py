@@ -76,12 +76,14 @@ class Scheme:
     dt: step, s.
     beta, gamma: Newmark's numbers; ¼ and ½, the average acceleration, add no damping of their own.
     tolerance: of the bearing forces, relative to the largest.
-    max_iterations: of Newton's iteration in a step, 1 to 1000. From the eleventh on corrections are halved, and
-    after 1000 the halves are below the smallest double; a step cannot be interrupted.
+    max_iterations: of Newton's iteration in a step, 1 to 1000. A step cannot be interrupted, and from the
+    eleventh iteration on corrections are halved: after 1000 the halves are below the smallest double.
     audit: integrate energies and works.
     isa: instruction set of the kernels, one of ISAS: "best", or one that this machine has.
 
-    Raises ValueError or TypeError naming the field, its value and what it must be. Reference: N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
+    Raises ValueError or TypeError naming the field, its value and what it must be.
+
+    Reference: N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
     """
 
     dt: float

@@ -133,8 +133,8 @@ class Writer:
             with self._open("rb") as file:
                 if _version(file.read(len(MAGIC))) == 1:
                     raise ValueError(
-                        f"{self.path} was begun by an earlier version of bearingdyn: it can be read, not gone "
-                        f"on from; give another file, or remove this one to start anew"
+                        f"{self.path} was begun by an earlier version of bearingdyn: it can be read but not "
+                        f"gone on from; give another file, or remove this one to start anew"
                     )
             known, self.chunks, end = read(path)
             if known != json.loads(json.dumps(header)):
