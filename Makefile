@@ -15,7 +15,7 @@ export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 SOURCES := $(sort $(shell find csrc python -type f \( -name '*.[ch]' -o -name '*.py' -o -name '*.pyi' -o -name py.typed \
              -o -name '*.csv' -o -name meson.build \)) meson.build meson.options pyproject.toml)
 C_TESTS := $(sort $(wildcard tests/c/*))
-C_FILES  = $(wildcard csrc/*.[ch] tests/c/*.[ch])
+C_FILES  = $(wildcard csrc/*.[ch] csrc/binding/*.[ch] tests/c/*.[ch])
 
 # $(call keep,text) writes a target that holds the text, unless it holds it already.
 keep = @echo '$(1)' | cmp -s - $@ || { mkdir -p $(@D); echo '$(1)' >$@; }

@@ -74,7 +74,7 @@ def made_up(coordinates: int, bearings: int, branches: int) -> core.Model:
     L = 1e-3 * rng.standard_normal((coordinates, 6))
     layer = (L, np.geomspace(1e5, 1e6, branches), np.geomspace(1e-2, 1e-5, branches))
     share = 1.0 / np.sqrt(coordinates)
-    kernel = core.kernel_tuple(BALLS.kernel())
+    kernel = BALLS.kernel().packed()
     hung = [(kernel, share * rng.standard_normal((5, coordinates))) for _ in range(bearings)]
     push = 50.0 * sum(B[0] + B[2] for _, B in hung)
     nothing = np.zeros(0)

@@ -31,6 +31,12 @@
 
 #include "lapack.h"
 
+/* ---------------------------------------------------------------- words */
+
+/* Words shared with Python stand once, in lists like those below: X(enumerator, word). The enumeration is made from the
+ * list here, and so is the table that the binding shows to Python (binding/words.c). Codes count from 0. */
+#define BD_ENUMERATOR(name, word) name,
+
 /* ---------------------------------------------------------------- status */
 
 /* 0 is success, < 0 fatal, > 0 a stop that is no error. */
@@ -63,7 +69,16 @@ enum { BD_LANES = 8 };
 
 /* The hot kernels are compiled for each instruction set and chosen at run time. Contraction to FMA is
  * off and lanes never mix, so that all of them give the same bits. */
-typedef enum bd_isa { BD_ISA_BEST, BD_ISA_BASE, BD_ISA_AVX2, BD_ISA_AVX512 } bd_isa;
+#define BD_ISA_LIST(X)                                                                             \
+    X(BD_ISA_BEST, "best") /* of those this machine has */                                         \
+    X(BD_ISA_BASE, "base") /* of every machine the core is compiled for */                         \
+    X(BD_ISA_AVX2, "avx2")                                                                         \
+    X(BD_ISA_AVX512, "avx512")
+
+typedef enum bd_isa { BD_ISA_LIST(BD_ENUMERATOR) } bd_isa;
+
+/* Whether this build and this machine have an instruction set. */
+bool bd_isa_available(bd_isa isa);
 
 /* ---------------------------------------------------------------- Maxwell history (maxwell.c) */
 
@@ -95,11 +110,12 @@ void bd_maxwell_stress(int n_times, int n_components, const double *rate, const 
 
 /* F = kappa (delta + h0)^1.5 + c(delta) ddelta/dt, never tensile: paper eq (1). */
 
-typedef enum bd_damping_law {
-    BD_DAMPING_CONSTANT, /* c while in contact (paper section 4.1) */
-    BD_DAMPING_TABLE,    /* c(delta), piecewise linear, its ends held */
-    BD_DAMPING_LOAD      /* c = t_c dQ/ddelta: vanishes where contact is lost */
-} bd_damping_law;
+#define BD_DAMPING_LIST(X)                                                                         \
+    X(BD_DAMPING_CONSTANT, "constant") /* c while in contact (paper section 4.1) */                \
+    X(BD_DAMPING_TABLE, "table")       /* c(delta), piecewise linear, its ends held */             \
+    X(BD_DAMPING_LOAD, "load")         /* c = t_c dQ/ddelta: vanishes where contact is lost */
+
+typedef enum bd_damping_law { BD_DAMPING_LIST(BD_ENUMERATOR) } bd_damping_law;
 
 typedef struct bd_contact {
     double kappa, h0; /* N/m^1.5; sum of both films, m */
@@ -111,21 +127,19 @@ typedef struct bd_contact {
 
 /* ---------------------------------------------------------------- ball bearing (bearing.c) */
 
-/* Each race's groove-centre displacement is a Fourier series in the azimuth, radial and axial. The
- * kernel sees coefficients inner minus outer, all radial ones before all axial ones. A rigid ring has
- * radial cos 1, sin 1 and axial cos 0, cos 1, sin 1; a flexible ring just has more. */
 /* How the shaft turns at one time. */
 typedef struct bd_turn {
     double speed, rate, angle; /* rad/s, rad/s^2, rad */
 } bd_turn;
 
-typedef enum bd_wave_kind {
-    BD_WAVE_INNER_RADIAL, /* of the inner race, which turns with the shaft */
-    BD_WAVE_INNER_AXIAL,
-    BD_WAVE_OUTER_RADIAL,
-    BD_WAVE_OUTER_AXIAL,
-    BD_WAVE_BALL /* of one ball's surface; met by both races, so odd orders cancel */
-} bd_wave_kind;
+#define BD_WAVE_LIST(X)                                                                            \
+    X(BD_WAVE_INNER_RADIAL, "inner_radial") /* of the inner race, which turns with the shaft */    \
+    X(BD_WAVE_INNER_AXIAL, "inner_axial")                                                          \
+    X(BD_WAVE_OUTER_RADIAL, "outer_radial")                                                        \
+    X(BD_WAVE_OUTER_AXIAL, "outer_axial")                                                          \
+    X(BD_WAVE_BALL, "ball") /* of one ball's surface; met by both races, so odd orders cancel */
+
+typedef enum bd_wave_kind { BD_WAVE_LIST(BD_ENUMERATOR) } bd_wave_kind;
 
 /* amplitude cos(order angle + phase), the angle measured on the body that carries the wave. A race's wave is
  * the displacement of its surface along +r or +z. */
@@ -135,7 +149,9 @@ typedef struct bd_wave {
     double amplitude, phase;
 } bd_wave;
 
-typedef enum bd_pit_kind { BD_PIT_INNER, BD_PIT_OUTER, BD_PIT_BALL } bd_pit_kind;
+#define BD_PIT_LIST(X) X(BD_PIT_INNER, "inner") X(BD_PIT_OUTER, "outer") X(BD_PIT_BALL, "ball")
+
+typedef enum bd_pit_kind { BD_PIT_LIST(BD_ENUMERATOR) } bd_pit_kind;
 
 /* A localised defect. A ball drops into it by min(depth, D/2 - sqrt(D^2/4 - (width/2 - |s|)^2)), s the arc
  * from its centre: continuous, and a ball cannot reach the bottom of a narrow pit. */
@@ -145,6 +161,9 @@ typedef struct bd_pit {
     double angle, width, depth; /* angle of its centre on the body that carries it */
 } bd_pit;
 
+/* Each race's groove-centre displacement is a Fourier series in the azimuth, radial and axial. The
+ * kernel sees coefficients inner minus outer, all radial ones before all axial ones. A rigid ring has
+ * radial cos 1, sin 1 and axial cos 0, cos 1, sin 1; a flexible ring just has more. */
 typedef struct bd_bearing_data {
     int n_balls, n_coefs, n_radial;
     const int *order; /* (n_coefs) */
@@ -180,13 +199,16 @@ typedef struct bd_layer_data {
     const double *modulus, *tau; /* (n_branches) */
 } bd_layer_data;
 
-typedef enum bd_load_kind {
-    BD_LOAD_CONSTANT, /* p_cos */
-    BD_LOAD_HARMONIC, /* p_cos cos(omega t) + p_sin sin(omega t) */
-    BD_LOAD_ROTATING, /* unbalance: speed^2 (p_cos cos(theta) + p_sin sin(theta)) and, while the speed
-                       * changes, speed' (p_cos sin(theta) - p_sin cos(theta)) */
-    BD_LOAD_SAMPLED   /* p_cos times a table, linear between samples, its ends held */
-} bd_load_kind;
+/* Of the rotating load, an unbalance: theta is the shaft angle; the second term acts while the speed changes. */
+#define BD_LOAD_LIST(X)                                                                            \
+    X(BD_LOAD_CONSTANT, "constant") /* p_cos */                                                    \
+    X(BD_LOAD_HARMONIC, "harmonic") /* p_cos cos(omega t) + p_sin sin(omega t) */                  \
+    X(BD_LOAD_ROTATING,                                                                            \
+      "rotating")                 /* speed^2 (p_cos cos(theta) + p_sin sin(theta))               \
+                                     * + speed' (p_cos sin(theta) - p_sin cos(theta)) */ \
+    X(BD_LOAD_SAMPLED, "sampled") /* p_cos times a table, linear between, its ends held */
+
+typedef enum bd_load_kind { BD_LOAD_LIST(BD_ENUMERATOR) } bd_load_kind;
 
 typedef struct bd_load_data {
     bd_load_kind kind;
@@ -196,16 +218,17 @@ typedef struct bd_load_data {
     const double *time, *value; /* (n_samples) */
 } bd_load_data;
 
-typedef enum bd_channel_kind {
-    BD_CHANNEL_DISPLACEMENT, /* row . x */
-    BD_CHANNEL_VELOCITY,     /* row . v */
-    BD_CHANNEL_ACCELERATION, /* row . a */
-    BD_CHANNEL_FORCE,        /* bearing's force on coefficient `index` */
-    BD_CHANNEL_BALL,         /* load of ball `index` */
-    BD_CHANNEL_LOADED,       /* number of loaded balls */
-    BD_CHANNEL_CONTACT_LOSS, /* power that the contacts of a bearing turn into heat, W */
-    BD_CHANNEL_BRANCH_LOSS   /* power that the branches of layer `index` turn into heat, W */
-} bd_channel_kind;
+#define BD_CHANNEL_LIST(X)                                                                         \
+    X(BD_CHANNEL_DISPLACEMENT, "displacement") /* row . x */                                       \
+    X(BD_CHANNEL_VELOCITY, "velocity")         /* row . v */                                       \
+    X(BD_CHANNEL_ACCELERATION, "acceleration") /* row . a */                                       \
+    X(BD_CHANNEL_FORCE, "force")               /* bearing's force on coefficient `index` */        \
+    X(BD_CHANNEL_BALL, "ball")                 /* load of ball `index` */                          \
+    X(BD_CHANNEL_LOADED, "loaded")             /* number of loaded balls */                        \
+    X(BD_CHANNEL_CONTACT_LOSS, "contact_loss") /* power that contacts turn into heat, W */         \
+    X(BD_CHANNEL_BRANCH_LOSS, "branch_loss")   /* the same of the branches of layer `index` */
+
+typedef enum bd_channel_kind { BD_CHANNEL_LIST(BD_ENUMERATOR) } bd_channel_kind;
 
 typedef struct bd_channel_data {
     bd_channel_kind kind;
@@ -258,26 +281,62 @@ typedef struct bd_scheme {
     bd_isa isa; /* of the kernels; one that this machine lacks is a BD_BAD_VALUE */
 } bd_scheme;
 
+/* From the eleventh iteration of a step on, corrections are halved; after this many the halves are below the smallest
+ * double. A step cannot be interrupted, so that a larger limit could only hang. */
+#define BD_ITERATIONS_LIMIT 1000
+
+typedef struct bd_fault {
+    const char *field,
+        *must; /* which number, and what it must be; both NULL where nothing is wrong */
+} bd_fault;
+
+/* The first number of a scheme that cannot be marched with on this machine. */
+bd_fault bd_scheme_fault(const bd_scheme *scheme);
+
 /* What the audit integrates. Turning feeds in what the cage drives the balls with and what the shaft drives its own
  * damping with:
  *   load + turning - (linear + branch + contact) = change of (kinetic + elastic + stored + indentation) */
+#define BD_ENERGY_LIST(X)                                                                          \
+    /* now, J */                                                                                   \
+    X(kinetic)                                                                                     \
+    X(elastic)                                                                                     \
+    X(stored)                                                                                      \
+    X(indentation)                                                                                 \
+    /* work since the start, J */                                                                  \
+    X(load)                                                                                        \
+    X(turning)                                                                                     \
+    X(linear)                                                                                      \
+    X(branch)                                                                                      \
+    X(contact)                                                                                     \
+    /* integral of |power of loads and turning|, J */                                              \
+    X(throughput)
+
+#define BD_ENERGY_FIELD(name) double name;
 typedef struct bd_energy {
-    double kinetic, elastic, stored, indentation;  /* now, J */
-    double load, turning, linear, branch, contact; /* work since the start, J */
-    double throughput;                             /* integral of |power of loads and turning|, J */
+    BD_ENERGY_LIST(BD_ENERGY_FIELD)
     double power[5]; /* at the present time, in the order of the works, W */
 } bd_energy;
+#undef BD_ENERGY_FIELD
 
+/* X(type, name, how it adds): of two marches, one after the other, a count is the sum of both and anything else the
+ * last of both. A new counter is named here, counted where it happens, and typed in core.Report. */
+typedef long long bd_count;
+#define BD_REPORT_LIST(X)                                                                          \
+    X(bd_status, status, last)                                                                     \
+    X(bd_count, steps, sum)      /* done in this call */                                           \
+    X(bd_count, iterations, sum) /* evaluations of the bearings */                                 \
+    X(bd_count, refreshes, sum)  /* of Newton's matrix */                                          \
+    X(bd_count, refactors, sum)  /* of S, because the speed moved: counted by the caller */        \
+    X(bd_count, grazing, sum)    /* steps that ended on position alone: a film opens or closes */  \
+    X(double, t, last)           /* at the end */                                                  \
+    X(double, residual, last)    /* of the last step, relative */                                  \
+    X(int, bearing, last)        /* with the largest residual, -1 without */
+
+#define BD_REPORT_FIELD(type, name, adds) type name;
 typedef struct bd_report {
-    bd_status status;
-    long long steps;      /* done in this call */
-    long long iterations; /* bearing evaluations in this call */
-    long long refreshes;  /* of Newton's matrix in this call */
-    long long refactors;  /* of S, because the speed moved: counted by the caller */
-    long long grazing;    /* steps that ended on the position alone, where a film opens or closes */
-    double t, residual;   /* at the end; relative residual of the last step */
-    int bearing;          /* with the largest residual, -1 without */
+    BD_REPORT_LIST(BD_REPORT_FIELD)
 } bd_report;
+#undef BD_REPORT_FIELD
 
 /* A state is a flat array of doubles: exactly what resumes a march bit for bit. */
 size_t bd_state_size(const bd_model *model);

@@ -82,6 +82,34 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
     return BD_OK;
 }
 
+#define TEXT_(x) #x
+#define TEXT(x) TEXT_(x)
+
+bd_fault bd_scheme_fault(const bd_scheme *scheme)
+{
+    const bd_speed *speed = &scheme->speed;
+    if (!(scheme->dt > 0.0) || !isfinite(scheme->dt))
+        return (bd_fault){"dt", "a positive, finite step"};
+    if (!(scheme->beta >= 0.0) || !isfinite(scheme->beta))
+        return (bd_fault){"beta", "zero or positive, and finite"};
+    if (!(scheme->gamma >= 0.0) || !isfinite(scheme->gamma))
+        return (bd_fault){"gamma", "zero or positive, and finite"};
+    if (!(scheme->tolerance > 0.0))
+        return (bd_fault){"tolerance", "positive"};
+    if (scheme->max_iterations < 1 || scheme->max_iterations > BD_ITERATIONS_LIMIT)
+        return (bd_fault){"max_iterations",
+                          "1 to " TEXT(BD_ITERATIONS_LIMIT) ", as a step cannot be interrupted"};
+    if (speed->n < 1 || !all_finite(speed->time, (size_t)speed->n) ||
+        !increasing(speed->time, speed->n))
+        return (bd_fault){"times", "one or more finite times, each later than the one before"};
+    if (!all_finite(speed->value, (size_t)speed->n))
+        return (bd_fault){"speeds", "finite"};
+    if (!bd_isa_available(scheme->isa))
+        return (bd_fault){"isa",
+                          "an instruction set that this machine and build have; \"best\" is"};
+    return (bd_fault){NULL, NULL};
+}
+
 bd_status bd_model_check(const bd_model_data *data)
 {
     size_t n = (size_t)data->n;

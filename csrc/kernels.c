@@ -17,3 +17,8 @@ const bd_kernels *bd_kernels_for(bd_isa isa)
 #endif
     return isa == BD_ISA_BEST || isa == BD_ISA_BASE ? &bd_kernels_base : NULL;
 }
+
+bool bd_isa_available(bd_isa isa)
+{
+    return bd_kernels_for(isa) != NULL;
+}

@@ -199,6 +199,21 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
         LANES_AT(work->v_new + i) = v;
         poison += 0.0 * x + 0.0 * v;
     }
+
+    const bd_branch_weights *weights = work->weights;
+    for (int l = 0; l < model->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        const bd_block *block = &model->blocks[layer->block];
+        double *rate = work->y_rate + layer->offset;
+        for (int r = 0; r < layer->padded; r += BD_WIDTH)
+            LANES_AT(rate + r) = (lanes){0};
+        columns_add(layer->padded, block->n, layer->L, layer->padded, work->v_new + block->offset,
+                    rate);
+        for (int i = 0; i < layer->n_branches; i++) {
+            double *trial = work->trial + layer->stress + (size_t)i * (size_t)layer->padded;
+            maxwell_commit(layer->padded, *weights++, trial, rate, trial, &poison);
+        }
+    }
     for (int i = 0; i < BD_WIDTH; i++)
         if (!(poison[i] == 0.0))
             return 1;
@@ -213,21 +228,10 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
         LANES_AT(state->x + i) = LANES(work->x_new + i);
         LANES_AT(state->v + i) = LANES(work->v_new + i);
     }
-
-    const bd_branch_weights *weights = work->weights;
-    for (int l = 0; l < model->n_layers; l++) {
-        const bd_layer *layer = &model->layers[l];
-        const bd_block *block = &model->blocks[layer->block];
-        double *rate = state->y_rate + layer->offset;
-        for (int r = 0; r < layer->padded; r += BD_WIDTH)
-            LANES_AT(rate + r) = (lanes){0};
-        columns_add(layer->padded, block->n, layer->L, layer->padded, state->v + block->offset,
-                    rate);
-        for (int i = 0; i < layer->n_branches; i++) {
-            size_t at = layer->stress + (size_t)i * (size_t)layer->padded;
-            maxwell_commit(layer->padded, *weights++, work->trial + at, rate, state->stress + at);
-        }
-    }
+    for (int i = 0; i < model->ranks; i += BD_WIDTH)
+        LANES_AT(state->y_rate + i) = LANES(work->y_rate + i);
+    for (size_t i = 0; i < model->n_stress; i += BD_WIDTH)
+        LANES_AT(state->stress + i) = LANES(work->trial + i);
     return 0;
 }
 

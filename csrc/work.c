@@ -116,9 +116,7 @@ void bd_work_free(bd_work *work)
 
 bool bd_scheme_valid(const bd_scheme *scheme)
 {
-    return scheme->dt > 0.0 && isfinite(scheme->dt) && scheme->beta >= 0.0 &&
-           scheme->gamma >= 0.0 && isfinite(scheme->beta) && isfinite(scheme->gamma) &&
-           scheme->speed.n >= 1 && scheme->tolerance > 0.0 && scheme->max_iterations >= 1;
+    return bd_scheme_fault(scheme).field == NULL;
 }
 
 bool bd_work_choose(bd_work *work, const bd_scheme *scheme)

@@ -19,7 +19,7 @@ BEARING = BallBearing(
     clearance=5e-6,
     damping=TabulatedDamping([0.0, 1e-5], [10.0, 30.0]),
 )
-KERNEL = core.kernel_tuple(BEARING.kernel())
+KERNEL: dict[str, Any] = BEARING.kernel().packed()
 CASTABLE = (np.float64, np.float32, np.int32, np.int64)
 
 

@@ -1,10 +1,20 @@
-from collections.abc import Callable, Sequence
-from typing import final
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final, final
 
 import numpy as np
 from numpy.typing import NDArray
 
 _Array = NDArray[np.float64]
+
+ISAS: Final[Mapping[str, int]]
+DAMPING_LAWS: Final[Mapping[str, int]]
+LOAD_KINDS: Final[Mapping[str, int]]
+CHANNEL_KINDS: Final[Mapping[str, int]]
+WAVE_KINDS: Final[Mapping[str, int]]
+PIT_KINDS: Final[Mapping[str, int]]
+STATUSES: Final[Mapping[str, int]]
+REPORT_FIELDS: Final[Mapping[str, str]]
+ENERGIES: Final[tuple[str, ...]]
 
 @final
 class Model:
@@ -16,34 +26,25 @@ class Model:
         K: _Array,
         N: _Array,
         layers: Sequence[tuple[_Array, _Array, _Array]],
-        bearings: Sequence[tuple[tuple[object, ...], _Array]],
-        loads: Sequence[tuple[int, float, _Array, _Array, _Array, _Array]],
-        channels: Sequence[tuple[int, _Array | None, int, int]],
+        bearings: Sequence[tuple[dict[str, object], _Array]],
+        loads: Sequence[tuple[int | str, float, _Array, _Array, _Array, _Array]],
+        channels: Sequence[tuple[int | str, _Array | None, int, int]],
     ) -> Model: ...
     @property
     def blocks(self) -> int: ...
     @property
     def channels(self) -> int: ...
     def state(self, t: float, x: _Array, v: _Array, /) -> _Array: ...
-    def unpack(self, state: _Array, /) -> tuple[float, _Array, _Array, _Array, _Array]: ...
+    def unpack(self, state: _Array, /) -> tuple[float, _Array, _Array, _Array, dict[str, float]]: ...
     def march(
         self,
         state: _Array,
         steps: int,
         decimate: int,
-        dt: float,
-        beta: float,
-        gamma: float,
-        times: _Array,
-        speeds: _Array,
-        tolerance: float,
-        max_iterations: int,
-        audit: bool,
-        isa: int,
+        scheme: dict[str, object],
         start: bool,
         progress: Callable[[int, int], object] | None,
-        /,
-    ) -> tuple[_Array, _Array, tuple[int, int, int, int, int, int, float, float, int]]: ...
+    ) -> tuple[_Array, _Array, dict[str, Any]]: ...
     def harmonic(
         self,
         omega: _Array,
@@ -61,7 +62,7 @@ def maxwell_stress(
     rate: _Array, dt: _Array, G0: float, eta0: float, modulus: _Array, tau: _Array, /
 ) -> _Array: ...
 def bearing_force(
-    bearing: tuple[object, ...],
+    bearing: dict[str, object],
     z: _Array,
     z_rate: _Array,
     angle: float,
@@ -70,4 +71,5 @@ def bearing_force(
     shaft_speed: float,
     /,
 ) -> tuple[_Array, _Array, _Array, _Array]: ...
+def check_scheme(scheme: dict[str, object], /) -> None: ...
 def status_text(status: int, /) -> str: ...

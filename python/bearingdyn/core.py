@@ -5,9 +5,9 @@ Everything here is arrays in, arrays out; what the arrays mean is said in csrc/b
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,38 +15,26 @@ from numpy.typing import ArrayLike
 from bearingdyn import _core
 from bearingdyn.types import Array, Complex
 
-if TYPE_CHECKING:
-    from bearingdyn.bearing.kernel import BearingKernel
-
 Progress: TypeAlias = Callable[[int, int], object]
 Model = _core.Model
 
-LAWS = {"constant": 0, "table": 1, "load": 2}
-LOAD_KINDS = {"constant": 0, "harmonic": 1, "rotating": 2, "sampled": 3}
-CHANNEL_KINDS = {
-    "displacement": 0,
-    "velocity": 1,
-    "acceleration": 2,
-    "force": 3,
-    "ball": 4,
-    "loaded": 5,
-    "contact_loss": 6,
-    "branch_loss": 7,
-}
-ENERGIES = (
-    "kinetic",
-    "elastic",
-    "stored",
-    "indentation",
-    "load",
-    "turning",
-    "linear",
-    "branch",
-    "contact",
-    "throughput",
-)
-INTERRUPTED = 1
-ISAS = {"best": 0, "base": 1, "avx2": 2, "avx512": 3}
+# the words that C owns, in the lists of csrc/bearingdyn.h
+DAMPING_LAWS = _core.DAMPING_LAWS
+LOAD_KINDS = _core.LOAD_KINDS
+CHANNEL_KINDS = _core.CHANNEL_KINDS
+WAVE_KINDS = _core.WAVE_KINDS
+PIT_KINDS = _core.PIT_KINDS
+ISAS = _core.ISAS
+ENERGIES = _core.ENERGIES
+REPORT_FIELDS = _core.REPORT_FIELDS
+INTERRUPTED = _core.STATUSES["INTERRUPTED"]
+
+
+class Packable(Protocol):
+    """What is passed to the core as a dict of named fields, such as a bearing."""
+
+    def packed(self) -> dict[str, object]:
+        """The fields by name."""
 
 
 class SolverError(RuntimeError):
@@ -88,11 +76,14 @@ class Scheme:
     dt: step, s.
     beta, gamma: Newmark's numbers; ¼ and ½, the average acceleration, add no damping of their own.
     tolerance: of the bearing forces, relative to the largest.
-    max_iterations: of Newton's iteration in a step.
+    max_iterations: of Newton's iteration in a step, 1 to 1000. A step cannot be interrupted, and from the
+    eleventh iteration on corrections are halved: after 1000 the halves are below the smallest double.
     audit: integrate energies and works.
-    isa: instruction set of the kernels, "best" or one of those the core was compiled for.
+    isa: instruction set of the kernels, one of ISAS: "best", or one that this machine has.
 
-    A march refuses what is no scheme with a ValueError. Reference: N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
+    Raises ValueError or TypeError naming the field, its value and what it must be.
+
+    Reference: N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
     """
 
     dt: float
@@ -104,64 +95,58 @@ class Scheme:
     audit: bool = False
     isa: str = "best"
 
+    def __post_init__(self) -> None:
+        _core.check_scheme(self.packed())
+
     @property
     def profile(self) -> tuple[Array, Array]:
         """Times in s and speeds in rad/s, (n,) each; one of each for a constant speed."""
-        times, speeds = self.speed if isinstance(self.speed, tuple) else ([0.0], [self.speed])
-        return np.asarray(times, dtype=np.float64), np.asarray(speeds, dtype=np.float64)
+        try:
+            times, speeds = self.speed if isinstance(self.speed, tuple) else ([0.0], [self.speed])
+            return np.asarray(times, dtype=np.float64), np.asarray(speeds, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ValueError(
+                f"speed is {self.speed!r}; it must be a number in rad/s or (times in s, speeds in rad/s)"
+            ) from None
+
+    def packed(self) -> dict[str, object]:
+        """The fields by name, as the core parses them."""
+        times, speeds = self.profile
+        own = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "speed"}
+        return {**own, "times": times, "speeds": speeds}
 
 
 @dataclass(frozen=True)
 class Report:
-    """Where and how a march ended (bd_report)."""
+    """Where and how a march ended (bd_report); the sum of two is that of one march after the other.
 
-    status: int
-    steps: int
-    iterations: int
-    refreshes: int
-    refactors: int
-    grazing: int
-    t: float
-    residual: float
-    bearing: int
+    The fields are those of REPORT_FIELDS, which says of each whether it adds or the last one counts.
+    """
+
+    status: int = 0
+    steps: int = 0
+    iterations: int = 0
+    refreshes: int = 0
+    refactors: int = 0
+    grazing: int = 0
+    t: float = 0.0
+    residual: float = 0.0
+    bearing: int = -1
+
+    def __add__(self, later: Report) -> Report:
+        mine, its = vars(self), vars(later)
+        added = {n: mine[n] + its[n] if how == "sum" else its[n] for n, how in REPORT_FIELDS.items()}
+        return Report(**added)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """The fields that add, by name."""
+        return {name: getattr(self, name) for name, how in REPORT_FIELDS.items() if how == "sum"}
 
     @property
     def text(self) -> str:
         """The status in words."""
         return _core.status_text(self.status)
-
-
-def kernel_tuple(kernel: BearingKernel) -> tuple[object, ...]:
-    """A bearing as the core parses it; radial coefficients must come before axial ones."""
-    axial, flaws = np.asarray(kernel.axial), kernel.imperfections
-    if np.any(np.diff(axial) < 0):
-        raise ValueError("axial must list all radial coefficients (0) before the axial ones (1)")
-    return (
-        int(kernel.Z),
-        kernel.order,
-        kernel.sine,
-        int(np.count_nonzero(axial == 0)),
-        float(kernel.x0),
-        float(kernel.y0),
-        float(kernel.A),
-        float(kernel.e0),
-        float(kernel.kappa),
-        float(kernel.h0),
-        LAWS[kernel.damping_law],
-        float(kernel.damping_c),
-        np.asarray(kernel.damping_table, dtype=np.float64).reshape(-1, 2),
-        float(kernel.cage_ratio),
-        float(kernel.angle0),
-        (
-            float(flaws.spin_ratio),
-            float(flaws.ball_diameter),
-            float(flaws.inner_radius),
-            float(flaws.outer_radius),
-            flaws.waves,
-            flaws.pits,
-            flaws.oversize,
-        ),
-    )
 
 
 def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Array, tau: Array) -> Array:
@@ -174,7 +159,7 @@ def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Ar
 
 
 def bearing_force(
-    kernel: BearingKernel,
+    kernel: Packable,
     z: Array,
     z_rate: Array,
     angle: float,
@@ -183,7 +168,7 @@ def bearing_force(
     shaft_speed: float = 0.0,
 ) -> tuple[Array, Array, Array, Array]:
     """Force g (n,) = +∇V on a bearing's coefficients, tangents dg/dz, dg/dż (n, n), ball loads (Z,) in N."""
-    return _core.bearing_force(kernel_tuple(kernel), z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)
+    return _core.bearing_force(kernel.packed(), z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)
 
 
 def march(
@@ -200,24 +185,10 @@ def march(
 
     With `start`, the acceleration is first made to satisfy the equation of motion.
     """
-    times, speeds = scheme.profile
     record, new_state, report = model.march(
-        state,
-        steps,
-        decimate,
-        scheme.dt,
-        scheme.beta,
-        scheme.gamma,
-        times,
-        speeds,
-        scheme.tolerance,
-        scheme.max_iterations,
-        scheme.audit,
-        ISAS[scheme.isa],
-        start,
-        progress,
+        state=state, steps=steps, decimate=decimate, scheme=scheme.packed(), start=start, progress=progress
     )
-    return record, new_state, Report(*report)
+    return record, new_state, Report(**report)
 
 
 def harmonic(
@@ -247,5 +218,4 @@ def time_of(model: Model, state: Array) -> float:
 
 def energies(model: Model, state: Array) -> dict[str, float]:
     """What the audit of a march integrated, J: the names of ENERGIES."""
-    values: Sequence[float] = model.unpack(state)[4].tolist()
-    return dict(zip(ENERGIES, values, strict=True))
+    return model.unpack(state)[4]

@@ -4,8 +4,10 @@
 
 A block (header or chunk) is its length and CRC-32 (two unsigned little-endian numbers of 8 and 4 bytes) and
 as many bytes. The header is JSON; a chunk is rows of recorded channels and the state after them, so that the
-march goes on from it bit for bit. Killed at any moment, the file holds every finished chunk; a torn tail is
-ignored.
+march goes on from it bit for bit, and before both their sizes and what the core counted, by name, as JSON.
+Killed at any moment, the file holds every finished chunk; a torn tail is ignored.
+
+Files of version 1, whose counts have no names, are read, not gone on from.
 """
 
 from __future__ import annotations
@@ -14,54 +16,72 @@ import json
 import os
 import struct
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from bearingdyn.core import Report
 from bearingdyn.types import Array
 
-MAGIC = b"bearingdyn run 1\n"
+MAGIC = b"bearingdyn run 2\n"
+_MAGIC_1 = b"bearingdyn run 1\n"
 _BLOCK = struct.Struct("<QI")
-_CHUNK = struct.Struct("<QQQQQQQ")
+_CHUNK = struct.Struct("<QQQ")  # rows, words of the state, bytes of the counts
+_CHUNK_1 = struct.Struct("<QQQQQQQ")
+# what version 1 counted, in its order
+_COUNTS_1 = ("steps", "iterations", "refreshes", "refactors", "grazing")
 
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """Rows (n, channels) recorded, the state after them, and the counts of the core's report."""
+    """Rows (n, channels) recorded, the state after them, and the report; of that the counts are kept."""
 
     rows: Array
     state: Array
-    steps: int
-    iterations: int
-    refreshes: int
-    refactors: int
-    grazing: int
+    report: Report
 
     def packed(self) -> bytes:
         """As bytes."""
-        counts = (self.steps, self.iterations, self.refreshes, self.refactors, self.grazing)
-        front = _CHUNK.pack(len(self.rows), self.state.size, *counts)
-        return front + self.rows.tobytes() + self.state.tobytes()
+        counts = json.dumps(self.report.counts).encode()
+        counts += b" " * (-len(counts) % 8)  # numbers lie at multiples of their size
+        front = _CHUNK.pack(len(self.rows), self.state.size, len(counts))
+        return front + counts + self.rows.tobytes() + self.state.tobytes()
 
     @classmethod
-    def unpacked(cls, data: bytes, channels: int) -> Chunk:
-        """From bytes."""
-        n, words, *counts = _CHUNK.unpack_from(data)
-        rows = np.frombuffer(data, np.float64, n * channels, _CHUNK.size).reshape(n, channels)
-        state = np.frombuffer(data, np.float64, words, _CHUNK.size + rows.nbytes)
-        return cls(rows, state, *counts)
+    def unpacked(cls, data: bytes, channels: int, version: int) -> Chunk:
+        """From bytes; a counter that the file does not know is 0."""
+        if version == 1:
+            n, words, *numbers = _CHUNK_1.unpack_from(data)
+            at, counts = _CHUNK_1.size, dict(zip(_COUNTS_1, numbers, strict=True))
+        else:
+            n, words, length = _CHUNK.unpack_from(data)
+            at = _CHUNK.size + length
+            counts = json.loads(data[_CHUNK.size : at])
+        rows = np.frombuffer(data, np.float64, n * channels, at).reshape(n, channels)
+        state = np.frombuffer(data, np.float64, words, at + rows.nbytes)
+        return cls(rows, state, Report(**counts, t=float(state[0] + state[1] * state[2])))
+
+
+def report_of(chunks: Sequence[Chunk]) -> Report:
+    """The report of all chunks together, one or more."""
+    return sum((chunk.report for chunk in chunks[1:]), chunks[0].report)
 
 
 def is_run(path: str | os.PathLike[str]) -> bool:
     """Whether a file is (the beginning of) a run file."""
     try:
         with open(path, "rb") as file:
-            return file.read(len(MAGIC)) == MAGIC
+            return _version(file.read(len(MAGIC))) > 0
     except OSError:
         return False
+
+
+def _version(data: bytes) -> int:
+    """Of the format of a run file, by its first bytes; 0 if it is none."""
+    return 2 if data.startswith(MAGIC) else int(data.startswith(_MAGIC_1))
 
 
 def read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[Chunk], int]:
@@ -70,7 +90,8 @@ def read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[Chunk], int
     Raises ValueError if the file is none of ours or its header is damaged.
     """
     data = Path(path).read_bytes()
-    if not data.startswith(MAGIC):
+    version = _version(data)
+    if not version:
         raise ValueError(f"{os.fspath(path)} is not a run file of bearingdyn")
     header, at = _block(data, len(MAGIC))
     if header is None:
@@ -81,7 +102,7 @@ def read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[Chunk], int
         block, after = _block(data, at)
         if block is None:
             return facts, chunks, at
-        chunks.append(Chunk.unpacked(block, len(facts["channels"])))
+        chunks.append(Chunk.unpacked(block, len(facts["channels"]), version))
         at = after
 
 
@@ -107,6 +128,12 @@ class Writer:
         self.path = Path(path)
         self.chunks: list[Chunk] = []
         if is_run(path):
+            with self._open("rb") as file:
+                if _version(file.read(len(MAGIC))) == 1:
+                    raise ValueError(
+                        f"{self.path} was begun by an earlier version of bearingdyn: it can be read but not "
+                        f"gone on from; give another file, or remove this one to start anew"
+                    )
             known, self.chunks, end = read(path)
             if known != json.loads(json.dumps(header)):
                 raise ValueError(

@@ -176,7 +176,7 @@ def overhung(bearing: BallBearing | None = None) -> core.Model:
         B = np.zeros((5, 4))
         B[0, 0] = B[1, 1] = 1.0
         B[3, 3], B[4, 2] = -0.02, 0.02
-        bearings = [(core.kernel_tuple(bearing.kernel()), B)]
+        bearings = [(bearing.kernel().packed(), B)]
     return core.Model(M, C, G, K, N, [], bearings, loads, [(0, row, 0, 0) for row in np.eye(4)])
 
 

@@ -272,9 +272,12 @@ def test_two_lobes_of_a_race_press_two_opposite_balls() -> None:
 # ---------------------------------------------------------------- bad input
 
 
-def flawed(field: int, value: Any) -> tuple[Any, ...]:
+FLAWS = KERNEL["imperfections"]
+
+
+def flawed(field: str, value: Any) -> dict[str, Any]:
     """The imperfections of KERNEL with one field replaced."""
-    return (*KERNEL[15][:field], value, *KERNEL[15][field + 1 :])
+    return FLAWS | {field: value}
 
 
 # rows of kind, order, ball, amplitude, phase
@@ -315,20 +318,20 @@ BAD_PITS = [
     ),
 ]
 BAD = [
-    list(KERNEL[15]),
-    KERNEL[15][:-1],
-    *(flawed(at, value) for at in range(4) for value in (np.nan, np.inf, "x")),
-    *(flawed(4, wave) for wave in BAD_WAVES),
-    *(flawed(5, pit) for pit in BAD_PITS),
-    flawed(6, np.zeros(6)),
-    flawed(6, np.full(7, np.nan)),
-    flawed(6, None),
+    list(FLAWS.items()),
+    {name: FLAWS[name] for name in list(FLAWS)[:-1]},
+    *(flawed(name, value) for name in list(FLAWS)[:4] for value in (np.nan, np.inf, "x")),
+    *(flawed("waves", wave) for wave in BAD_WAVES),
+    *(flawed("pits", pit) for pit in BAD_PITS),
+    flawed("oversize", np.zeros(6)),
+    flawed("oversize", np.full(7, np.nan)),
+    flawed("oversize", None),
     # a pit under balls of no size
-    (KERNEL[15][0], 0.0, *KERNEL[15][2:5], np.array([[0, 0, 0.0, 1e-3, 1e-6]]), KERNEL[15][6]),
+    FLAWS | {"ball_diameter": 0.0, "pits": np.array([[0, 0, 0.0, 1e-3, 1e-6]])},
 ]
 
 
 @pytest.mark.parametrize("bad", BAD)
 def test_bad_imperfections_are_refused(bad: Any) -> None:
     with pytest.raises((ValueError, TypeError)):
-        _core.bearing_force((*KERNEL[:15], bad), np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0)
+        _core.bearing_force(KERNEL | {"imperfections": bad}, np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0)

@@ -110,7 +110,17 @@ def test_references_are_stable() -> None:
     m = core.Model(**a)
     state = m.state(0.0, x, x)
     bad = arguments() | {"layers": [(a["layers"][0][0], np.ones(2), np.zeros(2))]}
-    watched = [*a.values(), *bad.values(), x, state, m, KERNEL[1], KERNEL[2], KERNEL[12], SCHEME]
+    watched = [
+        *a.values(),
+        *bad.values(),
+        x,
+        state,
+        m,
+        KERNEL["order"],
+        KERNEL["sine"],
+        KERNEL["table"],
+        SCHEME,
+    ]
 
     def count() -> list[int]:
         return [sys.getrefcount(w) for w in watched]
@@ -130,7 +140,9 @@ def test_references_are_stable() -> None:
             lambda: core.march(m, state, SCHEME, 3, progress=lambda done, total: 1 / 0),
             lambda: harmonic(m, row=np.zeros((1, N + 1))),
             lambda: harmonic(m, progress=lambda done, total: 1 / 0),
-            lambda: _core.bearing_force(KERNEL[:-1], np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0),
+            lambda: _core.bearing_force(
+                {**KERNEL, "sine": None}, np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0
+            ),
         ):
             with contextlib.suppress(ValueError, TypeError, ZeroDivisionError):
                 call()

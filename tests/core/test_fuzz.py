@@ -73,15 +73,17 @@ def test_only_exceptions_come_out_of_a_model(data: st.DataObject) -> None:
 @given(data=st.data())
 def test_only_exceptions_come_out_of_a_march(data: st.DataObject) -> None:
     m = model()
-    good: list[Any] = [at_rest(m), 5, 1, 1e-6, 0.25, 0.5, 300.0, 1e-9, 20, False, 0, True, None]
+    good: dict[str, Any] = dict(state=at_rest(m), steps=5, decimate=1, start=True, progress=None)
+    scheme = core.Scheme(1e-6, speed=300.0, max_iterations=20).packed()
     small = st.one_of(st.none(), st.integers(-3, 40), st.floats(), st.just(at_rest(m)), anything)
-    for at in data.draw(st.lists(st.integers(0, len(good) - 1), min_size=1, max_size=3, unique=True)):
+    names = st.sampled_from([*good, *scheme])
+    for name in data.draw(st.lists(names, min_size=1, max_size=3, unique=True)):
         value = data.draw(small)
-        if isinstance(value, int) and at in (1, 8) and abs(value) > 100:
+        if isinstance(value, int) and name == "steps" and abs(value) > 100:
             value %= 100  # a march of 2**60 steps is not wrong, only long
-        good[at] = value
+        (scheme if name in scheme else good)[name] = value
     try:
-        record, state, _ = m.march(*good)
+        record, state, _ = m.march(**good, scheme=scheme)
     except (ValueError, TypeError, OverflowError, MemoryError):
         return
     assert np.isfinite(record).all()

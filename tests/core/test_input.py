@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import re
 from typing import Any
 
 import numpy as np
@@ -64,47 +66,51 @@ def test_a_bad_layer_is_refused(i: int) -> None:
         model(layers=[bad_branches()[i]])
 
 
+def without(fields: dict[str, Any], name: str) -> dict[str, Any]:
+    return {key: value for key, value in fields.items() if key != name}
+
+
 BAD_BEARINGS = [
-    (0, 0),  # balls
-    (0, -3),
-    (0, 2**31 - 1),
-    (0, 2**40),
-    (1, np.array([1, 1, 0, 1, -1], np.intc)),
-    (1, np.array([1, 1, 0, 1, 2**31 - 1], np.intc)),
-    (1, np.zeros(0, np.intc)),
-    (1, np.array([1.0, 1, 0, 1, 1])),
-    (2, np.array([0, 1, 0], np.intc)),
-    (3, 6),
-    (3, -1),
-    (4, np.nan),
-    (5, np.inf),
-    (6, 0.0),
-    (6, np.inf),
-    (7, np.nan),
-    (8, -1.0),
-    (8, np.inf),
-    (9, -1e-9),
-    (9, np.inf),
-    (10, 3),
-    (10, -1),
-    (11, -1.0),
-    (11, np.inf),
-    (12, np.zeros((0, 2))),  # an empty table
-    (12, np.array([[0.0, 1.0], [0.0, 2.0]])),  # unsorted
-    (12, np.array([[np.nan, 1.0]])),
-    (12, np.array([[0.0, np.nan]])),
-    (12, np.array([[0.0, -1.0]])),
-    (12, np.zeros((3, 3))),
-    (13, np.nan),
-    (14, np.inf),
-    (14, "0"),
-    (15, None),
+    ("n_balls", 0),  # balls
+    ("n_balls", -3),
+    ("n_balls", 2**31 - 1),
+    ("n_balls", 2**40),
+    ("order", np.array([1, 1, 0, 1, -1], np.intc)),
+    ("order", np.array([1, 1, 0, 1, 2**31 - 1], np.intc)),
+    ("order", np.zeros(0, np.intc)),
+    ("order", np.array([1.0, 1, 0, 1, 1])),
+    ("sine", np.array([0, 1, 0], np.intc)),
+    ("n_radial", 6),
+    ("n_radial", -1),
+    ("x0", np.nan),
+    ("y0", np.inf),
+    ("A", 0.0),
+    ("A", np.inf),
+    ("e0", np.nan),
+    ("kappa", -1.0),
+    ("kappa", np.inf),
+    ("h0", -1e-9),
+    ("h0", np.inf),
+    ("law", 3),
+    ("law", -1),
+    ("c", -1.0),
+    ("c", np.inf),
+    ("table", np.zeros((0, 2))),  # an empty table
+    ("table", np.array([[0.0, 1.0], [0.0, 2.0]])),  # unsorted
+    ("table", np.array([[np.nan, 1.0]])),
+    ("table", np.array([[0.0, np.nan]])),
+    ("table", np.array([[0.0, -1.0]])),
+    ("table", np.zeros((3, 3))),
+    ("cage_ratio", np.nan),
+    ("angle0", np.inf),
+    ("angle0", "0"),
+    ("imperfections", None),
 ]
 
 
 @pytest.mark.parametrize(("field", "value"), BAD_BEARINGS)
-def test_a_bad_bearing_is_refused(field: int, value: Any) -> None:
-    bad = (*KERNEL[:field], value, *KERNEL[field + 1 :])
+def test_a_bad_bearing_is_refused(field: str, value: Any) -> None:
+    bad = KERNEL | {field: value}
     B = arguments()["bearings"][0][1]
     with pytest.raises((ValueError, TypeError, OverflowError)):
         model(bearings=[(bad, B)])
@@ -113,7 +119,13 @@ def test_a_bad_bearing_is_refused(field: int, value: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    "bad", [(KERNEL[:-1], None), (list(KERNEL), None), (None, None), (KERNEL, np.zeros((4, N)))]
+    "bad",
+    [
+        (without(KERNEL, "imperfections"), None),
+        (list(KERNEL.items()), None),
+        (None, None),
+        (KERNEL, np.zeros((4, N))),
+    ],
 )
 def test_a_bearing_of_another_form_is_refused(bad: Any) -> None:
     kernel, B = bad
@@ -121,6 +133,31 @@ def test_a_bearing_of_another_form_is_refused(bad: Any) -> None:
         model(bearings=[(kernel, arguments()["bearings"][0][1] if B is None else B)])
     with pytest.raises((ValueError, TypeError)):
         model(bearings=[[KERNEL, arguments()["bearings"][0][1]]])
+
+
+@pytest.mark.parametrize("name", KERNEL)
+def test_a_field_of_a_bearing_is_named_where_it_is_missing_or_of_another_type(name: str) -> None:
+    still = (np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0)
+    with pytest.raises(TypeError, match=rf'bearing has no field "{name}"'):
+        _core.bearing_force(without(KERNEL, name), *still)
+    with pytest.raises((TypeError, ValueError), match=rf"bearing\.{name} (is|must)"):
+        _core.bearing_force(KERNEL | {name: object()}, *still)
+
+
+@pytest.mark.parametrize("name", KERNEL["imperfections"])
+def test_a_field_of_the_imperfections_is_named_where_it_is_missing_or_of_another_type(name: str) -> None:
+    flaws, still = KERNEL["imperfections"], (np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0)
+    with pytest.raises(TypeError, match=rf'bearing.imperfections has no field "{name}"'):
+        _core.bearing_force(KERNEL | {"imperfections": without(flaws, name)}, *still)
+    with pytest.raises((TypeError, ValueError), match=rf"bearing\.imperfections\.{name} (is|must)"):
+        _core.bearing_force(KERNEL | {"imperfections": flaws | {name: object()}}, *still)
+
+
+def test_a_field_that_is_unknown_is_named() -> None:
+    still = (np.zeros(5), np.zeros(5), 0.0, 0.0, 0.0, 0.0)
+    for bad in (KERNEL | {"kapa": 1.0}, KERNEL | {3: 1.0}):
+        with pytest.raises(TypeError, match=r"bearing has a field ('kapa'|3) that is unknown"):
+            _core.bearing_force(bad, *still)
 
 
 P = np.ones(N)
@@ -244,6 +281,52 @@ def test_a_bad_scheme_is_refused(change: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("dt", 0.0),
+        ("dt", "1"),
+        ("beta", -0.1),
+        ("gamma", np.inf),
+        ("tolerance", np.nan),
+        ("max_iterations", 0),
+        ("max_iterations", 1001),
+        ("max_iterations", 2**31 - 1),  # such a step would go on for hours, and nothing could end it
+        ("max_iterations", 2**40),
+        ("max_iterations", 2.5),
+        ("speed", "fast"),
+        ("speed", ([0.0],)),
+        ("isa", "avx"),
+        ("isa", None),
+    ],
+)
+def test_what_is_wrong_in_a_scheme_is_named_when_it_is_made(field: str, value: Any) -> None:
+    with pytest.raises((ValueError, TypeError), match=rf"\b{field} is {re.escape(repr(value))}; it must be"):
+        core.Scheme(**({"dt": 1e-6} | {field: value}))
+
+
+def test_an_unknown_instruction_set_is_answered_with_those_there_are() -> None:
+    with pytest.raises(ValueError, match=r"isa is 'avx'; .* \"best\", \"base\", \"avx2\", \"avx512\"$"):
+        core.Scheme(dt=1e-6, isa="avx")
+
+
+def test_a_march_names_what_is_wrong_in_its_scheme() -> None:
+    m, scheme = model(), SCHEME.packed()
+    good = dict(state=at_rest(m), steps=1, decimate=1, scheme=scheme, start=True, progress=None)
+    for bad, name in (
+        (without(scheme, "beta"), 'scheme has no field "beta"'),
+        (scheme | {"delta": 1.0}, "'delta' that is unknown"),
+        (scheme | {"gamma": None}, "scheme.gamma is None"),
+        (scheme | {"times": np.array([np.nan])}, "scheme.times"),
+        (scheme | {"times": np.zeros(2), "speeds": np.zeros(2)}, "scheme.times"),
+        (scheme | {"speeds": np.zeros(2)}, "scheme.speeds"),
+        (scheme | {"max_iterations": 2**31 - 1}, "scheme.max_iterations is 2147483647; it must be 1 to 1000"),
+        (scheme | {"isa": 4}, "scheme.isa is 4"),
+    ):
+        with pytest.raises((ValueError, TypeError), match=name):
+            m.march(**(good | {"scheme": bad}))
+
+
+@pytest.mark.parametrize(
     ("steps", "decimate"),
     [(-1, 1), (5, 0), (5, -3), (2**63 - 1, 1), (2**62, 1), (2**64, 1), (1.5, 1), (None, 1)],
 )
@@ -282,6 +365,22 @@ def test_a_state_with_an_absurd_clock_does_no_harm(at: int, value: float) -> Non
         return
     assert len(record) <= 6
     assert report.status <= 0
+
+
+@pytest.mark.parametrize("value", [1e308, -1.7e308, 1e160])
+@pytest.mark.parametrize("audit", [False, True])
+def test_no_march_succeeds_in_a_state_that_is_not_finite(value: float, audit: bool) -> None:
+    """Each number of a state in turn is nearly too large to be squared, or to be added to."""
+    m = model()
+    scheme = dataclasses.replace(SCHEME, audit=audit)
+    state = core.march(m, at_rest(m), scheme, 5, start=True)[1]
+    failed = 0
+    for at in range(6, len(state)):
+        for steps in (0, 1, 4):
+            _, after, report = core.march(m, replaced(state, at, value), scheme, steps)
+            assert report.status < 0 or np.isfinite(after).all()
+            failed += report.status < 0
+    assert failed > 0
 
 
 @pytest.mark.parametrize(

@@ -89,7 +89,7 @@ def c_model(system: twin.System) -> core.Model:
         system.K,
         system.N,
         system.layers,
-        [(core.kernel_tuple(spec), B) for spec, B in system.bearings],
+        [(spec.packed(), B) for spec, B in system.bearings],
         [(core.LOAD_KINDS[kind], *rest) for kind, *rest in system.loads],
         [(core.CHANNEL_KINDS[kind], *rest) for kind, *rest in system.channels],
     )

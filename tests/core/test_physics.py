@@ -149,7 +149,7 @@ def rotor(loads: list[tuple[object, ...]], damping: float, extra: float = 0.0) -
             B[2, at + 2] = side * sign
             B[3, at + 4] = -side * sign * arm
             B[4, at + 3] = side * sign * arm
-        bearings.append((core.kernel_tuple(bearing), B))
+        bearings.append((bearing.packed(), B))
     channels = [(0, row, 0, 0) for row in np.eye(n)] + [(5, None, 0, 0), (5, None, 1, 0)]
     return core.Model(M, C, G, K, N, layers, bearings, loads, channels), n
 
@@ -235,7 +235,7 @@ def test_energy_audit_closes_where_contact_is_lost() -> None:
     ]
     channels = [(5, None, 0, 0)]
     zero = np.zeros((n, n))
-    kernel = core.kernel_tuple(bearing.kernel())
+    kernel = bearing.kernel().packed()
     model = core.Model(
         np.eye(n), np.diag(0.04 * w), zero, np.diag(w**2), zero, [], [(kernel, B)], loads, channels
     )

@@ -129,7 +129,7 @@ def lobed_model(orders: list[tuple[int, int, int]]) -> core.Model:
     p[:3] = 300.0
     load = (0, 0.0, p, 0 * p, np.zeros(0), np.zeros(0))
     channels = [(0, row, 0, 0) for row in np.eye(n)] + [(3, None, 0, k) for k in range(n)]
-    return core.Model(M, C, zero, K, zero, [], [(core.kernel_tuple(spec), np.eye(n))], [load], channels)
+    return core.Model(M, C, zero, K, zero, [], [(spec.packed(), np.eye(n))], [load], channels)
 
 
 def test_march_of_a_ring_of_eight_orders_balances_at_every_step() -> None:

@@ -52,6 +52,18 @@ def test_twice_the_steps_is_two_marches_bit_for_bit() -> None:
     np.testing.assert_array_equal(core.march(m, np.array(middle.tolist()), SCHEME, 300, 7)[1], end)
 
 
+def test_reports_of_two_marches_add_up_to_that_of_one() -> None:
+    m = model()
+    state = m.state(0.01, 1e-6 * np.arange(N), np.zeros(N))
+    whole = core.march(m, state, SCHEME, 600, 7, start=True)[2]
+    _, middle, first = core.march(m, state, SCHEME, 200, 7, start=True)
+    second = core.march(m, middle, SCHEME, 400, 7)[2]
+    assert first + second == whole
+    assert whole.counts == {n: first.counts[n] + second.counts[n] for n in whole.counts}
+    assert whole.counts["iterations"] > whole.steps == 600  # Newton's iteration takes more than one to a step
+    assert (second + first).t == first.t
+
+
 def test_other_threads_run_during_a_march() -> None:
     """The interpreter is free while the core works: a march of one call without chunks to speak of."""
     m = model()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import dataclasses
 import importlib
 import importlib.util
 import re
@@ -13,10 +14,14 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
+from typing import get_args
 
 import pytest
 
 import bearingdyn
+from bearingdyn import _core, core
+from bearingdyn.bearing import excitation, kernel
 
 ROOT = Path(__file__).parents[2]
 CSRC = ROOT / "csrc"
@@ -44,9 +49,6 @@ ORDER: tuple[tuple[str, ...], ...] = (
 )
 ROW = {room: row for row, rooms in enumerate(ORDER) for room in rooms}
 
-# The door names, for the type checker alone, what passes through it.
-MAY_NAME_TYPES_OF_ANY_ROOM = {"core"}
-
 # Drawing is the end of the line: only these may reach it, and only inside a function.
 MAY_DRAW = {"", "cli", "demo", "study"}
 
@@ -71,7 +73,6 @@ class Import:
     target: str  # full dotted name of the module
     line: int
     late: bool  # inside a function, or for the type checker alone
-    typing: bool  # for the type checker alone
 
 
 def imports(module: str) -> Iterator[Import]:
@@ -79,10 +80,10 @@ def imports(module: str) -> Iterator[Import]:
     path = MODULES[module]
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
 
-    def visit(node: ast.AST, late: bool, typing: bool) -> Iterator[Import]:
+    def visit(node: ast.AST, late: bool) -> Iterator[Import]:
         if isinstance(node, ast.Import):
             for alias in node.names:
-                yield Import(alias.name, node.lineno, late, typing)
+                yield Import(alias.name, node.lineno, late)
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if node.level:
@@ -91,14 +92,14 @@ def imports(module: str) -> Iterator[Import]:
             for alias in node.names:
                 full = f"{base}.{alias.name}"
                 known = full in MODULES or full == "bearingdyn._core"
-                yield Import(full if known else base, node.lineno, late, typing)
+                yield Import(full if known else base, node.lineno, late)
         late |= isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            late = typing = True
+            late = True
         for child in ast.iter_child_nodes(node):
-            yield from visit(child, late, typing)
+            yield from visit(child, late)
 
-    yield from visit(ast.parse(path.read_text(encoding="utf-8")), late=False, typing=False)
+    yield from visit(ast.parse(path.read_text(encoding="utf-8")), late=False)
 
 
 def own_imports(module: str) -> list[Import]:
@@ -117,7 +118,6 @@ def test_imports_run_along_the_picture(module: str) -> None:
         f"{MODULES[module]}:{i.line}: {module} imports {i.target}"
         for i in own_imports(module)
         if i.target != "bearingdyn._core"
-        and not (i.typing and here in MAY_NAME_TYPES_OF_ANY_ROOM)
         and room(i.target) not in (here, "plot")
         and ROW.get(room(i.target), len(ORDER)) >= ROW[here]
     ]
@@ -198,15 +198,112 @@ def test_public_names_live_where_the_stub_says() -> None:
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)', re.MULTILINE)
 
 
-@pytest.mark.parametrize("path", sorted(CSRC.glob("*.[ch]")), ids=lambda p: p.name)
-def test_only_the_binding_includes_python_and_numpy(path: Path) -> None:
-    found = [h for h in INCLUDE.findall(path.read_text(encoding="utf-8")) if re.match("Python.h|numpy/", h)]
-    assert path.name == "_coremodule.c" or not found
+C_FILES = sorted(CSRC.rglob("*.[ch]"))
+BINDING = CSRC / "binding"
+OF_PYTHON = re.compile(r"Python\.h$|numpy/")
+
+
+def c_name(path: Path) -> str:
+    return path.relative_to(CSRC).as_posix()
+
+
+@pytest.mark.parametrize("path", C_FILES, ids=c_name)
+def test_only_the_header_of_the_binding_includes_python_and_numpy(path: Path) -> None:
+    included = INCLUDE.findall(path.read_text(encoding="utf-8"))
+    found = [header for header in included if OF_PYTHON.match(header)]
+    assert c_name(path) == "binding/binding.h" or not found
+    if path.parent == BINDING:
+        # Python.h decides what the C library declares, so that it comes first
+        assert path.suffix == ".h" or included[0] == "binding.h"
+    else:
+        assert not [header for header in included if "binding" in header]
 
 
 def test_build_names_every_c_file() -> None:
-    named = set(re.findall(r"'(\w+\.c)'", (CSRC / "meson.build").read_text(encoding="utf-8")))
-    assert named == {path.name for path in CSRC.glob("*.c")}
+    named = set(re.findall(r"'((?:\w+/)?\w+\.c)'", (CSRC / "meson.build").read_text(encoding="utf-8")))
+    assert named == {c_name(path) for path in C_FILES if path.suffix == ".c"}
+
+
+# ---------------------------------------------------------------- words that C owns
+
+C_WORDS = {
+    name: frozenset(value)
+    for name, value in vars(_core).items()
+    if name.isupper() and isinstance(value, tuple | MappingProxyType)
+}
+
+# Tables that name words of C for a meaning that C does not know: (module, list of words): the reason.
+MAY_NAME_WORDS = {
+    (
+        "bearingdyn.system.arrays",
+        "CHANNEL_KINDS",
+    ): "what the place of a structure can be asked for, and its units",
+    (
+        "bearingdyn.analysis.harmonic",
+        "CHANNEL_KINDS",
+    ): "the units of a response",
+    ("bearingdyn.plot.motion", "CHANNEL_KINDS"): "the units of a response",
+    ("bearingdyn.bearing.ball_bearing", "PIT_KINDS"): "how far each body turns as the balls go round",
+    ("bearingdyn.runfile", "REPORT_FIELDS"): "what files of version 1 hold, which will not change",
+}
+
+# Types that spell words out for the type checker; they must be all words of a list.
+WORD_TYPES = {"DAMPING_LAWS": kernel.Law, "PIT_KINDS": excitation.Body}
+
+
+def word_tables(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Line and list of each literal of words of C alone: three or more of a list, or two with their codes."""
+    types = {
+        part
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Subscript) and ast.unparse(node.value) == "Literal"
+        for part in ast.walk(node)
+    }
+    for node in ast.walk(tree):
+        if node in types or not isinstance(node, ast.Dict | ast.Tuple | ast.List | ast.Set):
+            continue
+        items = node.keys if isinstance(node, ast.Dict) else node.elts
+        words = [i.value for i in items if isinstance(i, ast.Constant) and isinstance(i.value, str)]
+        values = node.values if isinstance(node, ast.Dict) else []
+        codes = values and all(isinstance(v, ast.Constant) and isinstance(v.value, int) for v in values)
+        for name, known in C_WORDS.items():
+            if len(words) == len(items) >= (2 if codes else 3) and known.issuperset(words):
+                yield node.lineno, name
+
+
+def test_a_table_of_words_that_c_owns_is_seen() -> None:
+    assert {"DAMPING_LAWS", "REPORT_FIELDS", "ENERGIES", "ISAS"} <= C_WORDS.keys()
+    for text, name in (
+        ('LAWS = {"constant": 0, "table": 1, "load": 2}', "DAMPING_LAWS"),
+        ('a = ["kinetic", "elastic", "stored"]', "ENERGIES"),
+        ('f(("iterations", "refreshes", "grazing"))', "REPORT_FIELDS"),
+        ('x = {"base": 1, "avx2": 2}', "ISAS"),
+    ):
+        assert (1, name) in word_tables(ast.parse(text))
+    assert not list(
+        word_tables(ast.parse('Law = Literal["constant", "table", "load"]; r = ("inner", "outer")'))
+    )
+
+
+def test_no_table_in_python_repeats_words_that_c_owns() -> None:
+    found = {
+        (module, name): f"{path}:{line}: the words are _core.{name}"
+        for module, path in MODULES.items()
+        for line, name in word_tables(ast.parse(path.read_text(encoding="utf-8")))
+    }
+    assert not [text for key, text in found.items() if key not in MAY_NAME_WORDS]
+    assert MAY_NAME_WORDS.keys() <= found.keys(), "an exception that is no longer needed"
+
+
+@pytest.mark.parametrize("name", WORD_TYPES)
+def test_types_spell_out_the_words_of_c(name: str) -> None:
+    assert get_args(WORD_TYPES[name]) == tuple(getattr(_core, name))
+
+
+def test_a_report_has_the_fields_that_c_lists() -> None:
+    assert [(f.name, str(f.type)) for f in dataclasses.fields(core.Report)] == [
+        (name, "float" if name in ("t", "residual") else "int") for name in core.REPORT_FIELDS
+    ]
 
 
 # ---------------------------------------------------------------- C: what the compiled core contains
@@ -301,12 +398,11 @@ def core_objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Elf]:
     folder = tmp_path_factory.mktemp("core")
     objects = {}
     for source in sorted(CSRC.glob("*.c")):
-        if source.name != "_coremodule.c":
-            target = folder / f"{source.stem}.o"
-            flags = ["-std=c11", "-fPIC", "-DNDEBUG", "-ffunction-sections", "-fdata-sections"]
-            flags += ["-DBD_ISA=base", "-DBD_WIDTH=2"]  # the hot files exist once per instruction set
-            subprocess.run([compiler, *flags, "-c", str(source), "-o", str(target)], check=True)
-            objects[source.name] = Elf(target)
+        target = folder / f"{source.stem}.o"
+        flags = ["-std=c11", "-fPIC", "-DNDEBUG", "-ffunction-sections", "-fdata-sections"]
+        flags += ["-DBD_ISA=base", "-DBD_WIDTH=2"]  # the hot files exist once per instruction set
+        subprocess.run([compiler, *flags, "-c", str(source), "-o", str(target)], check=True)
+        objects[source.name] = Elf(target)
     return objects
 
 
@@ -385,6 +481,22 @@ def extension() -> Elf:
 def test_shared_object_exports_only_its_init_function(extension: Elf) -> None:
     exported = {s.name for s in extension.symbols(".dynsym") if s.is_global and s.section}
     assert exported == {"PyInit__core"}
+
+
+def test_the_binding_keeps_no_writable_global_but_numpys_table(extension: Elf) -> None:
+    """CPython writes to definitions of the module and of types, tables of methods, and keywords."""
+    if ".symtab" not in extension.sections:
+        pytest.skip("the extension is stripped")
+    of_python = re.compile(
+        r"(module|model)_(definition|methods|getset|slots)$|names(\.\d+)?$|bd_py_model_spec$"
+    )
+    own = {
+        s.name
+        for s in extension.symbols()
+        if s.is_object and WRITABLE.match(s.section) and not s.name.startswith("_") and s.name
+    }
+    rest = {name for name in own if not of_python.match(name)} - {"completed.0"}  # the C library's start-up
+    assert rest == {"bd_py_numpy", "bd_py_numpyPyArray_RUNTIME_VERSION"}
 
 
 def test_shared_object_links_only_libc(extension: Elf) -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import time
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -117,6 +120,44 @@ def child(path: Path) -> subprocess.Popen[bytes]:
     return subprocess.Popen(
         [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment
     )
+
+
+def test_a_file_of_version_1_is_read_and_not_gone_on_from(start: bd.Equilibrium, tmp_path: Path) -> None:
+    """The same run written by hand as the first format had it: counts without names, in this order."""
+    path, old = tmp_path / "run.bdrun", tmp_path / "old.bdrun"
+    new = bd.transient(start, stream=path, **ARGUMENTS)
+    data = path.read_bytes()
+    at = len(runfile.MAGIC)
+    length, _ = struct.unpack_from("<QI", data, at)
+    text = b"bearingdyn run 1\n" + data[at : at + 12 + length]
+    for chunk in runfile.read(path)[1]:
+        r = chunk.report
+        counts = (r.steps, r.iterations, r.refreshes, r.refactors, r.grazing)
+        block = struct.pack("<7Q", len(chunk.rows), chunk.state.size, *counts)
+        block += chunk.rows.tobytes() + chunk.state.tobytes()
+        text += struct.pack("<QI", len(block), zlib.crc32(block)) + block
+    old.write_bytes(text)
+    known, changes = bd.load(old), ("made_at",)
+    assert same(new, known)
+    assert {k: v for k, v in known.attrs.items() if k not in changes} == {
+        k: v for k, v in bd.load(path).attrs.items() if k not in changes
+    }
+    with pytest.raises(ValueError, match="earlier version"):
+        bd.transient(start, stream=old, **ARGUMENTS)
+
+
+def test_counters_of_a_file_go_by_name(start: bd.Equilibrium, tmp_path: Path) -> None:
+    """One that the file does not know is 0, whatever the order."""
+    path = tmp_path / "run.bdrun"
+    bd.transient(start, stream=path, **ARGUMENTS)
+    chunk = runfile.read(path)[1][3]
+    packed = chunk.packed()
+    named = json.dumps(chunk.report.counts).encode()
+    other = json.dumps({"grazing": 5, "steps": 700}).encode()
+    assert named in packed
+    changed = packed.replace(named, other.ljust(len(named)))
+    report = runfile.Chunk.unpacked(changed, len(RECORD), version=2).report
+    assert (report.steps, report.grazing, report.iterations) == (700, 5, 0)
 
 
 def killed_and_resumed(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -44,18 +43,10 @@ def run(
     writer = None if stream is None else runfile.Writer(stream, header or {})
     try:
         kept = [] if writer is None else [c.rows for c in writer.chunks]
-        report = core.Report(0, 0, 0, 0, 0, 0, core.time_of(model, state), 0.0, -1)
+        report = core.Report(t=core.time_of(model, state))
         if writer is not None and writer.chunks:
+            report = runfile.report_of(writer.chunks)
             state, start = writer.chunks[-1].state.copy(), False
-            report = replace(
-                report,
-                steps=sum(c.steps for c in writer.chunks),
-                iterations=sum(c.iterations for c in writer.chunks),
-                refreshes=sum(c.refreshes for c in writer.chunks),
-                refactors=sum(c.refactors for c in writer.chunks),
-                grazing=sum(c.grazing for c in writer.chunks),
-                t=core.time_of(model, state),
-            )
         while report.status == 0 and (report.steps < total or start):
             settling = report.steps < settle
             left = (settle if settling else total) - report.steps
@@ -71,16 +62,8 @@ def run(
             start = False
             kept.append(rows)
             if writer is not None and part.steps > 0:
-                counts = (part.steps, part.iterations, part.refreshes, part.refactors, part.grazing)
-                writer.append(runfile.Chunk(rows, state, *counts))
-            report = replace(
-                part,
-                steps=report.steps + part.steps,
-                iterations=report.iterations + part.iterations,
-                refreshes=report.refreshes + part.refreshes,
-                refactors=report.refactors + part.refactors,
-                grazing=report.grazing + part.grazing,
-            )
+                writer.append(runfile.Chunk(rows, state, part))
+            report = report + part
     finally:
         if writer is not None:
             writer.close()
@@ -102,6 +85,8 @@ def digest(system: System, scheme: core.Scheme, state: Array) -> str:
         for value in values:
             if isinstance(value, tuple | list):
                 take(*value)
+            elif isinstance(value, dict):
+                take(*value.items())
             elif isinstance(value, np.ndarray):
                 seen.update(np.ascontiguousarray(value).tobytes())
             else:
@@ -110,7 +95,7 @@ def digest(system: System, scheme: core.Scheme, state: Array) -> str:
 
     take(system.M, system.C, system.K, system.G, system.N, state)
     take([(t.L, t.material.G0, t.material.G, t.material.tau, t.material.eta0) for t in system.layers])
-    take([(core.kernel_tuple(t.kernel()), t.B) for t in system.bearings])
+    take([(t.kernel().packed(), t.B) for t in system.bearings])
     take([(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in system.loads])
     take(scheme.dt, scheme.beta, scheme.gamma, scheme.tolerance, scheme.max_iterations, scheme.audit)
     take(*scheme.profile)

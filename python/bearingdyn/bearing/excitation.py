@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Literal
 
 import numpy as np
 
+from bearingdyn import core
 from bearingdyn.checks import number, positive, require
 from bearingdyn.types import Array
 
 Body = Literal["inner", "outer", "ball"]
-BODIES = ("inner", "outer", "ball")
+BODIES = tuple(core.PIT_KINDS)
 
 
 @dataclass(frozen=True)
@@ -66,11 +67,12 @@ class Waviness:
     def rows(self, Z: int) -> list[tuple[float, ...]]:
         """(kind, order, ball, amplitude, phase) as the core takes them."""
         if self.body == "ball":
+            kind = float(core.WAVE_KINDS["ball"])
             if self.ball is not None:
                 require(self.ball <= Z, "waviness.ball", self.ball, f"the bearing has {Z} balls")
             balls = range(Z) if self.ball is None else [self.ball - 1]
-            return [(4.0, float(self.order), float(j), self.amplitude, self.phase) for j in balls]
-        kind = 2.0 * (self.body == "outer") + (self.direction == "axial")
+            return [(kind, float(self.order), float(j), self.amplitude, self.phase) for j in balls]
+        kind = float(core.WAVE_KINDS[f"{self.body}_{self.direction}"])
         return [(kind, float(self.order), 0.0, self.amplitude, self.phase)]
 
 
@@ -110,7 +112,7 @@ class Pit:
     def row(self, Z: int) -> tuple[float, ...]:
         """(kind, ball, angle, width, depth) as the core takes it."""
         require(self.ball <= Z, "defects.ball", self.ball, f"the bearing has {Z} balls")
-        return (float(BODIES.index(self.body)), self.ball - 1.0, self.angle, self.width, self.depth)
+        return (float(core.PIT_KINDS[self.body]), self.ball - 1.0, self.angle, self.width, self.depth)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +136,10 @@ class Imperfections:
     def none(self) -> bool:
         """Whether the bearing is perfect."""
         return not (len(self.waves) or len(self.pits) or len(self.oversize))
+
+    def packed(self) -> dict[str, object]:
+        """The fields by name, as the core parses them."""
+        return {own.name: getattr(self, own.name) for own in fields(self)}
 
 
 def checked(

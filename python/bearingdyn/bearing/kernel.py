@@ -146,3 +146,30 @@ class BearingKernel:
     """Azimuth of the first ball at the start, rad."""
     imperfections: Imperfections = field(default_factory=Imperfections)
     """Waves, pits and unequal balls; none by default."""
+
+    def packed(self) -> dict[str, object]:
+        """The fields by name, as the core parses them (bd_bearing_data).
+
+        Raises ValueError unless all radial coefficients come before the axial ones.
+        """
+        axial = np.asarray(self.axial)
+        ordered = not np.any(np.diff(axial) < 0)
+        require(ordered, "axial", self.axial, "list all radial coefficients (0) before the axial ones (1)")
+        return {
+            "n_balls": self.Z,
+            "order": self.order,
+            "sine": self.sine,
+            "n_radial": int(np.count_nonzero(axial == 0)),
+            "x0": self.x0,
+            "y0": self.y0,
+            "A": self.A,
+            "e0": self.e0,
+            "kappa": self.kappa,
+            "h0": self.h0,
+            "law": self.damping_law,
+            "c": self.damping_c,
+            "table": np.asarray(self.damping_table, dtype=np.float64).reshape(-1, 2),
+            "cage_ratio": self.cage_ratio,
+            "angle0": self.angle0,
+            "imperfections": self.imperfections.packed(),
+        }

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn import runfile
-from bearingdyn.core import Report
 from bearingdyn.results.datasets import march_dataset, stamp
 
 if TYPE_CHECKING:
@@ -101,20 +100,9 @@ def _run_dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
     if not chunks:
         raise ValueError(f"{os.fspath(path)} holds no finished chunk yet")
     state = chunks[-1].state
-    report = Report(
-        status=0,
-        steps=sum(c.steps for c in chunks),
-        iterations=sum(c.iterations for c in chunks),
-        refreshes=sum(c.refreshes for c in chunks),
-        refactors=sum(c.refactors for c in chunks),
-        grazing=sum(c.grazing for c in chunks),
-        t=float(state[0] + state[1] * state[2]),
-        residual=0.0,
-        bearing=-1,
-    )
     rows = np.concatenate([c.rows for c in chunks])
     written = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
-    return march_dataset(facts, rows, state, report, {"made_at": stamp(written)})
+    return march_dataset(facts, rows, state, runfile.report_of(chunks), {"made_at": stamp(written)})
 
 
 def _plain(data: Any) -> Any:

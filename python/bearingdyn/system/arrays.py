@@ -104,7 +104,7 @@ class SpringTerm:
 
 @dataclass(frozen=True, eq=False)
 class LoadTerm:
-    """One load: kind as in bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one.
+    """One load: kind one of bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one.
 
     part: the part it acts on, if one; own_cos, own_sin: the columns in the part's coordinates.
     """
@@ -296,8 +296,8 @@ class System:
             K,
             self.N,
             layers,
-            [(core.kernel_tuple(t.kernel()), t.B) for t in self.bearings],
-            [(core.LOAD_KINDS[t.kind], t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
+            [(t.kernel().packed(), t.B) for t in self.bearings],
+            [(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels,
         )
 
