@@ -41,9 +41,9 @@ bool bd_scheme_valid(const bd_scheme *scheme)
            scheme->speed.n >= 1 && scheme->tolerance > 0.0 && scheme->max_iterations >= 1;
 }
 
-/* Largest accepted |A - sign A^T| over the largest |A|. What is assembled is symmetric to 1e-15 and what is
- * reduced, T^T A T, to some 1e-12 where T's columns are large; a matrix without the symmetry, or with an entry on
- * one side alone, misses it by about 1. */
+/* Largest accepted |A - sign A^T| over the largest |A|. Of what is assembled and reduced, T^T A T, 2e-15 was the most
+ * that was seen, and matrices read from files may have ten digits; a matrix that lacks the symmetry, or has an entry
+ * on one side alone, misses it by about 1. */
 static const double symmetry = 1e-8;
 
 /* Is A (n x n) symmetric (sign 1) or skew (-1)? Tiles are compared, so that A^T too is read along its rows. */

@@ -12,7 +12,7 @@
 
 /* What the layers and the bearings see of the state: y_rate = L^T v, and g at B x, B v, as if it had always
  * been so. */
-static void observe(const bd_model *model, bd_work *work, bd_state *state)
+static void observe_state(const bd_model *model, bd_work *work, bd_state *state)
 {
     const size_t m = (size_t)model->coefs;
     memset(work->z, 0, m * sizeof *work->z);
@@ -117,7 +117,7 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
     double *force = work->loss; /* free here */
     work->turn = bd_turn_at(&work->profile, t);
     bd_load_factors(model, work, t);
-    observe(model, work, &state);
+    observe_state(model, work, &state);
     residual(model, work, &state, force);
     status = solve_mass(model, lapack, force, state.a);
     if (status == BD_OK && !all_finite(state.a, model->n_padded))

@@ -2,6 +2,7 @@
 #include "balls.h"
 #include "dense.h"
 #include "maxwell.h"
+#include "work.h"
 
 /* Predictors, trial branch stresses and the acceleration without the bearings. */
 static void predict(const bd_model *model, bd_work *work, const bd_state *state)

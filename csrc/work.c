@@ -277,7 +277,7 @@ static void place_block(const bd_model *model, int b, bd_work *work, const block
 }
 
 /* S^-1 times all right-hand sides, block by block. */
-static bd_status solve_blocks(const bd_model *model, const bd_lapack *lapack, bd_work *work)
+static bd_status factor_blocks(const bd_model *model, const bd_lapack *lapack, bd_work *work)
 {
     const size_t largest = (size_t)model->largest;
     size_t widest = 0;
@@ -340,7 +340,7 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
             work->weights[layer->branch + i] =
                 bd_maxwell_weights(scheme->dt, layer->tau[i], layer->modulus[i]);
     }
-    status = solve_blocks(model, lapack, work);
+    status = factor_blocks(model, lapack, work);
     if (status == BD_OK)
         join_bearings(model, work);
     return status;
