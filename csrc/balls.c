@@ -6,6 +6,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "bearing.h"
 #include "ehl.h"
 #include "lanes.h"
 

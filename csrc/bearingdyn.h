@@ -51,7 +51,8 @@
     X(BD_SINGULAR_MASS, -5, "the mass matrix is singular")                                         \
     X(BD_NO_CONVERGENCE, -6, "Newton's iteration on the bearing forces did not converge")          \
     X(BD_NOT_FINITE, -7, "the response is no longer finite")                                       \
-    X(BD_SINGULAR_DYNAMIC, -8, "the dynamic stiffness is singular")
+    X(BD_SINGULAR_DYNAMIC, -8, "the dynamic stiffness is singular")                                \
+    X(BD_NOT_SYMMETRIC, -9, "M, C and K must be symmetric, G and N skew-symmetric")
 
 #define BD_STATUS_ENUM(name, value, text) name = (value),
 typedef enum bd_status { BD_STATUS_LIST(BD_STATUS_ENUM) } bd_status;
@@ -126,11 +127,6 @@ typedef struct bd_contact {
 } bd_contact;
 
 /* ---------------------------------------------------------------- ball bearing (bearing.c) */
-
-/* How the shaft turns at one time. */
-typedef struct bd_turn {
-    double speed, rate, angle; /* rad/s, rad/s^2, rad */
-} bd_turn;
 
 #define BD_WAVE_LIST(X)                                                                            \
     X(BD_WAVE_INNER_RADIAL, "inner_radial") /* of the inner race, which turns with the shaft */    \
@@ -238,7 +234,9 @@ typedef struct bd_channel_data {
 
 typedef struct bd_model_data {
     int n, n_layers, n_bearings, n_loads, n_channels;
-    const double *M, *C, *G, *K, *N; /* (n x n) row-major */
+    /* (n x n) row-major; M, C, K symmetric and G, N skew to 1e-8 of a matrix's largest entry, else
+     * BD_NOT_SYMMETRIC */
+    const double *M, *C, *G, *K, *N;
     const bd_layer_data *layers;
     const bd_bearing_data *bearings;
     const double *const *B; /* per bearing (n_coefs x n) row-major */
@@ -253,6 +251,9 @@ typedef struct bd_model bd_model;
  * Notes:    coordinates that neither M, C, G, K, N nor a layer couples fall into blocks, found here;
  *           bearings couple blocks only through their few coefficients. */
 bd_model *bd_model_create(const bd_model_data *data, bd_status *status);
+
+/* What the model keeps, in bytes. */
+size_t bd_model_bytes(const bd_model *model);
 
 /* Safe on NULL. */
 void bd_model_free(bd_model *model);
@@ -271,6 +272,11 @@ typedef struct bd_speed {
     int n;
     const double *time, *value; /* (n) */
 } bd_speed;
+
+/* How the shaft turns at one time. */
+typedef struct bd_turn {
+    double speed, rate, angle; /* rad/s, rad/s^2, rad */
+} bd_turn;
 
 typedef struct bd_scheme {
     double dt, beta, gamma; /* Newmark; 1/4 and 1/2 conserve energy */
@@ -341,11 +347,20 @@ typedef struct bd_report {
 /* A state is a flat array of doubles: exactly what resumes a march bit for bit. */
 size_t bd_state_size(const bd_model *model);
 
+/* When a state is, and what its march keeps from step to step. */
+typedef struct bd_clock {
+    double origin; /* of time; the state's own time is origin + steps dt */
+    long long steps;
+    double dt;
+    double reference;   /* speed that S is factored at */
+    bool inverse_set;   /* whether Newton's frozen inverse is one */
+    bool reference_set; /* whether the reference speed is one */
+} bd_clock;
+
 /* Views of a state's parts; vectors are padded and in the model's block order. */
 typedef struct bd_state {
-    double *
-        clock; /* (6) time origin, steps since, dt of those steps, 1 if Newton's inverse is set, speed
-                    * that S is factored at, 1 if that is set */
+    double *flat;
+    bd_clock clock;    /* a copy; in the array it lies as doubles */
     double *x, *v, *a; /* (n_padded) */
     double *y_rate;    /* (rank_padded) layer rates L^T v */
     double *stress;    /* branch stresses, layer by layer, branch by branch */
@@ -381,7 +396,7 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
 double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double *flat, bool anew);
 
 /* The acceleration that satisfies (1) at the state's own displacement, velocity and branch stress.
- * Notes:    before bd_prepare, whose operators it overwrites; without BD_OK the acceleration is void */
+ * Notes:    before bd_prepare; without BD_OK the acceleration is void */
 bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                    bd_work *work, double *flat);
 

@@ -34,6 +34,33 @@ static bool nonnegative(const double *values, int n)
     return true;
 }
 
+bool bd_scheme_valid(const bd_scheme *scheme)
+{
+    return bd_scheme_fault(scheme).field == NULL;
+}
+
+/* Largest accepted |A - sign A^T| over the largest |A|. Of what is assembled and reduced, T^T A T, 2e-15 was the most
+ * that was seen, and matrices read from files may have ten digits; a matrix that lacks the symmetry, or has an entry
+ * on one side alone, misses it by about 1. */
+static const double symmetry = 1e-8;
+
+/* Is A (n x n) symmetric (sign 1) or skew (-1)? Tiles are compared, so that A^T too is read along its rows. */
+static bool mirrored(const double *A, size_t n, double sign)
+{
+    enum { TILE = 32 };
+    double largest = 0.0, difference = 0.0;
+    for (size_t ij = 0; ij < n * n; ij++)
+        largest = fabs(A[ij]) > largest ? fabs(A[ij]) : largest;
+    for (size_t top = 0; top < n; top += TILE)
+        for (size_t left = 0; left <= top; left += TILE)
+            for (size_t i = top; i < n && i < top + TILE; i++)
+                for (size_t j = left; j <= i && j < left + TILE; j++) {
+                    const double apart = fabs(A[i * n + j] - sign * A[j * n + i]);
+                    difference = apart > difference ? apart : difference;
+                }
+    return difference <= symmetry * largest;
+}
+
 bd_status bd_bearing_check(const bd_bearing_data *bearing)
 {
     const bd_contact *contact = &bearing->contact;
@@ -119,6 +146,9 @@ bd_status bd_model_check(const bd_model_data *data)
     if (!all_finite(data->M, n * n) || !all_finite(data->C, n * n) || !all_finite(data->G, n * n) ||
         !all_finite(data->K, n * n) || !all_finite(data->N, n * n))
         return BD_BAD_VALUE;
+    if (!mirrored(data->M, n, 1.0) || !mirrored(data->C, n, 1.0) || !mirrored(data->G, n, -1.0) ||
+        !mirrored(data->K, n, 1.0) || !mirrored(data->N, n, -1.0))
+        return BD_NOT_SYMMETRIC;
     for (int l = 0; l < data->n_layers; l++) {
         const bd_layer_data *layer = &data->layers[l];
         if (layer->rank < 1 || layer->n_branches < 0)

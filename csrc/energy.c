@@ -1,9 +1,9 @@
 /* The audit: where the energy is, and which power changes it. Written from the physics of each element, not from
  * the scheme, so that a mistake in the march does not cancel here. */
+#include "energy.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "work.h"
 
 /* half x^T A x of a block-diagonal matrix, and A x into `product`. */
 static double quadratic(const bd_model *model, const double *A, const double *x, double *product)
@@ -53,27 +53,25 @@ double bd_branch_loss(const bd_layer *layer, const double *stress)
     return loss;
 }
 
-void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state, double t,
-                     bd_energy *energy)
+void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state, bd_energy *energy)
 {
     double load = 0.0, turning = 0.0, branch = 0.0, contact = 0.0, stored = 0.0, indentation = 0.0;
 
-    energy->kinetic = quadratic(model, model->M, state->v, work->loss);
-    energy->elastic = quadratic(model, model->K, state->x, work->loss);
-    double linear = 2.0 * quadratic(model, model->C, state->v, work->loss);
+    energy->kinetic = quadratic(model, model->matrices.M, state->v, work->loss);
+    energy->elastic = quadratic(model, model->matrices.K, state->x, work->loss);
+    double linear = 2.0 * quadratic(model, model->matrices.C, state->v, work->loss);
 
     /* the circulatory force -speed N x: the shaft turns damping material through its own deflection; and
      * the gyroscopic force rate G x of a changing speed */
-    quadratic(model, model->N, state->x, work->loss);
+    quadratic(model, model->matrices.N, state->x, work->loss);
     for (int i = 0; i < model->n_padded; i++)
         turning -= work->turn.speed * work->loss[i] * state->v[i];
     if (work->turn.rate != 0.0) {
-        quadratic(model, model->G, state->x, work->loss);
+        quadratic(model, model->matrices.G, state->x, work->loss);
         for (int i = 0; i < model->n_padded; i++)
             turning -= work->turn.rate * work->loss[i] * state->v[i];
     }
 
-    bd_load_factors(model, work, t);
     for (int k = 0; k < model->n_loads; k++)
         for (int i = 0; i < model->n_padded; i++)
             load += (work->load_factor[2 * k] * model->loads[k].p_cos[i] +
@@ -104,7 +102,7 @@ void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state
     memcpy(energy->power, (double[]){load, turning, linear, branch, contact}, sizeof energy->power);
 }
 
-void bd_energy_step(const bd_model *model, bd_work *work, const bd_state *state, double t)
+void bd_energy_step(const bd_model *model, bd_work *work, const bd_state *state)
 {
     bd_energy *energy = state->energy;
     double *works[] = {&energy->load, &energy->turning, &energy->linear, &energy->branch,
@@ -113,7 +111,7 @@ void bd_energy_step(const bd_model *model, bd_work *work, const bd_state *state,
     double before[5];
 
     memcpy(before, energy->power, sizeof before);
-    bd_energy_rates(model, work, state, t, energy);
+    bd_energy_rates(model, work, state, energy);
     for (int i = 0; i < 5; i++)
         *works[i] += half * (before[i] + energy->power[i]);
     energy->throughput +=

@@ -137,15 +137,13 @@ static void form(const bd_model *model, const bd_harmonic_data *data, const bd_h
 {
     const size_t n = (size_t)block->n;
     const double omega = data->omega[index];
-    const double *M = model->M + block->matrix, *C = model->C + block->matrix;
-    const double *G = model->G + block->matrix, *K = model->K + block->matrix;
-    const double *N = model->N + block->matrix;
+    const bd_matrices of = bd_matrices_of(model, block);
 
     for (size_t j = 0; j < n; j++)
         for (size_t i = 0; i < n; i++) {
             const size_t ij = i * n + j;
-            double re = K[ij] + data->speed * N[ij] - omega * omega * M[ij];
-            double im = omega * (C[ij] + data->speed * G[ij]);
+            double re = of.K[ij] + data->speed * of.N[ij] - omega * omega * of.M[ij];
+            double im = omega * (of.C[ij] + data->speed * of.G[ij]);
             D[(place + j) * stride + place + i] = complex_of(re, im);
         }
     for (int l = block->layer; l < block->layer + block->n_layers; l++) {

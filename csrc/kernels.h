@@ -6,8 +6,7 @@
 #ifndef BD_KERNELS_H
 #define BD_KERNELS_H
 
-#include "model.h"
-#include "work.h"
+#include "bearingdyn.h"
 
 #define BD_JOIN_(a, b) a##_##b
 #define BD_JOIN(a, b) BD_JOIN_(a, b)
@@ -15,7 +14,7 @@
 #define BD_NAMED(name) BD_JOIN(name, BD_ISA)
 #endif
 
-struct bd_kernels {
+typedef struct bd_kernels {
     /* balls.c: basis functions at the first ball's azimuth psi (rad) */
     void (*turn)(const bd_bearing *bearing, bd_bearing_work *work, double psi);
     /* balls.c: forces at coefficients z, z_rate (padded): g = sum F v; ball quantities stay in work */
@@ -38,7 +37,7 @@ struct bd_kernels {
     /* step.c: completes the acceleration and makes the trial state the state.
      * Returned: 0, or nonzero where it would not be finite; the state is then as it was */
     int (*commit)(const bd_model *model, bd_work *work, bd_state *state);
-};
+} bd_kernels;
 
 /* The kernels of an instruction set, or NULL where this build or machine lacks it. */
 const bd_kernels *bd_kernels_for(bd_isa isa);

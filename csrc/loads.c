@@ -1,7 +1,7 @@
 /* The loads at one time: what multiplies the columns that were solved for them beforehand. */
-#include <math.h>
+#include "loads.h"
 
-#include "work.h"
+#include <math.h>
 
 static double sampled(const bd_load *load, double t)
 {

@@ -1,8 +1,6 @@
 #include "model.h"
 
-#include <math.h>
 #include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +16,7 @@ const char *bd_status_text(bd_status status)
     return "unknown status";
 }
 
-/* ---------------------------------------------------------------- blocks */
+/* ---------------------------------------------------------------- partition */
 
 static int root_of(int *parent, int i)
 {
@@ -38,8 +36,27 @@ static void join(int *parent, int i, int j)
         parent[a] = b;
 }
 
+/* Whether a layer moves with a coordinate. */
+static bool touches(const bd_layer_data *layer, int i)
+{
+    const double *row = layer->L + (size_t)i * (size_t)layer->rank;
+    for (int r = 0; r < layer->rank; r++)
+        if (row[r] != 0.0)
+            return true;
+    return false;
+}
+
+/* The first coordinate that a layer moves with, or -1. */
+static int first_touched(const bd_model_data *data, const bd_layer_data *layer)
+{
+    for (int i = 0; i < data->n; i++)
+        if (touches(layer, i))
+            return i;
+    return -1;
+}
+
 /* parent[i] becomes the lowest coordinate that the linear structure couples with i. */
-static void find_blocks(const bd_model_data *data, int *parent)
+static void find_leads(const bd_model_data *data, int *parent)
 {
     size_t n = (size_t)data->n;
     for (int i = 0; i < data->n; i++)
@@ -53,17 +70,84 @@ static void find_blocks(const bd_model_data *data, int *parent)
         }
     for (int l = 0; l < data->n_layers; l++) {
         const bd_layer_data *layer = &data->layers[l];
-        int first = -1;
-        for (int i = 0; i < data->n; i++)
-            for (int r = 0; r < layer->rank; r++)
-                if (layer->L[(size_t)i * (size_t)layer->rank + (size_t)r] != 0.0) {
-                    if (first < 0)
-                        first = i;
-                    join(parent, first, i);
-                }
+        const int first = first_touched(data, layer);
+        for (int i = first; first >= 0 && i < data->n; i++)
+            if (touches(layer, i))
+                join(parent, first, i);
     }
     for (int i = 0; i < data->n; i++)
         parent[i] = root_of(parent, i);
+}
+
+/* Which coordinates and layers lie in which block, and where: all that the layout of a model depends on. */
+typedef struct partition {
+    int n_blocks, n_padded, largest;
+    size_t squares;    /* doubles of one matrix, block by block */
+    int *order, *slot; /* (n) as in bd_model */
+    bd_block *blocks;  /* (n_blocks) */
+    int *source;       /* (n_layers) the caller's index of a layer in block order */
+    void *memory;
+} partition;
+
+/* The blocks of coordinates, in the order of their lowest ones. */
+static void place_coordinates(partition *parts, const bd_model_data *data, const int *lead_of)
+{
+    int place = 0;
+    for (int lead = 0; lead < data->n; lead++) {
+        if (lead_of[lead] != lead)
+            continue;
+        bd_block block = {.first = place, .offset = parts->n_padded, .matrix = parts->squares};
+        for (int i = lead; i < data->n; i++)
+            if (lead_of[i] == lead) {
+                parts->order[place++] = i;
+                parts->slot[i] = block.offset + block.n++;
+            }
+        block.padded = BD_PADDED(block.n);
+        parts->largest = block.n > parts->largest ? block.n : parts->largest;
+        parts->squares += (size_t)block.n * (size_t)block.n;
+        parts->n_padded += block.padded;
+        parts->blocks[parts->n_blocks++] = block;
+    }
+}
+
+/* The layers of each block, in the caller's order. */
+static void place_layers(partition *parts, const bd_model_data *data, const int *lead_of,
+                         int *lead_of_layer)
+{
+    int place = 0;
+    for (int l = 0; l < data->n_layers; l++) {
+        const int first = first_touched(data, &data->layers[l]);
+        lead_of_layer[l] =
+            first < 0 ? 0 : lead_of[first]; /* one that does nothing lies in the first */
+    }
+    for (int b = 0; b < parts->n_blocks; b++) {
+        bd_block *block = &parts->blocks[b];
+        block->layer = place;
+        for (int l = 0; l < data->n_layers; l++)
+            if (lead_of_layer[l] == parts->order[block->first])
+                parts->source[place++] = l;
+        block->n_layers = place - block->layer;
+    }
+}
+
+/* Returned: whether there was memory; parts->memory is to be freed. */
+static bool find_partition(const bd_model_data *data, partition *parts)
+{
+    const size_t n = (size_t)data->n, n_layers = (size_t)data->n_layers;
+    *parts =
+        (partition){.memory = malloc(n * sizeof(bd_block) + (3 * n + 2 * n_layers) * sizeof(int))};
+    if (!parts->memory)
+        return false;
+    parts->blocks = parts->memory;
+    parts->order = (int *)(parts->blocks + n);
+    parts->slot = parts->order + n;
+    parts->source = parts->slot + n;
+    int *lead_of = parts->source + n_layers, *lead_of_layer = lead_of + n;
+
+    find_leads(data, lead_of);
+    place_coordinates(parts, data, lead_of);
+    place_layers(parts, data, lead_of, lead_of_layer);
+    return true;
 }
 
 /* ---------------------------------------------------------------- one slab */
@@ -83,23 +167,24 @@ static void *carve(arena *a, size_t count, size_t size)
     return piece;
 }
 
-static double *carve_doubles(arena *a, size_t count)
+/* A copy; where `from` is NULL the piece stays zero. */
+static void *copy(arena *a, const void *from, size_t count, size_t size)
 {
-    return carve(a, count, sizeof(double));
-}
-
-static double *copy_doubles(arena *a, size_t count, const double *from)
-{
-    double *to = carve_doubles(a, count);
-    if (to && count > 0)
-        memcpy(to, from, count * sizeof *to);
+    void *to = carve(a, count, size);
+    if (to && from && count > 0)
+        memcpy(to, from, count * size);
     return to;
 }
 
-/* A vector (n) of the caller, padded and in block order. */
+static double *copy_doubles(arena *a, const double *from, size_t count)
+{
+    return copy(a, from, count, sizeof *from);
+}
+
+/* A vector (n) of the caller, padded and in block order; NULL is a vector of zeros. */
 static double *copy_vector(arena *a, const bd_model *model, const double *from)
 {
-    double *to = carve_doubles(a, (size_t)model->n_padded);
+    double *to = carve(a, (size_t)model->n_padded, sizeof *to);
     if (to && from)
         for (int i = 0; i < model->n; i++)
             to[model->slot[i]] = from[i];
@@ -107,219 +192,170 @@ static double *copy_vector(arena *a, const bd_model *model, const double *from)
 }
 
 /* The caller's (n x n) matrix, block by block. */
-static const double *copy_matrix(arena *a, const bd_model *model, size_t total, const double *from)
+static double *copy_matrix(arena *a, const bd_model *model, const partition *parts,
+                           const double *from)
 {
-    double *to = carve_doubles(a, total);
-    if (to)
-        for (int b = 0; b < model->n_blocks; b++) {
-            const bd_block *block = &model->blocks[b];
-            const int *index = model->order + block->first;
-            for (int i = 0; i < block->n; i++)
-                for (int j = 0; j < block->n; j++)
-                    to[block->matrix + (size_t)i * (size_t)block->n + (size_t)j] =
-                        from[(size_t)index[i] * (size_t)model->n + (size_t)index[j]];
-        }
-    return to;
-}
-
-/* Which coordinates lie in which block, and where: returns the doubles of one block matrix. */
-static size_t layout_blocks(arena *a, bd_model *model, const int *parent)
-{
-    size_t n = (size_t)model->n, total = 0;
-    int *order = carve(a, n, sizeof *order), *slot = carve(a, n, sizeof *slot);
-    bd_block *blocks = carve(a, n, sizeof *blocks);
-    int place = 0;
-
-    model->n_blocks = 0;
-    model->n_padded = 0;
-    for (int lead = 0; lead < model->n; lead++) {
-        if (parent[lead] != lead)
-            continue;
-        bd_block block = {.first = place, .offset = model->n_padded, .matrix = total};
-        for (int i = lead; i < model->n; i++) {
-            if (parent[i] != lead)
-                continue;
-            if (order) {
-                order[place] = i;
-                slot[i] = block.offset + block.n;
-            }
-            place++;
-            block.n++;
-        }
-        block.padded = BD_PADDED(block.n);
-        total += (size_t)block.n * (size_t)block.n;
-        model->n_padded += block.padded;
-        if (blocks)
-            blocks[model->n_blocks] = block;
-        model->n_blocks++;
+    double *matrix = carve(a, parts->squares, sizeof *matrix), *to = matrix;
+    for (int b = 0; matrix && b < parts->n_blocks; b++) {
+        const int *index = parts->order + parts->blocks[b].first, n = parts->blocks[b].n;
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                *to++ = from[(size_t)index[i] * (size_t)model->n + (size_t)index[j]];
     }
-    model->order = order;
-    model->slot = slot;
-    model->blocks = blocks;
-    return total;
+    return matrix;
 }
 
-static void layout_layers(arena *a, bd_model *model, const bd_model_data *data, const int *parent)
+/* A block's rows of a layer's factor, each padded. */
+static double *copy_factor(arena *a, const partition *parts, const bd_block *block,
+                           const bd_layer_data *from)
+{
+    const size_t rank = (size_t)from->rank, padded = (size_t)BD_PADDED(from->rank);
+    double *L = carve(a, (size_t)block->n * padded, sizeof *L);
+    for (int j = 0; L && j < block->n; j++)
+        memcpy(L + (size_t)j * padded, from->L + (size_t)parts->order[block->first + j] * rank,
+               rank * sizeof *L);
+    return L;
+}
+
+static void layout_layers(arena *a, bd_model *model, const bd_model_data *data,
+                          const partition *parts)
 {
     bd_layer *layers = carve(a, (size_t)data->n_layers, sizeof *layers);
-    bd_block *blocks = (bd_block *)(uintptr_t)model->blocks;
-    int place = 0;
-
-    model->n_layers = data->n_layers;
-    model->ranks = 0;
-    model->n_stress = 0;
-    for (int b = 0; b < model->n_blocks; b++) {
-        int lead = blocks ? model->order[blocks[b].first] : -1, first = place;
-        for (int l = 0; l < data->n_layers; l++) {
-            const bd_layer_data *from = &data->layers[l];
-            /* while counting nothing is known of blocks: each layer is counted with the first */
-            int home = 0;
-            if (blocks) {
-                home = -1;
-                for (int i = 0; i < data->n && home < 0; i++)
-                    for (int r = 0; r < from->rank; r++)
-                        if (from->L[(size_t)i * (size_t)from->rank + (size_t)r] != 0.0) {
-                            home = parent[i];
-                            break;
-                        }
-                if (home < 0)
-                    home = model->order[blocks[0].first]; /* a layer that does nothing */
-            }
-            if (blocks ? home != lead : b != 0)
-                continue;
-            int rows = blocks ? blocks[b].n : data->n, padded = BD_PADDED(from->rank);
-            double *L = carve_doubles(a, (size_t)rows * (size_t)padded);
-            double *modulus = copy_doubles(a, (size_t)from->n_branches, from->modulus);
-            double *tau = copy_doubles(a, (size_t)from->n_branches, from->tau);
-            if (blocks) {
-                for (int j = 0; j < rows; j++)
-                    memcpy(L + (size_t)j * (size_t)padded,
-                           from->L + (size_t)model->order[blocks[b].first + j] * (size_t)from->rank,
-                           (size_t)from->rank * sizeof *L);
-                layers[place] = (bd_layer){
-                    .source = l,
-                    .block = b,
-                    .rank = from->rank,
-                    .padded = padded,
-                    .offset = model->ranks,
-                    .n_branches = from->n_branches,
-                    .stress = model->n_stress,
-                    .L = L,
-                    .modulus = modulus,
-                    .tau = tau,
-                };
-            }
-            place++;
-            model->ranks += padded;
-            model->n_stress += (size_t)padded * (size_t)from->n_branches;
-        }
-        if (blocks) {
-            blocks[b].layer = first;
-            blocks[b].n_layers = place - first;
+    for (int b = 0; b < parts->n_blocks; b++) {
+        const bd_block *block = &parts->blocks[b];
+        for (int l = block->layer; l < block->layer + block->n_layers; l++) {
+            const bd_layer_data *from = &data->layers[parts->source[l]];
+            const bd_layer layer = {
+                .source = parts->source[l],
+                .block = b,
+                .rank = from->rank,
+                .padded = BD_PADDED(from->rank),
+                .offset = model->ranks,
+                .branch = model->branches,
+                .n_branches = from->n_branches,
+                .stress = model->n_stress,
+                .L = copy_factor(a, parts, block, from),
+                .modulus = copy_doubles(a, from->modulus, (size_t)from->n_branches),
+                .tau = copy_doubles(a, from->tau, (size_t)from->n_branches),
+            };
+            if (layers)
+                layers[l] = layer;
+            model->ranks += layer.padded;
+            model->branches += layer.n_branches;
+            model->n_stress += (size_t)layer.padded * (size_t)layer.n_branches;
         }
     }
+    model->n_layers = data->n_layers;
     model->layers = layers;
+}
+
+/* A bearing's description with arrays of its own. */
+static bd_bearing_data copy_bearing(arena *a, const bd_bearing_data *from)
+{
+    const size_t n_coefs = (size_t)from->n_coefs;
+    const bd_contact *contact = &from->contact;
+    const size_t n_table = contact->law == BD_DAMPING_TABLE ? (size_t)contact->n_table : 0;
+    bd_bearing_data own = *from;
+    own.order = copy(a, from->order, n_coefs, sizeof *from->order);
+    own.sine = copy(a, from->sine, n_coefs, sizeof *from->sine);
+    own.contact.table_delta = copy_doubles(a, contact->table_delta, n_table);
+    own.contact.table_c = copy_doubles(a, contact->table_c, n_table);
+    own.waves = copy(a, from->waves, (size_t)from->n_waves, sizeof *from->waves);
+    own.pits = copy(a, from->pits, (size_t)from->n_pits, sizeof *from->pits);
+    if (from->oversize)
+        own.oversize = copy_doubles(a, from->oversize, (size_t)from->n_balls);
+    return own;
+}
+
+/* Where a bearing's coefficients go, and its columns of B. */
+static void fill_coefs(const bd_model *model, const double *rows, int slot, int n_coefs,
+                       int *coef_slot, double *B)
+{
+    for (int k = 0; k < n_coefs; k++) {
+        coef_slot[k] = slot + k;
+        for (int i = 0; i < model->n; i++)
+            B[(size_t)model->slot[i] * (size_t)model->coefs + (size_t)(slot + k)] =
+                rows[(size_t)k * (size_t)model->n + (size_t)i];
+    }
+}
+
+/* Whether any coordinate of a block is among those that n_coefs columns of B, from `slot` on, read. */
+static bool sees(const bd_model *model, int slot, int n_coefs, const bd_block *block)
+{
+    for (int i = block->offset; i < block->offset + block->n; i++)
+        for (int k = slot; k < slot + n_coefs; k++)
+            if (model->B[(size_t)i * (size_t)model->coefs + (size_t)k] != 0.0)
+                return true;
+    return false;
 }
 
 static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data)
 {
-    bd_bearing *bearings = carve(a, (size_t)data->n_bearings, sizeof *bearings);
-    int *bearing_slot = carve(a, (size_t)data->n_bearings, sizeof *bearing_slot);
-    int place = 0;
-
-    model->n_bearings = data->n_bearings;
-    model->n_coefs = 0;
-    model->coefs = 0;
+    const size_t n_bearings = (size_t)data->n_bearings;
     for (int b = 0; b < data->n_bearings; b++) {
         model->n_coefs += data->bearings[b].n_coefs;
-        if (bearing_slot)
-            bearing_slot[b] = model->coefs;
         model->coefs += BD_PADDED(data->bearings[b].n_coefs);
     }
+    bd_bearing *bearings = carve(a, n_bearings, sizeof *bearings);
+    int *bearing_slot = carve(a, n_bearings, sizeof *bearing_slot);
     int *coef_slot = carve(a, (size_t)model->n_coefs, sizeof *coef_slot);
-    double *B = carve_doubles(a, (size_t)model->n_padded * (size_t)model->coefs);
-    /* blocks are as many as coordinates at most, which is all that is known while counting */
-    int *touched = carve(a, (size_t)data->n_bearings * (size_t)data->n, sizeof *touched);
-
-    for (int b = 0; b < data->n_bearings; b++) {
-        bd_bearing_data own = data->bearings[b];
-        size_t n_coefs = (size_t)own.n_coefs;
-        int *order = carve(a, n_coefs, sizeof *order), *sine = carve(a, n_coefs, sizeof *sine);
-        double *constants = carve_doubles(a, bd_bearing_constants(&own));
-        size_t n_table = own.contact.law == BD_DAMPING_TABLE ? (size_t)own.contact.n_table : 0;
-        double *table_delta = copy_doubles(a, n_table, own.contact.table_delta);
-        double *table_c = copy_doubles(a, n_table, own.contact.table_c);
-        bd_wave *waves = carve(a, (size_t)own.n_waves, sizeof *waves);
-        bd_pit *pits = carve(a, (size_t)own.n_pits, sizeof *pits);
-        double *oversize = copy_doubles(a, own.oversize ? (size_t)own.n_balls : 0, own.oversize);
-        if (!bearings)
-            continue;
-        memcpy(order, own.order, n_coefs * sizeof *order);
-        memcpy(sine, own.sine, n_coefs * sizeof *sine);
-        if (own.n_waves > 0)
-            memcpy(waves, own.waves, (size_t)own.n_waves * sizeof *waves);
-        if (own.n_pits > 0)
-            memcpy(pits, own.pits, (size_t)own.n_pits * sizeof *pits);
-        own.waves = waves;
-        own.pits = pits;
-        own.oversize = own.oversize ? oversize : NULL;
-        own.order = order;
-        own.sine = sine;
-        own.contact.table_delta = table_delta;
-        own.contact.table_c = table_c;
-        bd_bearing_setup(&bearings[b], &own, constants);
-        for (int k = 0; k < own.n_coefs; k++) {
-            coef_slot[place++] = bearing_slot[b] + k;
-            for (int i = 0; i < data->n; i++)
-                B[(size_t)model->slot[i] * (size_t)model->coefs + (size_t)(bearing_slot[b] + k)] =
-                    data->B[b][(size_t)k * (size_t)data->n + (size_t)i];
-        }
-    }
-    for (int b = 0; bearings && b < data->n_bearings; b++)
-        for (int c = 0; c < model->n_blocks; c++)
-            for (int i = 0; i < model->blocks[c].n; i++)
-                for (int k = 0; k < bearings[b].data.n_coefs; k++)
-                    if (B[(size_t)(model->blocks[c].offset + i) * (size_t)model->coefs +
-                          (size_t)(bearing_slot[b] + k)] != 0.0)
-                        touched[b * model->n_blocks + c] = 1;
-    model->touched = touched;
+    int *touched = carve(a, n_bearings * (size_t)model->n_blocks, sizeof *touched);
+    double *B = carve(a, (size_t)model->n_padded * (size_t)model->coefs, sizeof *B);
+    model->n_bearings = data->n_bearings;
     model->bearings = bearings;
     model->bearing_slot = bearing_slot;
     model->coef_slot = coef_slot;
+    model->touched = touched;
     model->B = B;
+
+    int place = 0,
+        slot = 0; /* of the bearing's first coefficient: as counted by the caller, padded */
+    for (int b = 0; b < data->n_bearings; b++) {
+        const bd_bearing_data own = copy_bearing(a, &data->bearings[b]);
+        double *constants = carve(a, bd_bearing_constants(&own), sizeof *constants);
+        if (bearings) {
+            bd_bearing_setup(&bearings[b], &own, constants);
+            bearing_slot[b] = slot;
+            fill_coefs(model, data->B[b], slot, own.n_coefs, coef_slot + place, B);
+            for (int c = 0; c < model->n_blocks; c++)
+                touched[b * model->n_blocks + c] =
+                    sees(model, slot, own.n_coefs, &model->blocks[c]);
+        }
+        place += own.n_coefs;
+        slot += BD_PADDED(own.n_coefs);
+    }
 }
 
 static void layout_loads(arena *a, bd_model *model, const bd_model_data *data)
 {
     bd_load *loads = carve(a, (size_t)data->n_loads, sizeof *loads);
-    model->n_loads = data->n_loads;
     for (int k = 0; k < data->n_loads; k++) {
         const bd_load_data *from = &data->loads[k];
-        bool turning = from->kind == BD_LOAD_HARMONIC || from->kind == BD_LOAD_ROTATING;
-        size_t samples = from->kind == BD_LOAD_SAMPLED ? (size_t)from->n_samples : 0;
-        bd_load load = {
+        const bool turning = from->kind == BD_LOAD_HARMONIC || from->kind == BD_LOAD_ROTATING;
+        const size_t samples = from->kind == BD_LOAD_SAMPLED ? (size_t)from->n_samples : 0;
+        const bd_load load = {
             .kind = from->kind,
             .omega = from->omega,
             .n_samples = (int)samples,
             .p_cos = copy_vector(a, model, from->p_cos),
             .p_sin = copy_vector(a, model, turning ? from->p_sin : NULL),
-            .time = copy_doubles(a, samples, from->time),
-            .value = copy_doubles(a, samples, from->value),
+            .time = copy_doubles(a, from->time, samples),
+            .value = copy_doubles(a, from->value, samples),
         };
         if (loads)
             loads[k] = load;
     }
+    model->n_loads = data->n_loads;
     model->loads = loads;
 }
 
 static void layout_channels(arena *a, bd_model *model, const bd_model_data *data)
 {
     bd_channel *channels = carve(a, (size_t)data->n_channels, sizeof *channels);
-    model->n_channels = data->n_channels;
     for (int c = 0; c < data->n_channels; c++) {
         const bd_channel_data *from = &data->channels[c];
-        bool linear = from->kind <= BD_CHANNEL_ACCELERATION;
-        bd_channel channel = {
+        const bool linear = from->kind <= BD_CHANNEL_ACCELERATION;
+        const bd_channel channel = {
             .kind = from->kind,
             .bearing = linear ? -1 : from->bearing,
             .index = from->index,
@@ -328,64 +364,84 @@ static void layout_channels(arena *a, bd_model *model, const bd_model_data *data
         if (channels)
             channels[c] = channel;
     }
+    model->n_channels = data->n_channels;
     model->channels = channels;
 }
 
-/* One routine lays a model out, first to count (a.base NULL), then to fill. */
-static bd_model *layout(arena *a, const bd_model_data *data, const int *parent)
+/* One routine lays a model out, first to count (a->base NULL), then to fill. */
+static bd_model *layout(arena *a, const bd_model_data *data, const partition *parts)
 {
-    bd_model counting = {0}, *in_slab = carve(a, 1, sizeof *in_slab);
-    bd_model *model = in_slab ? in_slab : &counting;
-
-    model->n = data->n;
-    size_t total = layout_blocks(a, model, parent);
-    layout_layers(a, model, data, parent);
-    layout_bearings(a, model, data);
-    layout_loads(a, model, data);
-    layout_channels(a, model, data);
-    /* while counting, nothing is known of blocks: the whole matrix bounds them */
-    if (!in_slab)
-        total = (size_t)data->n * (size_t)data->n;
-    model->M = copy_matrix(a, model, total, data->M);
-    model->C = copy_matrix(a, model, total, data->C);
-    model->G = copy_matrix(a, model, total, data->G);
-    model->K = copy_matrix(a, model, total, data->K);
-    model->N = copy_matrix(a, model, total, data->N);
+    const size_t n = (size_t)data->n;
+    bd_model *in_slab = carve(a, 1, sizeof *in_slab);
+    bd_model model = {
+        .n = data->n,
+        .n_padded = parts->n_padded,
+        .n_blocks = parts->n_blocks,
+        .largest = parts->largest,
+        .order = copy(a, parts->order, n, sizeof *parts->order),
+        .slot = copy(a, parts->slot, n, sizeof *parts->slot),
+        .blocks = copy(a, parts->blocks, (size_t)parts->n_blocks, sizeof *parts->blocks),
+    };
+    layout_layers(a, &model, data, parts);
+    layout_bearings(a, &model, data);
+    layout_loads(a, &model, data);
+    layout_channels(a, &model, data);
+    model.matrices = (bd_matrices){
+        .M = copy_matrix(a, &model, parts, data->M),
+        .C = copy_matrix(a, &model, parts, data->C),
+        .G = copy_matrix(a, &model, parts, data->G),
+        .K = copy_matrix(a, &model, parts, data->K),
+        .N = copy_matrix(a, &model, parts, data->N),
+    };
+    model.bytes = a->used;
+    if (in_slab)
+        *in_slab = model;
     return in_slab;
 }
 
 bd_model *bd_model_create(const bd_model_data *data, bd_status *status)
 {
+    partition parts;
     *status = bd_model_check(data);
     if (*status != BD_OK)
         return NULL;
-
-    int *parent = malloc((size_t)data->n * sizeof *parent);
-    if (!parent) {
+    if (!find_partition(data, &parts)) {
         *status = BD_NO_MEMORY;
         return NULL;
     }
-    find_blocks(data, parent);
 
     arena a = {.base = NULL};
-    layout(&a, data, parent);
-    size_t size = a.used;
-    a.base = aligned_alloc(ALIGNMENT, size);
-    a.used = 0;
+    layout(&a, data, &parts);
+    const size_t size = a.used;
+    a = (arena){.base = aligned_alloc(ALIGNMENT, size)};
     bd_model *model = NULL;
     if (a.base) {
         memset(a.base, 0, size);
-        model = layout(&a, data, parent);
+        model = layout(&a, data, &parts);
     } else {
         *status = BD_NO_MEMORY;
     }
-    free(parent);
+    free(parts.memory);
     return model;
 }
 
 void bd_model_free(bd_model *model)
 {
     free(model);
+}
+
+/* ---------------------------------------------------------------- what it holds */
+
+bd_matrices bd_matrices_of(const bd_model *model, const bd_block *block)
+{
+    const bd_matrices all = model->matrices;
+    const size_t at = block->matrix;
+    return (bd_matrices){all.M + at, all.C + at, all.G + at, all.K + at, all.N + at};
+}
+
+size_t bd_model_bytes(const bd_model *model)
+{
+    return model->bytes;
 }
 
 int bd_model_blocks(const bd_model *model)

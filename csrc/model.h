@@ -16,9 +16,9 @@ typedef struct bd_block {
 typedef struct bd_layer {
     int source; /* index in the caller's list */
     int block, rank, padded;
-    int offset; /* in padded vectors of layer rates */
-    int n_branches;
-    size_t stress;   /* of its first branch in a state's stress */
+    int offset;             /* in padded vectors of layer rates */
+    int branch, n_branches; /* the first one's place among the branches of all layers */
+    size_t stress;          /* of its first branch in a state's stress */
     const double *L; /* (block n x padded rank): row j holds coordinate j's part in each rate */
     const double *modulus, *tau;
 } bd_layer;
@@ -37,8 +37,16 @@ typedef struct bd_channel {
     const double *row; /* (n_padded) or NULL */
 } bd_channel;
 
+/* The matrices of (1), blocks one after another; or those of one block, n x n row-major. */
+typedef struct bd_matrices {
+    const double *M, *C, *G, *K, *N;
+} bd_matrices;
+
 struct bd_model {
+    size_t bytes; /* of the allocation */
     int n, n_padded, n_blocks, n_layers, n_bearings, n_loads, n_channels;
+    int largest;  /* coordinates of the largest block */
+    int branches; /* of all layers */
     int n_coefs,
         coefs; /* of all bearings: as counted by the caller, and padded bearing by bearing */
     int ranks; /* of all layers, padded layer by layer */
@@ -52,12 +60,18 @@ struct bd_model {
     const bd_bearing *bearings;
     const bd_load *loads;
     const bd_channel *channels;
-    const double *M, *C, *G, *K, *N; /* blocks one after another */
+    bd_matrices matrices;
     const int *touched; /* (n_bearings x n_blocks) 1 where a bearing sees a block's motion */
     const double *B;    /* (n_padded x coefs): row j holds coordinate j's part in each */
 };
 
+/* The matrices of one block. */
+bd_matrices bd_matrices_of(const bd_model *model, const bd_block *block);
+
 /* BD_OK, or what is wrong with a description; bd_model_create asks it first. */
 bd_status bd_model_check(const bd_model_data *data);
+
+/* Whether the numbers of a scheme can be marched with; what its speed holds is left to bd_profile_take. */
+bool bd_scheme_valid(const bd_scheme *scheme);
 
 #endif

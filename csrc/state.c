@@ -1,7 +1,60 @@
 /* A state: one flat array, and what its parts are. */
+#include "state.h"
+
+#include <math.h>
 #include <string.h>
 
-#include "model.h"
+/* ---------------------------------------------------------------- clock */
+
+/* Where the clock's parts lie at the head of a state; a flag is 1 or 0, a count a whole number. */
+enum { ORIGIN, STEPS, STEP, INVERSE_SET, REFERENCE, REFERENCE_SET };
+
+/* From here on a count and the next are the same double. */
+static const double most_steps = 9007199254740992.0;
+
+static bd_clock clock_of(const double *flat)
+{
+    const bool counts = flat[STEPS] >= 0.0 && flat[STEPS] < most_steps;
+    return (bd_clock){
+        .origin = flat[ORIGIN],
+        .steps = counts ? (long long)flat[STEPS] : -1,
+        .dt = flat[STEP],
+        .reference = flat[REFERENCE],
+        .inverse_set = flat[INVERSE_SET] != 0.0,
+        .reference_set = flat[REFERENCE_SET] != 0.0,
+    };
+}
+
+bool bd_clock_valid(const bd_clock *clock)
+{
+    return clock->steps >= 0 && isfinite(clock->origin) && clock->dt >= 0.0 &&
+           isfinite(clock->dt) && isfinite(clock->reference);
+}
+
+double bd_clock_time(const bd_clock *clock, long long ahead)
+{
+    return clock->origin + (double)(clock->steps + ahead) * clock->dt;
+}
+
+void bd_clock_restart(bd_clock *clock, double dt)
+{
+    clock->origin = bd_clock_time(clock, 0);
+    clock->steps = 0;
+    clock->dt = dt;
+}
+
+void bd_clock_keep(const bd_state *state)
+{
+    const bd_clock *clock = &state->clock;
+    state->flat[ORIGIN] = clock->origin;
+    state->flat[STEPS] = (double)clock->steps;
+    state->flat[STEP] = clock->dt;
+    state->flat[INVERSE_SET] = clock->inverse_set;
+    state->flat[REFERENCE] = clock->reference;
+    state->flat[REFERENCE_SET] = clock->reference_set;
+}
+
+/* ---------------------------------------------------------------- parts */
 
 size_t bd_state_size(const bd_model *model)
 {
@@ -13,7 +66,7 @@ size_t bd_state_size(const bd_model *model)
 bd_state bd_state_view(const bd_model *model, double *flat)
 {
     size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
-    bd_state state = {.clock = flat};
+    bd_state state = {.flat = flat, .clock = clock_of(flat)};
     state.x = flat + BD_LANES;
     state.v = state.x + n;
     state.a = state.v + n;
@@ -30,7 +83,7 @@ void bd_state_set(const bd_model *model, double *flat, double t, const double *x
 {
     memset(flat, 0, bd_state_size(model) * sizeof *flat);
     bd_state state = bd_state_view(model, flat);
-    state.clock[0] = t;
+    state.flat[ORIGIN] = t;
     for (int i = 0; i < model->n; i++) {
         state.x[model->slot[i]] = x[i];
         state.v[model->slot[i]] = v[i];
@@ -43,7 +96,7 @@ void bd_state_get(const bd_model *model, const double *flat, double *t, double *
     const double *state_x = flat + BD_LANES, *state_v = state_x + model->n_padded;
     const double *state_a = state_v + model->n_padded;
     if (t)
-        *t = flat[0] + flat[1] * flat[2];
+        *t = flat[ORIGIN] + flat[STEPS] * flat[STEP];
     for (int i = 0; i < model->n; i++) {
         if (x)
             x[i] = state_x[model->slot[i]];

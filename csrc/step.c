@@ -2,13 +2,14 @@
 #include "balls.h"
 #include "dense.h"
 #include "maxwell.h"
+#include "work.h"
 
 /* Predictors, trial branch stresses and the acceleration without the bearings. */
 static void predict(const bd_model *model, bd_work *work, const bd_state *state)
 {
     const bd_scheme *scheme = &work->scheme;
     const double dt = scheme->dt, in_x = (0.5 - scheme->beta) * dt * dt;
-    const double in_v = (1.0 - scheme->gamma) * dt, in_v_new = scheme->gamma * dt;
+    const double in_v = (1.0 - scheme->gamma) * dt, in_v_new = work->in_v;
 
     for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
         lanes a = LANES(state->a + i), v = LANES(state->v + i);
@@ -67,8 +68,7 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
 /* Bearing coefficients and rates that the structure would have without the bearings. */
 static void observe(const bd_model *model, bd_work *work)
 {
-    const bd_scheme *scheme = &work->scheme;
-    const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
+    const double in_x = work->in_x, in_v = work->in_v;
 
     for (int i = 0; i < model->n_padded; i += BD_WIDTH) {
         lanes a = LANES(work->a + i);
@@ -109,8 +109,7 @@ BD_INLINE void add_bearings(const bd_model *model, bd_work *work)
 /* What a speed other than the reference adds. */
 static double drift(const bd_model *model, bd_work *work, double *largest)
 {
-    const bd_scheme *scheme = &work->scheme;
-    const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
+    const double in_x = work->in_x, in_v = work->in_v;
     const double departure = work->turn.speed - work->reference, rate = work->turn.rate;
     const double *columns = work->drift;
     double change = 0.0;
@@ -151,8 +150,7 @@ static double drift(const bd_model *model, bd_work *work, double *largest)
 /* z and z_rate that go with the bearing forces guessed. */
 static void displace(const bd_model *model, bd_work *work)
 {
-    const bd_scheme *scheme = &work->scheme;
-    const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
+    const double in_x = work->in_x, in_v = work->in_v;
 
     for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->Wg + k) = (lanes){0};
@@ -185,8 +183,7 @@ static void correct(const bd_model *model, bd_work *work, double share, const do
 /* Completes the acceleration and makes the trial state the state, if that is finite. */
 static int commit(const bd_model *model, bd_work *work, bd_state *state)
 {
-    const bd_scheme *scheme = &work->scheme;
-    const double in_x = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
+    const double in_x = work->in_x, in_v = work->in_v;
 
     add_bearings(model, work);
 

@@ -20,14 +20,12 @@ static size_t step_columns(const bd_model *model, const bd_block *block)
 
 bd_work *bd_work_create(const bd_model *model)
 {
-    size_t n = (size_t)model->n_padded, m = (size_t)model->coefs, branches = 0;
+    size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
     size_t steps = 0, bearing_scratch = 0;
     for (int b = 0; b < model->n_blocks; b++)
         steps += step_columns(model, &model->blocks[b]) * (size_t)model->blocks[b].padded;
     for (int b = 0; b < model->n_bearings; b++)
         bearing_scratch += bd_bearing_work_size(&model->bearings[b].data);
-    for (int l = 0; l < model->n_layers; l++)
-        branches += (size_t)model->layers[l].n_branches;
 
     bd_work *work = calloc(1, sizeof *work);
     if (!work)
@@ -73,7 +71,7 @@ bd_work *bd_work_create(const bd_model *model)
     work->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
     work->diagonal = calloc((size_t)model->n_blocks, sizeof *work->diagonal);
     work->step_at = calloc((size_t)model->n_blocks, sizeof *work->step_at);
-    work->weights = calloc(branches + 1, sizeof *work->weights);
+    work->weights = calloc((size_t)model->branches + 1, sizeof *work->weights);
     work->bearings = calloc((size_t)model->n_bearings + 1, sizeof *work->bearings);
     if (!work->memory || !work->diagonal || !work->step_at || !work->weights || !work->bearings) {
         bd_work_free(work);
@@ -107,146 +105,45 @@ void bd_work_free(bd_work *work)
     free(work->diagonal);
     free(work->weights);
     free(work->bearings);
-    free(work->profile);
+    bd_profile_free(&work->profile);
     free(work->drift);
     free(work);
 }
 
 /* ---------------------------------------------------------------- prepare */
 
-bool bd_scheme_valid(const bd_scheme *scheme)
+bd_status bd_work_choose(bd_work *work, const bd_scheme *scheme)
 {
-    return bd_scheme_fault(scheme).field == NULL;
-}
-
-bool bd_work_choose(bd_work *work, const bd_scheme *scheme)
-{
-    if (!bd_scheme_valid(scheme))
-        return false;
-    work->kernels = bd_kernels_for(scheme->isa);
+    const bd_kernels *kernels = bd_kernels_for(scheme->isa);
+    if (!kernels || !bd_scheme_valid(scheme))
+        return BD_BAD_VALUE;
+    const bd_status status = bd_profile_take(&work->profile, &scheme->speed);
+    if (status != BD_OK)
+        return status;
     work->scheme = *scheme;
-    return work->kernels && bd_take_speed(work, &scheme->speed);
+    work->scheme.speed = work->profile.speed;
+    work->in_x = scheme->beta * scheme->dt * scheme->dt;
+    work->in_v = scheme->gamma * scheme->dt;
+    work->kernels = kernels;
+    return BD_OK;
 }
 
-/* Right-hand sides and matrix of one block, column-major and dense, in memory of its own. */
+/* Room for the columns of a speed that varies, or none. */
+static bool take_drift(const bd_model *model, bd_work *work)
+{
+    size_t count = 0;
+    for (int b = 0; b < model->n_blocks; b++)
+        count += 2 * (size_t)model->blocks[b].n * (size_t)model->blocks[b].padded;
+    free(work->drift);
+    work->drift = work->scheme.speed.n > 1 ? calloc(count, sizeof *work->drift) : NULL;
+    return work->drift || work->scheme.speed.n == 1;
+}
+
+/* Matrix and right-hand sides of one block, column-major and dense, in memory of its own. */
 typedef struct block_system {
     double *S, *rhs, *damping;
     int *pivots;
-    size_t columns;
 } block_system;
-
-/* S and [-K' | -C' | -L | p | B^T | G | N], where K' = K + speed N and C' = C + C_ve + speed G at the reference
- * speed; G and N only while the speed varies. */
-static void form_block(const bd_model *model, const bd_block *block, const bd_work *work,
-                       size_t first_weight, block_system *system)
-{
-    const bd_scheme *scheme = &work->scheme;
-    const size_t n = (size_t)block->n;
-    const double *M = model->M + block->matrix, *C = model->C + block->matrix;
-    const double *G = model->G + block->matrix, *K = model->K + block->matrix;
-    const double *N = model->N + block->matrix;
-    const double in_a = scheme->beta * scheme->dt * scheme->dt, in_v = scheme->gamma * scheme->dt;
-    double *D = system->damping, *rhs = system->rhs;
-
-    for (size_t ij = 0; ij < n * n; ij++)
-        D[ij] = C[ij] + work->reference * G[ij];
-    for (int l = block->layer; l < block->layer + block->n_layers; l++) {
-        const bd_layer *layer = &model->layers[l];
-        double now = 0.0;
-        for (int i = 0; i < layer->n_branches; i++)
-            now += work->weights[first_weight++].now;
-        for (size_t i = 0; i < n; i++)
-            for (size_t j = 0; j < n; j++) {
-                const double *Li = layer->L + i * (size_t)layer->padded;
-                const double *Lj = layer->L + j * (size_t)layer->padded;
-                double dot = 0.0;
-                for (int r = 0; r < layer->rank; r++)
-                    dot += Li[r] * Lj[r];
-                D[i * n + j] += now * dot;
-            }
-    }
-
-    for (size_t j = 0; j < n; j++)
-        for (size_t i = 0; i < n; i++) {
-            size_t ij = i * n + j;
-            const double stiffness = K[ij] + work->reference * N[ij];
-            system->S[j * n + i] = M[ij] + in_v * D[ij] + in_a * stiffness;
-            rhs[j * n + i] = -stiffness;
-            rhs[(n + j) * n + i] = -D[ij];
-        }
-    double *column = rhs + 2 * n * n;
-    for (int l = block->layer; l < block->layer + block->n_layers; l++)
-        for (int r = 0; r < model->layers[l].rank; r++, column += n)
-            for (size_t i = 0; i < n; i++)
-                column[i] = -model->layers[l].L[i * (size_t)model->layers[l].padded + (size_t)r];
-    for (int k = 0; k < model->n_loads; k++)
-        for (int part = 0; part < 2; part++, column += n)
-            memcpy(column, (part ? model->loads[k].p_sin : model->loads[k].p_cos) + block->offset,
-                   n * sizeof *column);
-    for (int k = 0; k < model->coefs; k++, column += n)
-        for (size_t i = 0; i < n; i++)
-            column[i] = model->B[((size_t)block->offset + i) * (size_t)model->coefs + (size_t)k];
-    if (work->drift)
-        for (size_t j = 0; j < n; j++)
-            for (size_t i = 0; i < n; i++) {
-                column[j * n + i] = G[i * n + j];
-                column[(n + j) * n + i] = N[i * n + j];
-            }
-}
-
-/* Whether a block's mass and its stiffness at the reference speed have nothing beside the diagonal, as in modes. */
-static bool is_diagonal(const bd_model *model, const bd_block *block, const bd_work *work)
-{
-    const size_t n = (size_t)block->n;
-    const double *M = model->M + block->matrix, *K = model->K + block->matrix;
-    const double *N = model->N + block->matrix;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            if (i != j &&
-                (M[i * n + j] != 0.0 || K[i * n + j] + work->reference * N[i * n + j] != 0.0))
-                return false;
-    return true;
-}
-
-/* Where a block's drift columns start. */
-static size_t drift_at(const bd_model *model, int b)
-{
-    size_t at = 0;
-    for (int i = 0; i < b; i++)
-        at += 2 * (size_t)model->blocks[i].n * (size_t)model->blocks[i].padded;
-    return at;
-}
-
-/* The solved columns into the padded operators of work. */
-static void place_block(const bd_model *model, int b, bd_work *work, const block_system *system)
-{
-    const bd_block *block = &model->blocks[b];
-    const size_t n = (size_t)block->n, padded = (size_t)block->padded;
-    const size_t in_step = step_columns(model, block);
-    const double *column = system->rhs;
-
-    for (size_t c = 0; c < in_step; c++, column += n) {
-        double *to = work->step + work->step_at[b] + c * padded;
-        memcpy(to, column, n * sizeof *column);
-        memset(to + n, 0, (padded - n) * sizeof *to); /* bd_start may have written there */
-    }
-    if (work->diagonal[b]) { /* one column serves instead of the first n */
-        const double in_a = work->scheme.beta * work->scheme.dt * work->scheme.dt;
-        double *to = work->step + work->step_at[b];
-        for (size_t i = 0; i < n; i++) {
-            const size_t ii = block->matrix + i * n + i;
-            const double stiffness = model->K[ii] + work->reference * model->N[ii];
-            to[i] = -stiffness / (model->M[ii] + in_a * stiffness);
-        }
-    }
-    for (size_t c = 0; c < 2 * (size_t)model->n_loads; c++, column += n)
-        memcpy(work->SP + c * (size_t)model->n_padded + block->offset, column, n * sizeof *column);
-    for (size_t c = 0; c < (size_t)model->coefs; c++, column += n)
-        memcpy(work->SB + c * (size_t)model->n_padded + block->offset, column, n * sizeof *column);
-    if (work->drift)
-        for (size_t c = 0; c < 2 * n; c++, column += n)
-            memcpy(work->drift + drift_at(model, b) + c * padded, column, n * sizeof *column);
-}
 
 /* Columns of a block's right-hand side. */
 static size_t right_columns(const bd_model *model, const bd_work *work, const bd_block *block)
@@ -255,32 +152,139 @@ static size_t right_columns(const bd_model *model, const bd_work *work, const bd
            (work->drift ? 2 * (size_t)block->n : 0);
 }
 
-bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
-                     double reference_speed, bd_work *work)
+/* C' = C + speed G + sum of the branches' present weights times L L^T, row-major. */
+static void form_damping(const bd_model *model, const bd_block *block, const bd_work *work,
+                         double *damping)
 {
-    if (!bd_work_choose(work, scheme) || !isfinite(reference_speed))
-        return BD_BAD_VALUE;
-    work->reference = reference_speed;
-    free(work->drift);
-    work->drift = NULL;
-    if (scheme->speed.n > 1) {
-        work->drift = calloc(drift_at(model, model->n_blocks) + 1, sizeof *work->drift);
-        if (!work->drift)
-            return BD_NO_MEMORY;
-    }
+    const size_t n = (size_t)block->n;
+    const bd_matrices of = bd_matrices_of(model, block);
 
-    size_t weight = 0, largest = 0, widest = 0;
-    for (int l = 0; l < model->n_layers; l++)
-        for (int i = 0; i < model->layers[l].n_branches; i++)
-            work->weights[weight++] = bd_maxwell_weights(scheme->dt, model->layers[l].tau[i],
-                                                         model->layers[l].modulus[i]);
+    for (size_t ij = 0; ij < n * n; ij++)
+        damping[ij] = of.C[ij] + work->reference * of.G[ij];
+    for (int l = block->layer; l < block->layer + block->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        double now = 0.0;
+        for (int i = 0; i < layer->n_branches; i++)
+            now += work->weights[layer->branch + i].now;
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; j < n; j++) {
+                const double *Li = layer->L + i * (size_t)layer->padded;
+                const double *Lj = layer->L + j * (size_t)layer->padded;
+                double dot = 0.0;
+                for (int r = 0; r < layer->rank; r++)
+                    dot += Li[r] * Lj[r];
+                damping[i * n + j] += now * dot;
+            }
+    }
+}
+
+/* A row-major matrix, times a sign, as n columns. Returned: where the next column goes. */
+static double *put_columns(size_t n, double sign, const double *matrix, double *column)
+{
+    for (size_t j = 0; j < n; j++, column += n)
+        for (size_t i = 0; i < n; i++)
+            column[i] = sign * matrix[i * n + j];
+    return column;
+}
+
+/* S and [-K' | -C' | -L | p | B^T | G | N], where K' = K + speed N and C' is form_damping's, at the reference
+ * speed; G and N only while the speed varies. */
+static void form_block(const bd_model *model, const bd_block *block, const bd_work *work,
+                       const block_system *system)
+{
+    const size_t n = (size_t)block->n, m = (size_t)model->coefs;
+    const bd_matrices of = bd_matrices_of(model, block);
+    double *column = system->rhs;
+
+    form_damping(model, block, work, system->damping);
+    for (size_t j = 0; j < n; j++, column += n)
+        for (size_t i = 0; i < n; i++) {
+            const size_t ij = i * n + j;
+            const double stiffness = of.K[ij] + work->reference * of.N[ij];
+            system->S[j * n + i] =
+                of.M[ij] + work->in_v * system->damping[ij] + work->in_x * stiffness;
+            column[i] = -stiffness;
+        }
+    column = put_columns(n, -1.0, system->damping, column);
+    for (int l = block->layer; l < block->layer + block->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        for (int r = 0; r < layer->rank; r++, column += n)
+            for (size_t i = 0; i < n; i++)
+                column[i] = -layer->L[i * (size_t)layer->padded + (size_t)r];
+    }
+    for (int k = 0; k < model->n_loads; k++) {
+        const bd_load *load = &model->loads[k];
+        memcpy(column, load->p_cos + block->offset, n * sizeof *column);
+        memcpy(column + n, load->p_sin + block->offset, n * sizeof *column);
+        column += 2 * n;
+    }
+    for (size_t k = 0; k < m; k++, column += n)
+        for (size_t i = 0; i < n; i++)
+            column[i] = model->B[((size_t)block->offset + i) * m + k];
+    if (work->drift) {
+        column = put_columns(n, 1.0, of.G, column);
+        put_columns(n, 1.0, of.N, column);
+    }
+}
+
+/* Whether a block's mass and its stiffness at the reference speed have nothing beside the diagonal, as in modes. */
+static bool is_diagonal(const bd_model *model, const bd_block *block, double reference)
+{
+    const size_t n = (size_t)block->n;
+    const bd_matrices of = bd_matrices_of(model, block);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            const size_t ij = i * n + j;
+            if (i != j && (of.M[ij] != 0.0 || of.K[ij] + reference * of.N[ij] != 0.0))
+                return false;
+        }
+    return true;
+}
+
+/* Columns of n rows to a stride. Returned: the first that was not moved. */
+static const double *move_columns(size_t columns, size_t n, const double *from, size_t stride,
+                                  double *to)
+{
+    for (size_t c = 0; c < columns; c++, from += n)
+        memcpy(to + c * stride, from, n * sizeof *to);
+    return from;
+}
+
+/* The solved columns into the padded operators of work. */
+static void place_block(const bd_model *model, int b, bd_work *work, const block_system *system,
+                        double *drift)
+{
+    const bd_block *block = &model->blocks[b];
+    const size_t n = (size_t)block->n, padded = (size_t)block->padded;
+    const size_t whole = (size_t)model->n_padded;
+    double *step = work->step + work->step_at[b];
+    const double *column = system->rhs;
+
+    column = move_columns(step_columns(model, block), n, column, padded, step);
+    work->diagonal[b] = is_diagonal(model, block, work->reference);
+    if (work->diagonal[b]) { /* one column serves instead of the first n */
+        const bd_matrices of = bd_matrices_of(model, block);
+        for (size_t i = 0; i < n; i++) {
+            const size_t ii = i * n + i;
+            const double stiffness = of.K[ii] + work->reference * of.N[ii];
+            step[i] = -stiffness / (of.M[ii] + work->in_x * stiffness);
+        }
+    }
+    column = move_columns(2 * (size_t)model->n_loads, n, column, whole, work->SP + block->offset);
+    column = move_columns((size_t)model->coefs, n, column, whole, work->SB + block->offset);
+    if (drift)
+        move_columns(2 * n, n, column, padded, drift);
+}
+
+/* S^-1 times all right-hand sides, block by block. */
+static bd_status factor_blocks(const bd_model *model, const bd_lapack *lapack, bd_work *work)
+{
+    const size_t largest = (size_t)model->largest;
+    size_t widest = 0;
     for (int b = 0; b < model->n_blocks; b++) {
-        size_t n = (size_t)model->blocks[b].n;
-        size_t columns = right_columns(model, work, &model->blocks[b]);
-        largest = n > largest ? n : largest;
+        const size_t columns = right_columns(model, work, &model->blocks[b]);
         widest = columns > widest ? columns : widest;
     }
-
     block_system system = {
         .S = malloc(largest * largest * sizeof(double)),
         .damping = malloc(largest * largest * sizeof(double)),
@@ -289,33 +293,55 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
     };
     bd_status status =
         system.S && system.damping && system.rhs && system.pivots ? BD_OK : BD_NO_MEMORY;
-    weight = 0;
+    double *drift = work->drift;
     for (int b = 0; b < model->n_blocks && status == BD_OK; b++) {
         const bd_block *block = &model->blocks[b];
-        system.columns = right_columns(model, work, block);
-        work->diagonal[b] = is_diagonal(model, block, work);
-        form_block(model, block, work, weight, &system);
-        if (bd_solve_real(lapack, block->n, system.S, system.pivots, (int)system.columns,
-                          system.rhs))
+        form_block(model, block, work, &system);
+        if (bd_solve_real(lapack, block->n, system.S, system.pivots,
+                          (int)right_columns(model, work, block), system.rhs))
             status = BD_SINGULAR;
         else
-            place_block(model, b, work, &system);
-        for (int l = block->layer; l < block->layer + block->n_layers; l++)
-            weight += (size_t)model->layers[l].n_branches;
+            place_block(model, b, work, &system, drift);
+        if (drift)
+            drift += 2 * (size_t)block->n * (size_t)block->padded;
     }
     free(system.S);
     free(system.damping);
     free(system.rhs);
     free(system.pivots);
+    return status;
+}
 
-    /* W = B S^-1 B^T */
-    const size_t m = (size_t)model->coefs;
+/* W = B S^-1 B^T */
+static void join_bearings(const bd_model *model, bd_work *work)
+{
+    const size_t m = (size_t)model->coefs, n = (size_t)model->n_padded;
     for (size_t c = 0; c < m; c++)
         for (size_t k = 0; k < m; k++) {
             double sum = 0.0;
-            for (size_t i = 0; i < (size_t)model->n_padded; i++)
-                sum += model->B[i * m + k] * work->SB[c * (size_t)model->n_padded + i];
+            for (size_t i = 0; i < n; i++)
+                sum += model->B[i * m + k] * work->SB[c * n + i];
             work->W[c * m + k] = sum;
         }
+}
+
+bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
+                     double reference_speed, bd_work *work)
+{
+    bd_status status = isfinite(reference_speed) ? bd_work_choose(work, scheme) : BD_BAD_VALUE;
+    if (status != BD_OK)
+        return status;
+    work->reference = reference_speed;
+    if (!take_drift(model, work))
+        return BD_NO_MEMORY;
+    for (int l = 0; l < model->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        for (int i = 0; i < layer->n_branches; i++)
+            work->weights[layer->branch + i] =
+                bd_maxwell_weights(scheme->dt, layer->tau[i], layer->modulus[i]);
+    }
+    status = factor_blocks(model, lapack, work);
+    if (status == BD_OK)
+        join_bearings(model, work);
     return status;
 }

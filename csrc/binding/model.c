@@ -282,6 +282,12 @@ static PyObject *model_blocks(PyObject *object, void *closure)
     return PyLong_FromLong(bd_model_blocks(bd_py_model_of(object)));
 }
 
+static PyObject *model_bytes(PyObject *object, void *closure)
+{
+    (void)closure;
+    return PyLong_FromSize_t(bd_model_bytes(bd_py_model_of(object)));
+}
+
 static PyMethodDef model_methods[] = {
     {"state", model_state, METH_VARARGS, model_state_doc},
     {"unpack", model_unpack, METH_VARARGS, model_unpack_doc},
@@ -300,6 +306,7 @@ static PyObject *model_channels(PyObject *object, void *closure)
 static PyGetSetDef model_getset[] = {
     {"channels", model_channels, NULL, "Number of recorded channels.", NULL},
     {"blocks", model_blocks, NULL, "Blocks of coordinates that the structure couples.", NULL},
+    {"nbytes", model_bytes, NULL, "Bytes that the model keeps.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 

@@ -1,4 +1,5 @@
-/* The march allocates nothing: the linker puts these functions in the allocator's place. */
+/* What is allocated when, the linker putting these functions in the allocator's place: nothing in a march, and for a
+ * model little beside its matrices. */
 #include <stdlib.h>
 
 #include "bearingdyn.h"
@@ -7,6 +8,7 @@
 #include "systems.h"
 
 static int calls;
+static size_t aligned; /* bytes of the last aligned piece, as a model's is */
 
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t count, size_t size);
@@ -41,6 +43,7 @@ void *__wrap_realloc(void *old, size_t size)
 void *__wrap_aligned_alloc(size_t alignment, size_t size)
 {
     calls++;
+    aligned = size;
     return __real_aligned_alloc(alignment, size);
 }
 
@@ -84,8 +87,36 @@ static void the_march_allocates_nothing(bd_damping_law law, bd_scheme scheme)
     pool_empty(&p);
 }
 
+/* Coordinates that nothing couples: five numbers each, and what says where they are. */
+static void a_model_keeps_little_beside_its_matrices(void)
+{
+    enum { N = 2000 };
+    pool p = {.n = 0};
+    bd_model_data data = bare_system(&p, N);
+    bd_status status;
+    for (int i = 0; i < N; i++)
+        *entry(data.M, N, i, i) = 1.0 + i;
+    bd_model *model = bd_model_create(&data, &status);
+    CHECK_EQUAL("status", status, BD_OK);
+    CHECK_EQUAL("blocks", bd_model_blocks(model), N);
+    CHECK_EQUAL("what a model says it keeps", bd_model_bytes(model), aligned);
+    CHECK_BELOW("over 2000 blocks of one coordinate", (double)aligned / (5.0 * 8.0 * N), 3.0);
+    bd_model_free(model);
+
+    /* one block: the matrices are nearly all */
+    for (int i = 1; i < N; i++)
+        *entry(data.M, N, 0, i) = *entry(data.M, N, i, 0) = 1e-3;
+    model = bd_model_create(&data, &status);
+    CHECK_EQUAL("blocks", bd_model_blocks(model), 1);
+    CHECK_EQUAL("what a model says it keeps", bd_model_bytes(model), aligned);
+    CHECK_BELOW("over one block", (double)aligned / (5.0 * 8.0 * N * N), 1.001);
+    bd_model_free(model);
+    pool_empty(&p);
+}
+
 int main(void)
 {
+    a_model_keeps_little_beside_its_matrices();
     the_march_allocates_nothing(BD_DAMPING_CONSTANT, motor_scheme());
     the_march_allocates_nothing(BD_DAMPING_CONSTANT, motor_run_up());
     the_march_allocates_nothing(BD_DAMPING_TABLE, motor_scheme());

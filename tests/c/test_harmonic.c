@@ -19,7 +19,6 @@ static void an_oscillator_on_a_layer_answers_in_closed_form(void)
     *entry(data.M, 1, 0, 0) = 0.3;
     *entry(data.C, 1, 0, 0) = 2.0;
     *entry(data.K, 1, 0, 0) = 900.0;
-    *entry(data.N, 1, 0, 0) = 0.5;
     const double L = 7.0, force[] = {1.0, -2.5}, row = 3.0;
     const bd_layer_data layer = {.rank = 1, .L = &L};
     data.n_layers = 1;
@@ -45,11 +44,58 @@ static void an_oscillator_on_a_layer_answers_in_closed_form(void)
     for (int i = 0; i < N; i++)
         for (int k = 0; k < 2; k++) {
             const double complex G = modulus[2 * i] + I * modulus[2 * i + 1];
-            const double complex D = 900.0 + 4.0 * 0.5 - omega[i] * omega[i] * 0.3 +
-                                     I * omega[i] * 2.0 + 2.0 * G * L * L;
+            const double complex D =
+                900.0 - omega[i] * omega[i] * 0.3 + I * omega[i] * 2.0 + 2.0 * G * L * L;
             worst = fmax(worst, cabs(response[2 * i + k] * D / (row * force[k]) - 1.0));
         }
     CHECK_BELOW("response of an oscillator on a layer, relative", worst, 1e-14);
+    bd_harmonic_work_free(work);
+    bd_model_free(model);
+    pool_empty(&p);
+}
+
+/* The same in two directions alike, turning, with z = x + i y: the skew matrices [[0, g], [-g, 0]] and
+ * [[0, n], [-n, 0]] have the whirl (1, i) as a mode, of i g and i n, so that
+ * z = F/(k - omega^2 m + i omega c + speed (i n - omega g)) where F acts along x and i F along y. */
+static void a_turning_oscillator_answers_in_closed_form(void)
+{
+    enum { N = 5 };
+    static const double omega[N] = {0.0, 10.0, 50.0, 333.0, 4000.0};
+    static const double force[] = {1.0, 0.0, 0.0, 1.0}, row[] = {1.0, 0.0}, none = 0.0;
+    const double g = 0.7, n = 13.0, speed = 4.0;
+    pool p = {.n = 0};
+    bd_model_data data = bare_system(&p, 2);
+    for (int i = 0; i < 2; i++) {
+        *entry(data.M, 2, i, i) = 0.3;
+        *entry(data.C, 2, i, i) = 2.0;
+        *entry(data.K, 2, i, i) = 900.0;
+        *entry(data.G, 2, i, 1 - i) = i == 0 ? g : -g;
+        *entry(data.N, 2, i, 1 - i) = i == 0 ? n : -n;
+    }
+    bd_status status;
+    bd_model *model = bd_model_create(&data, &status);
+    const bd_harmonic_data question = {.speed = speed,
+                                       .n_omega = N,
+                                       .n_in = 2,
+                                       .n_out = 1,
+                                       .omega = omega,
+                                       .force = force,
+                                       .row = row,
+                                       .bearing_K = &none,
+                                       .bearing_C = &none};
+    bd_harmonic_work *work = bd_harmonic_work_create(model, &question);
+    double complex response[2 * N];
+    CHECK_EQUAL("status",
+                bd_harmonic(model, &question, &reference_lapack, work, 0, N, (double *)response),
+                BD_OK);
+    double worst = 0.0;
+    for (int i = 0; i < N; i++) {
+        const double complex D =
+            900.0 - omega[i] * omega[i] * 0.3 + I * omega[i] * 2.0 + speed * (I * n - omega[i] * g);
+        const double complex z = response[2 * i] + I * response[2 * i + 1];
+        worst = fmax(worst, cabs(z * D - 1.0));
+    }
+    CHECK_BELOW("response of a turning oscillator, relative", worst, 1e-14);
     bd_harmonic_work_free(work);
     bd_model_free(model);
     pool_empty(&p);
@@ -159,6 +205,7 @@ static void a_free_body_at_rest_is_singular(void)
 int main(void)
 {
     an_oscillator_on_a_layer_answers_in_closed_form();
+    a_turning_oscillator_answers_in_closed_form();
     blocks_joined_by_bearings_answer_as_one();
     a_free_body_at_rest_is_singular();
     return check_result();

@@ -47,6 +47,54 @@ static void every_number_of_a_structure_is_checked(void)
     pool_empty(&p);
 }
 
+/* One entry of each matrix moved by a share of the largest: by round-off it stays, by more it is refused. */
+static void every_symmetry_is_checked(void)
+{
+    static const double moved[] = {1e-12, -1e-12, 1e-6, -1e-6, 1.0};
+    pool p = {.n = 0};
+    bd_model_data data = motor(&p, BD_DAMPING_CONSTANT);
+    const double *matrices[] = {data.M, data.C, data.G, data.K, data.N};
+    for (int k = 0; k < 5; k++) {
+        const int skew = k == 2 || k == 4;
+        double largest = 0.0;
+        for (int ij = 0; ij < MOTOR_SIZE * MOTOR_SIZE; ij++)
+            largest = fmax(largest, fabs(matrices[k][ij]));
+        for (size_t i = 0; i < sizeof moved / sizeof moved[0]; i++)
+            for (int row = 2; row < MOTOR_SIZE;
+                 row += 16) { /* within the first tile and at its far end */
+                double *value = entry(matrices[k], MOTOR_SIZE, row, 1), kept = *value;
+                *value += moved[i] * largest;
+                CHECK_EQUAL("an entry on one side", status_of(&data),
+                            fabs(moved[i]) < 1e-8 ? BD_OK : BD_NOT_SYMMETRIC);
+                *value = kept;
+            }
+        double *diagonal = entry(matrices[k], MOTOR_SIZE, 3, 3), kept = *diagonal;
+        *diagonal += largest;
+        CHECK_EQUAL("an entry on the diagonal", status_of(&data), skew ? BD_NOT_SYMMETRIC : BD_OK);
+        *diagonal = kept;
+    }
+    data.G = data.M;
+    CHECK_EQUAL("a symmetric G", status_of(&data), BD_NOT_SYMMETRIC);
+    pool_empty(&p);
+
+    enum { N = 70 }; /* three tiles, the last one cut */
+    data = bare_system(&p, N);
+    for (int i = 0; i < N; i++)
+        *entry(data.M, N, i, i) = 1.0;
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < i; j++) {
+            *entry(data.N, N, i, j) = 1.0;
+            *entry(data.N, N, j, i) = -1.0;
+        }
+    CHECK_EQUAL("a skew matrix of several tiles", status_of(&data), BD_OK);
+    for (int i = 1; i < N; i++) {
+        *entry(data.N, N, i, i / 2) = -1.0;
+        CHECK_EQUAL("with a sign turned", status_of(&data), BD_NOT_SYMMETRIC);
+        *entry(data.N, N, i, i / 2) = 1.0;
+    }
+    pool_empty(&p);
+}
+
 static void every_branch_is_checked(void)
 {
     static const double bad_tau[] = {0.0, -1.0, NAN, INFINITY},
@@ -284,6 +332,46 @@ static void a_scheme_is_checked(void)
     pool_empty(&p);
 }
 
+/* A state's clock whose numbers mean nothing. */
+static void a_clock_is_checked(void)
+{
+    static const struct {
+        int at;
+        double value;
+    } bad[] = {{0, NAN},  {0, INFINITY}, {1, -1.0}, {1, 1e300}, {1, NAN},
+               {2, -1.0}, {2, INFINITY}, {2, NAN},  {4, NAN},   {4, INFINITY}};
+    static const double rest[MOTOR_SIZE] = {0};
+    pool p = {.n = 0};
+    const bd_model_data data = motor(&p, BD_DAMPING_CONSTANT);
+    const bd_scheme scheme = motor_scheme();
+    double record[3 * MOTOR_CHANNELS];
+    bd_report report;
+    bd_status status;
+    bd_model *model = bd_model_create(&data, &status);
+    bd_work *work = bd_work_create(model);
+    double *state = pool_take(&p, bd_state_size(model), sizeof *state);
+    bd_state_set(model, state, 0.0, rest, rest);
+    CHECK_EQUAL("start", bd_start(model, &scheme, &reference_lapack, work, state), BD_OK);
+    CHECK_EQUAL("prepare", bd_prepare(model, &scheme, &reference_lapack, 523.6, work), BD_OK);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        const double kept = state[bad[i].at];
+        state[bad[i].at] = bad[i].value;
+        CHECK_EQUAL("start with a broken clock",
+                    bd_start(model, &scheme, &reference_lapack, work, state), BD_BAD_VALUE);
+        CHECK_EQUAL("its reference speed",
+                    isnan(bd_reference_speed(model, &scheme, state, true)) != 0, 1);
+        CHECK_EQUAL("rows", bd_march(model, &scheme, work, state, 2, 1, record, &report), 0);
+        CHECK_EQUAL("march with a broken clock", report.status, BD_BAD_VALUE);
+        state[bad[i].at] = kept;
+    }
+    bd_march(model, &scheme, work, state, 2, 1, record, &report);
+    CHECK_EQUAL("march with a good one", report.status, BD_OK);
+    CHECK_EQUAL("steps on it", bd_state_view(model, state).clock.steps, 2);
+    bd_work_free(work);
+    bd_model_free(model);
+    pool_empty(&p);
+}
+
 static void a_coordinate_without_mass_is_singular(void)
 {
     pool p = {.n = 0};
@@ -331,6 +419,7 @@ static void nothing_is_freed_twice_or_missed(void)
 int main(void)
 {
     every_number_of_a_structure_is_checked();
+    every_symmetry_is_checked();
     every_branch_is_checked();
     every_number_of_a_bearing_is_checked();
     a_damping_table_is_sorted_and_finite();
@@ -339,6 +428,7 @@ int main(void)
     a_channel_exists();
     a_speed_is_checked();
     a_scheme_is_checked();
+    a_clock_is_checked();
     a_coordinate_without_mass_is_singular();
     nothing_is_freed_twice_or_missed();
     return check_result();

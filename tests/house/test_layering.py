@@ -11,7 +11,7 @@ import shutil
 import struct
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -23,7 +23,7 @@ import bearingdyn
 from bearingdyn import _core, core
 from bearingdyn.bearing import excitation, kernel
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).resolve().parents[2]
 CSRC = ROOT / "csrc"
 PACKAGE = ROOT / "python" / "bearingdyn"
 
@@ -139,19 +139,31 @@ def test_one_room_imports_the_extension() -> None:
     assert importers <= {"bearingdyn.core"}
 
 
-def test_no_import_circles() -> None:
-    graph = {m: {i.target for i in own_imports(m)} & MODULES.keys() for m in MODULES}
+def circle(graph: Mapping[str, set[str]]) -> list[str]:
+    """A circle's nodes in the order they are met, the first once more at the end; [] where there is none."""
     done: set[str] = set()
 
-    def walk(module: str, trail: tuple[str, ...]) -> None:
-        assert module not in trail, " -> ".join((*trail[trail.index(module) :], module))
-        if module not in done:
-            for target in sorted(graph[module]):
-                walk(target, (*trail, module))
-            done.add(module)
+    def walk(node: str, trail: list[str]) -> list[str]:
+        if node in trail:
+            return [*trail[trail.index(node) :], node]
+        if node not in done:
+            for target in sorted(graph.get(node, ())):
+                if found := walk(target, [*trail, node]):
+                    return found
+            done.add(node)
+        return []
 
-    for module in graph:
-        walk(module, ())
+    return next((found for node in graph if (found := walk(node, []))), [])
+
+
+def test_no_import_circles() -> None:
+    graph = {m: {i.target for i in own_imports(m)} & MODULES.keys() for m in MODULES}
+    assert not circle(graph)
+
+
+def test_a_circle_is_seen() -> None:
+    assert circle({"a": {"b", "d"}, "b": {"c"}, "c": {"b"}}) == ["b", "c", "b"]
+    assert circle({"a": {"b", "c"}, "b": {"d"}, "c": {"d"}}) == []
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -306,6 +318,19 @@ def test_a_report_has_the_fields_that_c_lists() -> None:
     ]
 
 
+def test_c_files_include_one_another_without_circles() -> None:
+    """A C file and its header count as one: neither may come to include the other by way of a third."""
+    graph: dict[str, set[str]] = {}
+    for path in sorted(CSRC.rglob("*.[ch]")):
+        here = str(path.with_suffix("").relative_to(CSRC))
+        found = {(path.parent / n).resolve() for n in INCLUDE.findall(path.read_text(encoding="utf-8"))}
+        own = {str(header.with_suffix("").relative_to(CSRC)) for header in found if header.exists()}
+        graph.setdefault(here, set()).update(own - {here})
+    assert "newton" in graph["newmark"], "includes are no longer seen"
+    assert "bearingdyn" in graph["binding/binding"], "includes across folders are no longer seen"
+    assert not circle(graph)
+
+
 # ---------------------------------------------------------------- C: what the compiled core contains
 
 # Files, streams, the process and the environment are none of the core's business.
@@ -317,7 +342,7 @@ FORBIDDEN = frozenset(
 ALLOCATORS = frozenset("malloc calloc realloc aligned_alloc posix_memalign strdup free".split())
 
 # Memory is taken when something is created or set up, and by one bearing asked by itself; never in a step.
-MAY_ALLOCATE = re.compile(r"bd_(\w+_(create|free)|prepare|start|work_choose|take_speed|bearing_single)$")
+MAY_ALLOCATE = re.compile(r"bd_(\w+_(create|free)|prepare|start|work_choose|profile_take|bearing_single)$")
 
 WRITABLE = re.compile(r"\.(data|bss|tdata|tbss)(?!\.rel\.ro)|COMMON")
 
@@ -435,6 +460,19 @@ def test_core_neither_prints_nor_exits(core_objects: dict[str, Elf]) -> None:
         if not s.section and s.name in FORBIDDEN
     ]
     assert not wrong
+
+
+def test_c_files_call_one_another_without_circles(core_objects: dict[str, Elf]) -> None:
+    """By the symbols that each object file leaves to the others, tables of functions included."""
+    home = {
+        s.name: file for file, elf in core_objects.items() for s in elf.symbols() if s.is_global and s.section
+    }
+    graph = {
+        file: {home[s.name] for s in elf.symbols() if not s.section and s.name in home}
+        for file, elf in core_objects.items()
+    }
+    assert "balls.c" in graph["step.c"], "references are no longer seen"
+    assert not circle(graph)
 
 
 def reached_from(functions: set[str], objects: dict[str, Elf]) -> set[str]:
