@@ -51,7 +51,6 @@ void bd_maxwell_stress(int n_times, int n_components, const double *rate, const 
     const size_t row = (size_t)n_components * sizeof *rate, room = (size_t)padded;
     double *strain = work, *before = strain + room, *now = before + room;
     double *trial = now + room, *history = trial + room, *branches = history + room;
-    lanes unused = {0};
     memset(work, 0, bd_maxwell_stress_work_size(n_components, n_branches) * sizeof *work);
 
     for (int n = 0; n < n_times; n++) {
@@ -65,7 +64,7 @@ void bd_maxwell_stress(int n_times, int n_components, const double *rate, const 
             double *S = branches + (size_t)i * room;
             bd_branch_weights w = bd_maxwell_weights(dt[n - 1], tau[i], modulus[i]);
             maxwell_trial(padded, w, S, before, trial, history);
-            maxwell_commit(padded, w, trial, now, S, &unused);
+            maxwell_commit(padded, w, trial, now, S);
             for (int c = 0; c < n_components; c++)
                 history[c] += w.now * now[c];
         }

@@ -18,16 +18,12 @@ BD_INLINE void maxwell_trial(int n, bd_branch_weights w, const double *restrict 
     }
 }
 
-/* Once per converged step: stress = trial + now * rate_new; `stress` may be `trial`.
- * Returned: poison, to which 0 times each stress is added: it does not stay 0 where one is not finite */
-BD_INLINE void maxwell_commit(int n, bd_branch_weights w, const double *trial,
-                              const double *restrict rate_new, double *stress, lanes *poison)
+/* Once per converged step: stress = trial + now * rate_new. */
+BD_INLINE void maxwell_commit(int n, bd_branch_weights w, const double *restrict trial,
+                              const double *restrict rate_new, double *restrict stress)
 {
-    for (int i = 0; i < n; i += BD_WIDTH) {
-        lanes value = LANES(trial + i) + w.now * LANES(rate_new + i);
-        LANES_AT(stress + i) = value;
-        *poison += 0.0 * value;
-    }
+    for (int i = 0; i < n; i += BD_WIDTH)
+        LANES_AT(stress + i) = LANES(trial + i) + w.now * LANES(rate_new + i);
 }
 
 #endif

@@ -206,10 +206,12 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
             LANES_AT(rate + r) = (lanes){0};
         columns_add(layer->padded, block->n, layer->L, layer->padded, work->v_new + block->offset,
                     rate);
-        for (int i = 0; i < layer->n_branches; i++) {
-            double *trial = work->trial + layer->stress + (size_t)i * (size_t)layer->padded;
-            maxwell_commit(layer->padded, *weights++, trial, rate, trial, &poison);
-        }
+        /* the sum of the new stresses stands for all of them: it is not finite where one of them is not */
+        double now = 0.0;
+        for (int i = 0; i < layer->n_branches; i++)
+            now += weights++->now;
+        for (int r = 0; r < layer->padded; r += BD_WIDTH)
+            poison += 0.0 * (LANES(work->history + layer->offset + r) + now * LANES(rate + r));
     }
     for (int i = 0; i < BD_WIDTH; i++)
         if (!(poison[i] == 0.0))
@@ -227,8 +229,15 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
     }
     for (int i = 0; i < model->ranks; i += BD_WIDTH)
         LANES_AT(state->y_rate + i) = LANES(work->y_rate + i);
-    for (size_t i = 0; i < model->n_stress; i += BD_WIDTH)
-        LANES_AT(state->stress + i) = LANES(work->trial + i);
+    weights = work->weights;
+    for (int l = 0; l < model->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        for (int i = 0; i < layer->n_branches; i++) {
+            size_t at = layer->stress + (size_t)i * (size_t)layer->padded;
+            maxwell_commit(layer->padded, *weights++, work->trial + at,
+                           state->y_rate + layer->offset, state->stress + at);
+        }
+    }
     return 0;
 }
 
