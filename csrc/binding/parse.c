@@ -12,8 +12,9 @@ PyObject *bd_py_raise(bd_status status, const char *what)
 {
     if (status == BD_NO_MEMORY)
         return PyErr_NoMemory();
-    PyErr_Format(status == BD_BAD_SHAPE || status == BD_BAD_VALUE ? PyExc_ValueError
-                                                                  : PyExc_ArithmeticError,
+    PyErr_Format(status == BD_BAD_SHAPE || status == BD_BAD_VALUE || status == BD_NOT_SYMMETRIC
+                     ? PyExc_ValueError
+                     : PyExc_ArithmeticError,
                  "%s: %s", what, bd_status_text(status));
     return NULL;
 }
