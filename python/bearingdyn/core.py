@@ -6,7 +6,7 @@ Everything here is arrays in, arrays out; what the arrays mean is said in csrc/b
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -45,7 +45,7 @@ ENERGIES = (
     "contact",
     "throughput",
 )
-INTERRUPTED = 1
+INTERRUPTED, NOT_FINITE = 1, -7
 ISAS = {"best": 0, "base": 1, "avx2": 2, "avx512": 3}
 
 
@@ -79,30 +79,60 @@ class Interrupted(KeyboardInterrupt):
         return type(self), (str(self), self.partial)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Scheme:
-    """Newmark's scheme and the tolerance of the bearing forces in it (bd_scheme).
+    """Newmark's scheme, and how exactly the bearing forces are found in it.
 
-    speed: rad/s of the shaft, one number or (times in s, speeds), linear between and held outside.
+    The step, the speed and the audit are arguments of the analysis that marches.
 
-    dt: step, s.
-    beta, gamma: Newmark's numbers; ¼ and ½, the average acceleration, add no damping of their own.
-    tolerance: of the bearing forces, relative to the largest.
-    max_iterations: of Newton's iteration in a step.
-    audit: integrate energies and works.
-    isa: instruction set of the kernels, "best" or one of those the core was compiled for.
+    Parameters
+    ----------
+    beta, gamma
+        Newmark's numbers; ¼ and ½, the average acceleration, add no damping of their own.
+    tolerance
+        Of the bearing forces, relative to the largest.
+    max_iterations
+        Of Newton's iteration in a step.
+    isa
+        Instruction set of the kernels: "best", or one of those the core was compiled for.
 
-    A march refuses what is no scheme with a ValueError. Reference: N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
+    Raises
+    ------
+    ValueError
+        From the march, for a number that makes no scheme.
+
+    References
+    ----------
+    N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
+    """
+
+    beta: float = 0.25
+    gamma: float = 0.5
+    tolerance: float = 1e-9
+    max_iterations: int = 40
+    isa: str = "best"
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """How the core steps a state: step, speed, audit and scheme (bd_scheme).
+
+    Parameters
+    ----------
+    dt
+        Step, s.
+    speed
+        Of the shaft, rad/s: one number, or (times in s, speeds), linear between and held outside.
+    audit
+        Whether energies and works are integrated.
+    scheme
+        Newmark's scheme.
     """
 
     dt: float
-    beta: float = 0.25
-    gamma: float = 0.5
-    speed: float | tuple[ArrayLike, ArrayLike] = 0.0
-    tolerance: float = 1e-9
-    max_iterations: int = 40
-    audit: bool = False
-    isa: str = "best"
+    speed: float | tuple[ArrayLike, ArrayLike] = field(default=0.0, kw_only=True)
+    audit: bool = field(default=False, kw_only=True)
+    scheme: Scheme = field(default=Scheme(), kw_only=True)
 
     @property
     def profile(self) -> tuple[Array, Array]:
@@ -189,7 +219,7 @@ def bearing_force(
 def march(
     model: Model,
     state: Array,
-    scheme: Scheme,
+    stepping: Stepping,
     steps: int,
     decimate: int = 1,
     *,
@@ -200,19 +230,19 @@ def march(
 
     With `start`, the acceleration is first made to satisfy the equation of motion.
     """
-    times, speeds = scheme.profile
+    (times, speeds), scheme = stepping.profile, stepping.scheme
     record, new_state, report = model.march(
         state,
         steps,
         decimate,
-        scheme.dt,
+        stepping.dt,
         scheme.beta,
         scheme.gamma,
         times,
         speeds,
         scheme.tolerance,
         scheme.max_iterations,
-        scheme.audit,
+        stepping.audit,
         ISAS[scheme.isa],
         start,
         progress,

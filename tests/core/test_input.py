@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bearingdyn import _core, core
-from core_models import KERNEL, SCHEME, N, arguments, at_rest, harmonic, model, replaced
+from core_models import KERNEL, SCHEME, N, arguments, at_rest, harmonic, model, replaced, stepping
 
 # ---------------------------------------------------------------- bad input
 
@@ -240,7 +240,7 @@ def test_a_list_that_grows_while_it_is_read_does_no_harm() -> None:
 def test_a_bad_scheme_is_refused(change: dict[str, Any]) -> None:
     m = model()
     with pytest.raises((ValueError, TypeError, OverflowError)):
-        core.march(m, at_rest(m), core.Scheme(**({"dt": 1e-6} | change)), 5, start=True)
+        core.march(m, at_rest(m), stepping(**({"dt": 1e-6} | change)), 5, start=True)
 
 
 @pytest.mark.parametrize(
