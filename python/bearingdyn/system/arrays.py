@@ -35,6 +35,9 @@ SLOW = 1e-6
 ROUND_OFF, SLOW_ROUND_OFF = 1e-12, 1e-13
 # below this share of the largest (scaled) eigenvalue a matrix has none: rigid motions of a deviatoric one
 RANK = 1e-11
+# of two entries that should be equal, as a share of the largest of the matrix: far above the round-off of
+# double precision in any change of coordinates, far below what a wrong sign makes
+ASYMMETRY = 1e-9
 # a test spring in N/m that stands for a bearing when free motions are sought: any stiff value serves
 TEST_SPRING = 1e8
 
@@ -120,21 +123,26 @@ class LoadTerm:
     own_sin: Array | None = None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class System:
-    """Matrices (n, n), terms, and rows (3 or 6, n) of every interface and point by name."""
+    """Matrices (n, n), terms, and rows (3 or 6, n) of every interface and output by name.
 
-    inputs: str = field(default="", kw_only=True)
-    """What the system was assembled from, as `bearingdyn.inputs` writes it."""
+    Raises
+    ------
+    ValueError
+        For M, C or K that is not symmetric, G or N that is not skew-symmetric, and matrices of unequal
+        shape or with an entry that is not finite; names the matrix and the entry.
+    """
+
     M: Array
     C: Array
-    K: Array
     G: Array
+    K: Array
     N: Array
-    layers: tuple[LayerTerm, ...]
-    bearings: tuple[BearingTerm, ...]
-    loads: tuple[LoadTerm, ...]
-    outputs: Mapping[str, Array]
+    layers: tuple[LayerTerm, ...] = ()
+    bearings: tuple[BearingTerm, ...] = ()
+    loads: tuple[LoadTerm, ...] = ()
+    outputs: Mapping[str, Array] = field(default_factory=dict)
     standstill: tuple[str, ...] = ()
     """Parts that turn with the shaft, but whose damping is written for the fixed frame."""
     inertia: Array | None = None
@@ -146,7 +154,14 @@ class System:
     turning: tuple[str, ...] = ()
     """Parts that turn with the shaft."""
     positions: Mapping[str, Array] = field(default_factory=dict)
-    """Where interfaces and points stand, (3,) m, from the first interface of the first part."""
+    """Where interfaces and outputs stand, (3,) m, from the first interface of the first part."""
+    inputs: str = ""
+    """What the system was assembled from, as `bearingdyn.inputs` writes it."""
+
+    def __post_init__(self) -> None:
+        """Check the matrices."""
+        for name in "MCGKN":
+            check_matrix(name, getattr(self, name), self.n, sign=-1 if name in "GN" else 1)
 
     def __repr__(self) -> str:
         """One line instead of the matrices."""
@@ -233,8 +248,8 @@ class System:
             self,
             M=congruence(self.M),
             C=congruence(self.C),
-            K=congruence(self.K),
             G=congruence(self.G),
+            K=congruence(self.K),
             N=congruence(self.N),
             layers=tuple(replace(t, L=T.T @ t.L) for t in self.layers),
             bearings=tuple(replace(t, B=t.B @ T) for t in self.bearings),
@@ -248,7 +263,7 @@ class System:
     def blocks(self) -> list[Index]:
         """Coordinates that the structure without its bearings couples, block by block."""
         touched = [np.abs(layer.L).sum(axis=1) for layer in self.layers]
-        return coupled_blocks(self.M, self.C, self.K, self.G, self.N, *(np.outer(t, t) for t in touched))
+        return coupled_blocks(self.M, self.C, self.G, self.K, self.N, *(np.outer(t, t) for t in touched))
 
     def basis(self, modulus: str = "relaxed") -> tuple[Array, Array]:
         """ω² (n,) and modes T (n, n), x = T q, of the structure without its bearings, block by block."""
@@ -290,15 +305,34 @@ class System:
             for t in self.layers
         ]
         return core.Model(
-            self.M,
-            C,
-            self.G,
-            K,
-            self.N,
-            layers,
-            [(core.kernel_tuple(t.kernel()), t.B) for t in self.bearings],
-            [(core.LOAD_KINDS[t.kind], t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
-            channels,
+            M=self.M,
+            C=C,
+            G=self.G,
+            K=K,
+            N=self.N,
+            layers=layers,
+            bearings=[(core.kernel_tuple(t.kernel()), t.B) for t in self.bearings],
+            loads=[(core.LOAD_KINDS[t.kind], t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
+            channels=channels,
+        )
+
+
+def check_matrix(name: str, A: Array, n: int, sign: int) -> None:
+    """Refuse A that is not (n, n), finite, and symmetric (sign 1) or skew-symmetric (sign −1): ValueError.
+
+    Round-off of a congruence transformation, a share of the largest entry, is let through.
+    """
+    if A.shape != (n, n):
+        raise ValueError(f"{name} has the shape {A.shape}; it must be {(n, n)}, as M")
+    if not np.isfinite(A).all():
+        i, j = np.argwhere(~np.isfinite(A))[0]
+        raise ValueError(f"{name}[{i}, {j}] is {A[i, j]}; every entry must be finite")
+    off = np.abs(A - sign * A.T)
+    i, j = np.unravel_index(np.argmax(off), off.shape) if n else (0, 0)
+    if n and off[i, j] > ASYMMETRY * np.abs(A).max():
+        kind = "symmetric" if sign > 0 else "skew-symmetric"
+        raise ValueError(
+            f"{name}[{i}, {j}] is {A[i, j]:g} and {name}[{j}, {i}] is {A[j, i]:g}; {name} must be {kind}"
         )
 
 
