@@ -199,7 +199,7 @@ def by_bearingdyn(f_max: float) -> Outcome:
     modal, _ = eq.system.modal()
     row = modal.row("shaft.disc.y")
     model = modal.model([(core.CHANNEL_KINDS["displacement"], row, 0, 0)])
-    scheme = core.Scheme(DT, speed=SPEED)
+    scheme = core.Stepping(DT, speed=SPEED)
 
     def run() -> np.ndarray:
         state = model.state(0.0, np.zeros(modal.n), np.zeros(modal.n))

@@ -36,7 +36,7 @@ def measure(isa: str) -> dict[str, float | int | str]:
     system = bd.equilibrium(motor.motor(layered, motor.RADIAL))
     modal, T = system.system.modal()
     model = modal.model([(core.CHANNEL_KINDS["displacement"], modal.row("shaft.end.y"), 0, 0)])
-    scheme = core.Scheme(motor.STEP, speed=motor.SPEED, isa=isa)
+    scheme = core.Stepping(motor.STEP, speed=motor.SPEED, scheme=core.Scheme(isa=isa))
     state = model.state(0.0, T.T @ system.system.M @ system.x, np.zeros(modal.n))
     _, state, _ = core.march(model, state, scheme, 4000, 100, start=True)
     best, iterations = float("inf"), 0
@@ -84,7 +84,7 @@ def made_up(coordinates: int, bearings: int, branches: int) -> core.Model:
     return core.Model(np.eye(coordinates), damping, zero, stiffness, zero, [layer], hung, [load], [channel])
 
 
-def march_time(model: core.Model, n: int, scheme: core.Scheme, steps: int, repeats: int) -> float:
+def march_time(model: core.Model, n: int, scheme: core.Stepping, steps: int, repeats: int) -> float:
     """Least seconds a step, the preparation of the march taken off."""
     _, state, _ = core.march(model, model.state(0.0, np.zeros(n), np.zeros(n)), scheme, 1000, 100, start=True)
     least = {1: float("inf"), 1 + steps: float("inf")}
@@ -102,7 +102,7 @@ def exponent(x: list[int], y: list[float]) -> float:
     return round(float(np.polyfit(np.log(x[half:]), np.log(y[half:]), 1)[0]), 2)
 
 
-def ensemble(threads: int, scheme: core.Scheme, repeats: int) -> float:
+def ensemble(threads: int, scheme: core.Stepping, repeats: int) -> float:
     """Steps a second, in millions, of as many threads as given, each with a model of its own."""
     models = [made_up(**PLAIN) for _ in range(threads)]
     n, steps = PLAIN["coordinates"], 20_000
@@ -123,7 +123,7 @@ def ensemble(threads: int, scheme: core.Scheme, repeats: int) -> float:
 
 def scaling(isa: str) -> dict[str, Any]:
     """Lines through the plain made-up model, one parameter varied at a time."""
-    scheme = core.Scheme(motor.STEP, speed=motor.SPEED, isa=isa)
+    scheme = core.Stepping(motor.STEP, speed=motor.SPEED, scheme=core.Scheme(isa=isa))
     result: dict[str, Any] = {"isa": isa, "plain": PLAIN}
     for name, values in LINES.items():
         times = []

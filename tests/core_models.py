@@ -60,7 +60,11 @@ def at_rest(m: core.Model) -> np.ndarray:
     return m.state(0.0, np.zeros(N), np.zeros(N))
 
 
-SCHEME = core.Scheme(dt=2.5e-6, speed=300.0)
+def stepping(dt: float, speed: Any = 0.0, audit: bool = False, **scheme: Any) -> core.Stepping:
+    return core.Stepping(dt, speed=speed, audit=audit, scheme=core.Scheme(**scheme))
+
+
+SCHEME = stepping(dt=2.5e-6, speed=300.0)
 
 
 def harmonic(m: core.Model, **changes: Any) -> np.ndarray:

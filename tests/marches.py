@@ -56,7 +56,7 @@ def marched(
         steps=per,
         settle=settle,
         record=[*OUTPUTS, "left.loaded", "right.loaded"] if not linear else OUTPUTS,
-        scheme=core.Scheme(dt, tolerance=1e-13),
+        scheme=core.Scheme(tolerance=1e-13),
     )
     record = run["record"].values
     if not linear:

@@ -41,6 +41,25 @@ def nonnegative(field: str, value: object, remedy: str = "it must be zero or pos
     return x
 
 
+def whole(field: str, value: object, least: int) -> int:
+    """The value as a whole number of at least `least`; ValueError if it is anything else."""
+    remedy = f"it must be a whole number of at least {least}"
+    x = number(field, value, remedy)
+    require(x >= least and x % 1 == 0, field, value, remedy)
+    return int(value)  # type: ignore[call-overload, no-any-return]
+
+
+def numbers(field: str, value: ArrayLike, remedy: str, least: float = -math.inf) -> Array:
+    """One or more finite numbers ≥ `least` as an array (n,); ValueError if they are anything else."""
+    try:
+        x = np.atleast_1d(np.array(value, dtype=np.float64))
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; {remedy}") from None
+    require(x.ndim == 1 and x.size > 0, field, value, remedy)
+    require(bool(np.isfinite(x).all() and (x >= least).all()), field, value, remedy)
+    return x
+
+
 def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> Array:
     """The value as a finite float array of the given shape; ValueError if it is anything else."""
     try:

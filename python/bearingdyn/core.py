@@ -6,7 +6,7 @@ Everything here is arrays in, arrays out; what the arrays mean is said in csrc/b
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, field
 from typing import Protocol, TypeAlias
 
 import numpy as np
@@ -67,33 +67,69 @@ class Interrupted(KeyboardInterrupt):
         return type(self), (str(self), self.partial)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Scheme:
-    """Newmark's scheme and the tolerance of the bearing forces in it (bd_scheme).
+    """Newmark's scheme, and how exactly the bearing forces are found in it.
 
-    speed: rad/s of the shaft, one number or (times in s, speeds), linear between and held outside.
+    The step, the speed and the audit are arguments of the analysis that marches.
 
-    dt: step, s.
-    beta, gamma: Newmark's numbers; ¼ and ½, the average acceleration, add no damping of their own.
-    tolerance: of the bearing forces, relative to the largest.
-    max_iterations: of Newton's iteration in a step, 1 to 1000. A step cannot be interrupted, and from the
-    eleventh iteration on corrections are halved: after 1000 the halves are below the smallest double.
-    audit: integrate energies and works.
-    isa: instruction set of the kernels, one of ISAS: "best", or one that this machine has.
+    Parameters
+    ----------
+    beta, gamma
+        Newmark's numbers; ¼ and ½, the average acceleration, add no damping of their own.
+    tolerance
+        Of the bearing forces, relative to the largest.
+    max_iterations
+        Of Newton's iteration in a step, 1 to 1000. A step cannot be interrupted, and from the eleventh
+        iteration on corrections are halved: after 1000 the halves are below the smallest double.
+    isa
+        Instruction set of the kernels, one of ISAS: "best", or one that this machine has.
 
-    Raises ValueError or TypeError naming the field, its value and what it must be.
+    Raises
+    ------
+    ValueError, TypeError
+        Naming the field, its value and what it must be.
 
-    Reference: N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
+    References
+    ----------
+    N. M. Newmark, J. Eng. Mech. 85 (1959) 67.
+    """
+
+    beta: float = 0.25
+    gamma: float = 0.5
+    tolerance: float = 1e-9
+    max_iterations: int = 40
+    isa: str = "best"
+
+    def __post_init__(self) -> None:
+        Stepping(1.0, scheme=self)
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """How the core steps a state: step, speed, audit and scheme (bd_scheme).
+
+    Parameters
+    ----------
+    dt
+        Step, s.
+    speed
+        Of the shaft, rad/s: one number, or (times in s, speeds), linear between and held outside.
+    audit
+        Whether energies and works are integrated.
+    scheme
+        Newmark's scheme.
+
+    Raises
+    ------
+    ValueError, TypeError
+        Naming the field, its value and what it must be.
     """
 
     dt: float
-    beta: float = 0.25
-    gamma: float = 0.5
-    speed: float | tuple[ArrayLike, ArrayLike] = 0.0
-    tolerance: float = 1e-9
-    max_iterations: int = 40
-    audit: bool = False
-    isa: str = "best"
+    speed: float | tuple[ArrayLike, ArrayLike] = field(default=0.0, kw_only=True)
+    audit: bool = field(default=False, kw_only=True)
+    scheme: Scheme = field(default_factory=Scheme, kw_only=True)
 
     def __post_init__(self) -> None:
         _core.check_scheme(self.packed())
@@ -112,8 +148,8 @@ class Scheme:
     def packed(self) -> dict[str, object]:
         """The fields by name, as the core parses them."""
         times, speeds = self.profile
-        own = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "speed"}
-        return {**own, "times": times, "speeds": speeds}
+        own = {"dt": self.dt, "audit": self.audit, "times": times, "speeds": speeds}
+        return {**own, **asdict(self.scheme)}
 
 
 @dataclass(frozen=True)
@@ -174,7 +210,7 @@ def bearing_force(
 def march(
     model: Model,
     state: Array,
-    scheme: Scheme,
+    stepping: Stepping,
     steps: int,
     decimate: int = 1,
     *,
@@ -186,7 +222,7 @@ def march(
     With `start`, the acceleration is first made to satisfy the equation of motion.
     """
     record, new_state, report = model.march(
-        state=state, steps=steps, decimate=decimate, scheme=scheme.packed(), start=start, progress=progress
+        state=state, steps=steps, decimate=decimate, scheme=stepping.packed(), start=start, progress=progress
     )
     return record, new_state, Report(**report)
 

@@ -19,6 +19,7 @@ from bearingdyn.fem.beam import Section
 from bearingdyn.material import Elastic
 from bearingdyn.parts import Disc, Shaft
 from bearingdyn.system import System, assemble
+from core_models import stepping
 
 NO_TABLE = np.zeros(0)
 
@@ -180,7 +181,9 @@ def overhung(bearing: BallBearing | None = None) -> core.Model:
     return core.Model(M, C, G, K, N, [], bearings, loads, [(0, row, 0, 0) for row in np.eye(4)])
 
 
-def marched(model: core.Model, scheme: core.Scheme, end: float) -> tuple[np.ndarray, np.ndarray, core.Report]:
+def marched(
+    model: core.Model, scheme: core.Stepping, end: float
+) -> tuple[np.ndarray, np.ndarray, core.Report]:
     state = model.state(0.0, np.zeros(4), np.zeros(4))
     record, state, report = core.march(model, state, scheme, round(end / scheme.dt), start=True)
     assert report.status == 0, report.text
@@ -193,11 +196,11 @@ SCREAM = ([0.0, END], [0.0, 20e3])
 
 
 def test_a_gyroscopic_rotor_is_factored_anew_and_agrees_with_a_finer_march() -> None:
-    fine, _, report = marched(overhung(), core.Scheme(2.5e-7, speed=SCREAM), END)
+    fine, _, report = marched(overhung(), stepping(2.5e-7, speed=SCREAM), END)
     assert report.refactors == 0
     errors = []
     for dt in (2e-5, 1e-5):
-        record, _, report = marched(overhung(), core.Scheme(dt, speed=SCREAM), END)
+        record, _, report = marched(overhung(), stepping(dt, speed=SCREAM), END)
         # the sweeps contract by Ip/It·(Ω − Ω_ref)·Δt/2: a tenth every 6,000 rad/s at 2e-5 s, 12,500 at 1e-5
         assert report.refactors == (3 if dt == 2e-5 else 1)
         every = round(dt / 2.5e-7)
@@ -211,7 +214,7 @@ def test_a_gyroscopic_rotor_is_factored_anew_and_agrees_with_a_finer_march() -> 
 
 def test_factoring_anew_changes_nothing() -> None:
     """The same march from a model that is factored at every step, by marching one step per call from anew."""
-    model, scheme = overhung(BALLS), core.Scheme(2e-5, speed=SCREAM, tolerance=1e-12)
+    model, scheme = overhung(BALLS), stepping(2e-5, speed=SCREAM, tolerance=1e-12)
     whole, _, report = marched(model, scheme, 0.02)
     assert report.refactors > 0
     state, rows = model.state(0.0, np.zeros(4), np.zeros(4)), []
@@ -228,7 +231,7 @@ def test_factoring_anew_changes_nothing() -> None:
 
 @pytest.mark.parametrize("bearing", [None, BALLS], ids=["structure", "bearing"])
 def test_a_resumed_run_up_is_the_uninterrupted_one_bit_for_bit(bearing: BallBearing | None) -> None:
-    model, scheme = overhung(bearing), core.Scheme(2e-5, speed=SCREAM, audit=True)
+    model, scheme = overhung(bearing), stepping(2e-5, speed=SCREAM, audit=True)
     whole, end, report = marched(model, scheme, 0.04)
     assert report.refactors > 1
     for cut in (1, 400, 1234):
@@ -241,13 +244,13 @@ def test_a_resumed_run_up_is_the_uninterrupted_one_bit_for_bit(bearing: BallBear
 
 
 def test_every_instruction_set_gives_the_same_bits_in_a_run_up() -> None:
-    model, scheme = overhung(BALLS), core.Scheme(2e-5, speed=SCREAM, isa="base")
+    model, scheme = overhung(BALLS), stepping(2e-5, speed=SCREAM, isa="base")
     base, state, report = marched(model, scheme, 0.04)
     assert report.refactors > 1
     tried = 0
     for name in ("avx2", "avx512", "best"):
         try:
-            record, other, _ = marched(model, dataclasses.replace(scheme, isa=name), 0.04)
+            record, other, _ = marched(model, dataclasses.replace(scheme, scheme=core.Scheme(isa=name)), 0.04)
         except ValueError:
             continue  # not on this machine
         tried += 1
@@ -268,7 +271,7 @@ JUMPS = {
 @pytest.mark.parametrize("jump", JUMPS.values(), ids=JUMPS.keys())
 def test_a_speed_that_jumps_is_marched_through(jump: Any, bearing: BallBearing | None) -> None:
     """New factors are those of the step to come: a jump does not ask for them again and again."""
-    _, _, report = marched(overhung(bearing), core.Scheme(1e-4, speed=jump), 0.02)
+    _, _, report = marched(overhung(bearing), stepping(1e-4, speed=jump), 0.02)
     assert report.steps == 200
     assert 0 < report.refactors < 60
 
@@ -277,15 +280,15 @@ def test_many_refactorings_in_a_few_steps_come_to_an_end() -> None:
     """A hundred marches cut short by new factors, while the call grows the number of steps it asks for."""
     times = np.arange(0.0, 0.0301, 1e-4) + 5e-5
     speeds = np.where(np.arange(len(times)) % 2, 4000.0, -4000.0)
-    _, _, report = marched(overhung(), core.Scheme(1e-4, speed=(times, speeds)), 0.03)
+    _, _, report = marched(overhung(), stepping(1e-4, speed=(times, speeds)), 0.03)
     assert report.refactors > 100
 
 
 @pytest.mark.parametrize("bearing", [None, BALLS], ids=["structure", "bearing"])
 def test_a_profile_that_stays_is_a_constant_speed(bearing: BallBearing | None) -> None:
     model = overhung(bearing)
-    constant, _, _ = marched(model, core.Scheme(1e-5, speed=700.0), 0.01)
-    profile, _, report = marched(model, core.Scheme(1e-5, speed=([0.0, 1.0], [700.0, 700.0])), 0.01)
+    constant, _, _ = marched(model, stepping(1e-5, speed=700.0), 0.01)
+    profile, _, report = marched(model, stepping(1e-5, speed=([0.0, 1.0], [700.0, 700.0])), 0.01)
     assert report.refactors == 0
     # Newton's tolerance of 1e-9, in another order of corrections
     np.testing.assert_allclose(profile, constant, rtol=0, atol=1e-7 * np.abs(constant).max())
@@ -310,7 +313,7 @@ def test_energy_audit_closes_in_a_run_up_with_an_imperfect_bearing(pitted: bool)
     )
     model, residuals = overhung(bearing), []
     for dt in (4e-6, 2e-6):
-        scheme = core.Scheme(dt, speed=speed, audit=True, tolerance=1e-11)
+        scheme = stepping(dt, speed=speed, audit=True, tolerance=1e-11)
         state = model.state(0.0, np.zeros(4), np.zeros(4))
         _, state, _ = core.march(model, state, scheme, 0, start=True)
         before = core.energies(model, state)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from bearingdyn import _core, core
-from core_models import CASTABLE, KERNEL, SCHEME, N, arguments, at_rest, harmonic
+from core_models import CASTABLE, KERNEL, SCHEME, N, arguments, at_rest, harmonic, stepping
 
 # ---------------------------------------------------------------- layouts and types of good input
 
@@ -136,7 +136,7 @@ def test_references_are_stable() -> None:
         for call in (
             lambda: core.Model(**bad),
             lambda: core.march(m, state[:-1], SCHEME, 3),
-            lambda: core.march(m, state, core.Scheme(dt=-1.0), 3),
+            lambda: core.march(m, state, stepping(dt=-1.0), 3),
             lambda: core.march(m, state, SCHEME, 3, progress=lambda done, total: 1 / 0),
             lambda: harmonic(m, row=np.zeros((1, N + 1))),
             lambda: harmonic(m, progress=lambda done, total: 1 / 0),

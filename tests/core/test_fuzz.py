@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bearingdyn import _core, core
-from core_models import CASTABLE, KERNEL, SCHEME, N, arguments, at_rest, harmonic, model
+from core_models import CASTABLE, KERNEL, SCHEME, N, arguments, at_rest, harmonic, model, stepping
 
 
 @settings(max_examples=200, deadline=None)
@@ -74,7 +74,7 @@ def test_only_exceptions_come_out_of_a_model(data: st.DataObject) -> None:
 def test_only_exceptions_come_out_of_a_march(data: st.DataObject) -> None:
     m = model()
     good: dict[str, Any] = dict(state=at_rest(m), steps=5, decimate=1, start=True, progress=None)
-    scheme = core.Scheme(1e-6, speed=300.0, max_iterations=20).packed()
+    scheme = stepping(1e-6, speed=300.0, max_iterations=20).packed()
     small = st.one_of(st.none(), st.integers(-3, 40), st.floats(), st.just(at_rest(m)), anything)
     names = st.sampled_from([*good, *scheme])
     for name in data.draw(st.lists(names, min_size=1, max_size=3, unique=True)):

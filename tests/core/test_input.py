@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from bearingdyn import _core, core
-from core_models import KERNEL, SCHEME, N, arguments, at_rest, harmonic, model, replaced
+from core_models import KERNEL, SCHEME, N, arguments, at_rest, harmonic, model, replaced, stepping
 
 # ---------------------------------------------------------------- bad input
 
@@ -277,7 +277,7 @@ def test_a_list_that_grows_while_it_is_read_does_no_harm() -> None:
 def test_a_bad_scheme_is_refused(change: dict[str, Any]) -> None:
     m = model()
     with pytest.raises((ValueError, TypeError, OverflowError)):
-        core.march(m, at_rest(m), core.Scheme(**({"dt": 1e-6} | change)), 5, start=True)
+        core.march(m, at_rest(m), stepping(**({"dt": 1e-6} | change)), 5, start=True)
 
 
 @pytest.mark.parametrize(
@@ -301,12 +301,12 @@ def test_a_bad_scheme_is_refused(change: dict[str, Any]) -> None:
 )
 def test_what_is_wrong_in_a_scheme_is_named_when_it_is_made(field: str, value: Any) -> None:
     with pytest.raises((ValueError, TypeError), match=rf"\b{field} is {re.escape(repr(value))}; it must be"):
-        core.Scheme(**({"dt": 1e-6} | {field: value}))
+        stepping(**({"dt": 1e-6} | {field: value}))
 
 
 def test_an_unknown_instruction_set_is_answered_with_those_there_are() -> None:
     with pytest.raises(ValueError, match=r"isa is 'avx'; .* \"best\", \"base\", \"avx2\", \"avx512\"$"):
-        core.Scheme(dt=1e-6, isa="avx")
+        core.Scheme(isa="avx")
 
 
 def test_a_march_names_what_is_wrong_in_its_scheme() -> None:

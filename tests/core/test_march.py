@@ -10,6 +10,7 @@ import pytest
 from bearingdyn import core
 from bearingdyn.bearing import BallBearing, BearingKernel, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.excitation import Pit, Waviness
+from core_models import stepping
 from twins import march_twin as twin
 
 SIZE = dict(Z=7, Dw=11.5e-3, Dpw=43.5e-3, fi=0.52, fo=0.53)
@@ -132,7 +133,7 @@ def test_march_is_the_twins(name: str, beta: float, gamma: float, speed: twin.Sp
     n = len(system.M)
     t, dt = 3e-5, 4e-6
     x, v = 2e-6 * rng.standard_normal(n), 1e-2 * rng.standard_normal(n)
-    scheme = core.Scheme(dt=dt, beta=beta, gamma=gamma, speed=speed, tolerance=1e-11)
+    scheme = stepping(dt=dt, beta=beta, gamma=gamma, speed=speed, tolerance=1e-11)
     record, state, report = core.march(model, model.state(t, x, v), scheme, 80, 3, start=True)
     assert report.status == 0, report.text
     expected, s = twin.march(
@@ -159,7 +160,7 @@ def test_the_cases_lose_and_regain_contact() -> None:
             system, model, rng = make(name, seed=len(name))
             n = len(system.M)
             x, v = 2e-6 * rng.standard_normal(n), 1e-2 * rng.standard_normal(n)
-            scheme = core.Scheme(dt=4e-6, speed=800.0)
+            scheme = stepping(dt=4e-6, speed=800.0)
             record, *_ = core.march(model, model.state(3e-5, x, v), scheme, 80, start=True)
             counts |= set(record[:, [c[0] == "loaded" for c in system.channels]].ravel())
     assert {0, 1, 7} <= counts
@@ -169,7 +170,7 @@ def test_the_cases_lose_and_regain_contact() -> None:
 def test_record_has_a_row_each_time_the_count_is_a_multiple(steps: int, decimate: int) -> None:
     _, model, _ = make("motor", seed=1)
     state = model.state(0.0, np.zeros(18), np.zeros(18))
-    scheme = core.Scheme(dt=2e-6, speed=300.0)
+    scheme = stepping(dt=2e-6, speed=300.0)
     record, state, report = core.march(model, state, scheme, steps, decimate, start=True)
     assert record.shape == (steps // decimate, 10)
     more, _, _ = core.march(model, state, scheme, 7, decimate)

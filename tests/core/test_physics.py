@@ -9,6 +9,7 @@ import pytest
 
 from bearingdyn import core
 from bearingdyn.bearing import BallBearing
+from core_models import stepping
 from twins.march_twin import System
 from twins.maxwell_twin import branch_weights
 
@@ -58,7 +59,7 @@ def test_steady_state_is_the_transfer_function_of_the_scheme(
     rows = [(kind, row, 0, 0) for kind in (0, 1, 2) for row in np.eye(n)]
     loads = [(1, omega, p[0], p[1], NO_TABLE, NO_TABLE)]
     model = core.Model(system.M, C, system.G, K, system.N, system.layers, [], loads, rows)
-    scheme = core.Scheme(dt=dt, beta=beta, gamma=gamma, speed=speed)
+    scheme = stepping(dt=dt, beta=beta, gamma=gamma, speed=speed)
 
     # the slowest transient, 500 Hz at 15 % of critical damping, dies like e^{−470 t}: 5e-17 of it after 80 ms
     settle, period = 16000, round(1 / periods_per_step)
@@ -94,9 +95,9 @@ def march_modulus(x: float) -> complex:
     # a whole number of steps does not fill a period: fit the sine by least squares instead
     settle, kept = 60_000, 4000
     _, state, _ = core.march(
-        model, model.state(0.0, np.zeros(1), np.zeros(1)), core.Scheme(dt), settle, settle, start=True
+        model, model.state(0.0, np.zeros(1), np.zeros(1)), stepping(dt), settle, settle, start=True
     )
-    record, _, _ = core.march(model, state, core.Scheme(dt), kept)
+    record, _, _ = core.march(model, state, stepping(dt), kept)
     angle = omega * dt * (settle + 1 + np.arange(kept))
     fit, *_ = np.linalg.lstsq(np.column_stack([np.cos(angle), np.sin(angle)]), record, rcond=None)
     V, X, A = fit[0] - 1j * fit[1]
@@ -165,7 +166,7 @@ def preload(n: int) -> tuple[object, ...]:
 def settled(damping: float) -> np.ndarray:
     """Displacement at which the preloaded rotor rests, by a heavily damped march."""
     model, n = rotor([preload(15)], damping, extra=3e3)
-    scheme = core.Scheme(dt=2e-5)
+    scheme = stepping(dt=2e-5)
     state = model.state(0.0, np.zeros(n), np.zeros(n))
     _, state, report = core.march(model, state, scheme, 20_000, 20_000, start=True)
     assert report.status == 0, report.text
@@ -194,7 +195,7 @@ SPEED = 523.6
 def audit(dt: float, steps: int, damping: float, x: np.ndarray) -> tuple[float, dict[str, float], np.ndarray]:
     """|imbalance|/throughput, the energies, and the record of a shaken march of steps·dt."""
     model, n = rotor(shaken(15), damping)
-    scheme = core.Scheme(dt=dt, speed=SPEED, audit=True, tolerance=1e-11)
+    scheme = stepping(dt=dt, speed=SPEED, audit=True, tolerance=1e-11)
     _, state, _ = core.march(model, model.state(0.0, x, np.zeros(n)), scheme, 0, start=True)
     before = core.energies(model, state)
     record, state, report = core.march(model, state, scheme, steps)
@@ -239,7 +240,7 @@ def test_energy_audit_closes_where_contact_is_lost() -> None:
     model = core.Model(
         np.eye(n), np.diag(0.04 * w), zero, np.diag(w**2), zero, [], [(kernel, B)], loads, channels
     )
-    scheme = core.Scheme(dt=2.5e-6, speed=SPEED, audit=True, tolerance=1e-11)
+    scheme = stepping(dt=2.5e-6, speed=SPEED, audit=True, tolerance=1e-11)
     _, state, _ = core.march(model, model.state(0.0, np.zeros(n), np.zeros(n)), scheme, 0, start=True)
     before = core.energies(model, state)
     record, state, report = core.march(model, state, scheme, 8000)
@@ -256,7 +257,7 @@ def test_order_is_two_while_no_contact_is_lost() -> None:
     x = settled(30.0)
     ends = []
     for steps in (500, 1000, 2000, 4000):
-        scheme = core.Scheme(dt=2e-3 / steps, speed=SPEED, tolerance=1e-12)
+        scheme = stepping(dt=2e-3 / steps, speed=SPEED, tolerance=1e-12)
         record, _, report = core.march(model, model.state(0.0, x, np.zeros(n)), scheme, steps, start=True)
         assert report.status == 0
         assert (record[:, n:] == 8).all()  # every ball of both bearings

@@ -9,6 +9,7 @@ import pytest
 
 from bearingdyn import core
 from bearingdyn.bearing import BallBearing, BearingKernel
+from core_models import stepping
 
 SIZE = dict(Z=11, Dw=11.5e-3, Dpw=60e-3, fi=0.52, fo=0.53)
 BEARINGS = {
@@ -140,7 +141,7 @@ def test_march_of_a_ring_of_eight_orders_balances_at_every_step() -> None:
     state = model.state(0.0, np.zeros(n), np.zeros(n))
     for steps in (1, 7, 400, 1000):
         record, state, report = core.march(
-            model, state, core.Scheme(dt, speed=speed, tolerance=1e-11), steps, start=steps == 1
+            model, state, stepping(dt, speed=speed, tolerance=1e-11), steps, start=steps == 1
         )
         assert report.status == 0, report.text
         t, x, v, a = model.unpack(state)[:4]

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from bearingdyn import core
-from core_models import SCHEME, N, arguments, at_rest, harmonic, model
+from core_models import SCHEME, N, arguments, at_rest, harmonic, model, stepping
 
 # ---------------------------------------------------------------- threads
 
@@ -241,7 +241,7 @@ def test_an_absurd_load_is_a_status_with_step_time_bearing_and_residual() -> Non
     assert report.steps == len(record) == 20
     assert report.t == pytest.approx(20 * 2.5e-6, rel=1e-12)
     assert report.bearing == 0
-    assert not report.residual <= SCHEME.tolerance
+    assert not report.residual <= SCHEME.scheme.tolerance
     assert report.text
     np.testing.assert_array_equal(record, calm)
     np.testing.assert_array_equal(state, expected)
@@ -249,7 +249,7 @@ def test_an_absurd_load_is_a_status_with_step_time_bearing_and_residual() -> Non
 
 def test_too_few_iterations_are_a_status() -> None:
     m = model()
-    scheme = core.Scheme(dt=1e-4, speed=300.0, max_iterations=1)
+    scheme = stepping(dt=1e-4, speed=300.0, max_iterations=1)
     _, state, report = core.march(m, m.state(0.0, np.full(N, 1e-5), np.ones(N)), scheme, 50, start=True)
     assert report.status == -6
     assert "converge" in report.text
@@ -281,7 +281,7 @@ def test_overflow_without_bearings_is_a_status() -> None:
     one = np.ones((1, 1))
     m = core.Model(one, 0 * one, 0 * one, 1e6 * one, 0 * one, [], [], [], [(0, np.ones(1), 0, 0)])
     _, state, report = core.march(
-        m, m.state(0.0, np.ones(1), np.zeros(1)), core.Scheme(dt=1.0, beta=0.0), 1000, 10**6, start=True
+        m, m.state(0.0, np.ones(1), np.zeros(1)), stepping(dt=1.0, beta=0.0), 1000, 10**6, start=True
     )
     assert report.status == -7
     assert 10 < report.steps < 1000
@@ -290,13 +290,11 @@ def test_overflow_without_bearings_is_a_status() -> None:
 
 def test_every_instruction_set_gives_the_same_bits() -> None:
     m = model()
-    base, state, _ = core.march(
-        m, at_rest(m), core.Scheme(dt=2.5e-6, speed=300.0, isa="base"), 500, start=True
-    )
+    base, state, _ = core.march(m, at_rest(m), stepping(dt=2.5e-6, speed=300.0, isa="base"), 500, start=True)
     for name in ("avx2", "avx512", "best"):
         try:
             record, other, _ = core.march(
-                m, at_rest(m), core.Scheme(dt=2.5e-6, speed=300.0, isa=name), 500, start=True
+                m, at_rest(m), stepping(dt=2.5e-6, speed=300.0, isa=name), 500, start=True
             )
         except ValueError:
             continue  # not on this machine

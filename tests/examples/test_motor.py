@@ -124,7 +124,7 @@ def test_the_motor_converges_with_second_order_while_no_contact_is_lost() -> Non
             dt=dt,
             steps=round(3.2e-3 / dt),
             record=["shaft.middle.y", "shaft.end.y", "left.loaded", "right.loaded"],
-            scheme=core.Scheme(dt, tolerance=1e-13),
+            scheme=core.Scheme(tolerance=1e-13),
         )
         assert (run["record"].values[:, 2:] == 7).all()
         ends.append(run["record"].values[-1, :2])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -383,3 +384,55 @@ def test_gyroscopic_matrix_keeps_its_sign(system):
     wanted = np.zeros((6, 6))
     wanted[3, 4], wanted[4, 3] = 0.005, -0.005
     np.testing.assert_array_equal(G, wanted)
+
+
+# ------------------------------------------------------------------- what matrices a system may have
+
+
+@pytest.mark.parametrize(
+    ("name", "i", "j", "change", "message"),
+    [
+        ("M", 3, 1, 0.01, r"M\[1, 3\] is 0 and M\[3, 1\] is 0\.01; M must be symmetric"),
+        ("C", 0, 2, 0.5, r"C\[0, 2\] is .*; C must be symmetric"),
+        ("K", 4, 2, 1e3, r"K\[2, 4\] is .*; K must be symmetric"),
+        ("G", 3, 4, 0.2, r"G\[3, 4\] is 0\.2 and G\[4, 3\] is 0; G must be skew-symmetric"),
+        ("N", 1, 1, 0.2, r"N\[1, 1\] is 0\.2 and N\[1, 1\] is 0\.2; N must be skew-symmetric"),
+        ("K", 2, 2, math.nan, r"K\[2, 2\] is nan; every entry must be finite"),
+    ],
+)
+def test_a_matrix_that_breaks_its_symmetry_is_named_with_its_entry(name, i, j, change, message):
+    good = {k: np.diag([1.0, 2.0, 3.0, 4.0, 5.0]) * (k in "MCK") for k in "MCGKN"}
+    good["G"][0, 1], good["G"][1, 0] = 0.1, -0.1
+    System(**good)
+    good[name][i, j] += change
+    with pytest.raises(ValueError, match=message):
+        System(**good)
+
+
+def test_a_symmetric_gyroscopic_matrix_is_refused(system):
+    """It would do work on a whirl: ẋᵀGẋ vanishes for every ẋ only where G is skew."""
+    with pytest.raises(ValueError, match="G must be skew-symmetric"):
+        replace(system, G=np.abs(system.G))
+
+
+def test_matrices_of_unequal_size_are_named():
+    zero = np.zeros((3, 3))
+    with pytest.raises(ValueError, match=r"N has the shape \(2, 2\); it must be \(3, 3\), as M"):
+        System(M=np.eye(3), C=zero, G=zero, K=zero, N=np.zeros((2, 2)))
+
+
+def test_a_system_is_made_by_names():
+    zero = np.zeros((3, 3))
+    with pytest.raises(TypeError, match="positional"):
+        System(np.eye(3), zero, zero, zero, zero)
+
+
+def test_symmetry_outlasts_every_change_of_coordinates(system):
+    """Round-off of TᵀAT is far below what is refused: 1e-9 of the largest entry."""
+    rng = np.random.default_rng(5)
+    # coordinates in mm beside m, and turned
+    T = np.linalg.qr(rng.standard_normal((system.n, system.n)))[0] * np.geomspace(1e-3, 1.0, system.n)
+    for changed in (system.transformed(T), system.modal()[0]):
+        for name, sign in (("M", 1), ("C", 1), ("G", -1), ("K", 1), ("N", -1)):
+            A = getattr(changed, name)
+            assert np.abs(A - sign * A.T).max() <= 1e-12 * max(np.abs(A).max(), 1e-300)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.modes import modes
 from bearingdyn.application import Application
+from bearingdyn.checks import numbers, whole
 from bearingdyn.system import System, assemble
 from bearingdyn.types import Array, Complex
 
@@ -34,23 +35,37 @@ def campbell(
     damped: bool = True,
     modulus: str = "relaxed",
 ) -> xarray.Dataset:
-    """Modes at each speed (rad/s), each followed from speed to speed by its shape.
+    """Find the modes at each speed, and follow each from speed to speed by its shape.
 
-    The bearings keep the tangents of the equilibrium. Modes are followed from the highest speed down, where
-    gyroscopic forces have parted what standstill leaves double, by the modal assurance criterion with the
-    mass as weight. count: how many, the lowest at the lowest speed. damped, modulus: as in `modes`.
+    The bearings keep the tangents of the equilibrium. Modes that are double at standstill are distinct at
+    speed, where gyroscopic forces part them: they are therefore followed from the highest speed down, by the
+    modal assurance criterion weighted with the mass.
 
-    Returns a Dataset over (speed, mode): frequency (Hz, |λ|/2π), damping_ratio, eigenvalue (rad/s), whirl: +1
-    a circle with a shaft that turns from x to y, −1 one against it, 0 along a line, of the parts that turn
-    (all, if none does); mac, the modal assurance to the same mode at the next higher speed, 0 … 1.
+    Parameters
+    ----------
+    source
+        As in `modes`.
+    speeds
+        (s,) rad/s of the shaft.
+    count
+        How many modes: the lowest ones at the lowest speed.
+    damped, modulus
+        As in `modes`.
 
-    Raises ValueError for speeds that are not finite, a count below 1, and as `modes`.
+    Returns
+    -------
+    xarray.Dataset
+        Over (speed, mode): frequency (Hz, |λ|/2π); damping_ratio; eigenvalue (rad/s); whirl of the parts that
+        turn (of all parts, if none turns): +1 a circle in the sense of the shaft, from x to y, −1 a circle
+        against it, 0 a line; mac, the modal assurance to the same mode at the next higher speed, 0 … 1.
+
+    Raises
+    ------
+    ValueError
+        For speeds that are not finite, a count below 1, and as `modes`.
     """
-    given = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
-    if given.ndim != 1 or given.size == 0 or not np.isfinite(given).all():
-        raise ValueError("speeds must be a list of finite values, in rad/s")
-    if not count >= 1:
-        raise ValueError(f"count is {count}; ask for one mode or more")
+    given = numbers("speeds", speeds, "speeds must be one or more finite values, in rad/s")
+    count = whole("count", count, 1)
     if isinstance(source, Application):
         source = assemble(source)
     system = source.system if isinstance(source, Equilibrium) else source
@@ -120,10 +135,10 @@ def campbell(
 
 
 def whirl(system: System, shapes: Complex) -> Array:
-    """Direction (m,) in which shapes (m, n) e^{λt}, Im λ > 0, carry the parts that turn around: −1 … 1.
+    """Whirl (m,), −1 … 1, of the parts that turn, in shapes (m, n) e^{λt} with Im λ > 0.
 
-    It is 2 Σ Im(x y*)/Σ(|x|² + |y|²) over the interfaces and points of those parts, and of their tilts θx, θy
-    where nothing moves aside, as in a rigid body that tilts about its centre.
+    It is 2 Σ Im(x y*)/Σ(|x|² + |y|²) over the interfaces and outputs of those parts. Where they do not move
+    sideways, as a rigid body that tilts about its centre, their tilts θx, θy take the place of x, y.
     """
     turning = set(system.turning)
     rows = [r for name, r in system.outputs.items() if not turning or name.partition(".")[0] in turning]

@@ -15,9 +15,12 @@ if TYPE_CHECKING:
 
 
 def ball_channels(source: Equilibrium | System, bearing: str) -> list[str]:
-    """Channels that `transient` records the loads of a bearing's balls in: "left.ball1" …
+    """Channels of the loads of all balls of a bearing, "left.ball1" …, for the record of `transient`.
 
-    Raises ValueError for an unknown bearing.
+    Raises
+    ------
+    ValueError
+        For an unknown bearing.
     """
     system = source.system if isinstance(source, Equilibrium) else source
     for term in system.bearings:
@@ -29,12 +32,25 @@ def ball_channels(source: Equilibrium | System, bearing: str) -> list[str]:
 def contact_statistics(result: xarray.Dataset, bearing: str) -> xarray.Dataset:
     """Loss of contact of every ball of a bearing, from its recorded loads (see `ball_channels`).
 
-    Returns a Dataset over "ball" (from 1): free, share of the samples without load; losses, how often contact
-    was lost within the record; longest, the longest time without contact, s (a loss that began before the
-    record or lasts beyond it counts as far as it is seen); mean and peak load, N; and loaded (count), the
-    share of the samples with so many balls loaded.
+    Parameters
+    ----------
+    result
+        As `transient` returns it.
+    bearing
+        Name of the bearing.
 
-    Raises ValueError if the balls were not recorded, or some of them.
+    Returns
+    -------
+    xarray.Dataset
+        Over "ball" (from 1): free, share of the samples without load; losses, how often contact was lost
+        within the record; longest, the longest time without contact, s (of a loss that began before the
+        record or lasts beyond it, the part within); mean and peak load, N. Over "count": loaded, the share
+        of the samples with that many balls loaded.
+
+    Raises
+    ------
+    ValueError
+        If not all balls were recorded, or the record is empty.
     """
     known = [str(c) for c in result["channel"].values]
     prefix = f"{bearing}.ball"

@@ -10,18 +10,31 @@ import numpy as np
 
 from bearingdyn.analysis.statics import BearingState, Statics, diagonal_blocks
 from bearingdyn.application import Application
+from bearingdyn.checks import number, whole
 from bearingdyn.system import LoadTerm, System, assemble
 from bearingdyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A static state: x (n,) of the system, and every bearing and loose fit by name.
+    """A static state, from which every other analysis starts.
 
-    Layers carry their relaxed modulus G0, or the instantaneous one if `modulus` says so. The free spin of
-    shafts about z is left at zero.
+    The free spin of shafts about z is left at zero.
 
-    x: m and rad. Reference: paper section 4.1, whose linearisation starts from this state.
+    Parameters
+    ----------
+    system
+        The system that is in balance, its bearings at the angle asked for.
+    x
+        Displacement (n,), m and rad.
+    bearings
+        State of every bearing and loose fit, by name.
+    modulus
+        Modulus that the layers have: "relaxed" or "instantaneous".
+
+    References
+    ----------
+    Paper section 4.1, whose linearisation starts from this state.
     """
 
     system: System
@@ -72,37 +85,44 @@ def equilibrium(
     modulus: str = "relaxed",
     average: int = 1,
 ) -> Equilibrium:
-    """Nonlinear static state under the constant loads, the cages at `angle`, the shaft turned with them.
+    """Find the nonlinear static state under the constant loads, with the cages at `angle`.
 
-    The energy of the structure and of the balls is convex; its one minimum is found from anywhere by Newton
-    steps in a trust region, clearances open or closed.
+    The energy of the structure and of the balls is convex. Newton steps in a trust region find its one
+    minimum from any start, whether clearances are open or closed.
 
     Parameters
     ----------
     app
         Application, or its system.
     angle
-        Of the cages, rad; waves and pits of a bearing stand where the shaft, at angle/cage_ratio, put
-        them. The phases of unbalance and signals stay.
+        Of the cages, rad. The shaft has then turned by angle/cage_ratio, and the waves and pits of a
+        bearing with it. The phases of unbalance and signals stay.
     start
-        A state of the same application to begin from; it saves time, the result is the same.
+        A state of the same application to begin from; it saves time and does not change the result.
     modulus
-        Of the layers: "relaxed" G0, which all else starts from, or "instantaneous", right after a sudden
-        load.
+        Of the layers: "relaxed", their G0, which the other analyses start from, or "instantaneous", as right
+        after a sudden load.
     average
-        The bearings' tangents are averaged over this many cage angles of a ball passage, for a harmonic
-        response that favours none. The state is that of `angle`.
+        Number of cage angles within one ball passage over which the tangents of the bearings are averaged,
+        so that a harmonic response favours no angle. The state itself is that of `angle`.
 
-    Raises ValueError where a body is free to move, ArithmeticError where no balance is found, which names the
-    body that lost its support.
+    Returns
+    -------
+    Equilibrium
 
-    Returns an Equilibrium. Reference: J. J. Moré and D. C. Sorensen, SIAM J. Sci. Stat. Comput. 4 (1983) 553.
+    Raises
+    ------
+    ValueError
+        Where a body is free to move.
+    ArithmeticError
+        Where there is no balance; names the body that lost its support.
+
+    References
+    ----------
+    J. J. Moré and D. C. Sorensen, SIAM J. Sci. Stat. Comput. 4 (1983) 553.
     """
+    angle, average = number("angle", angle, "give one finite angle, in rad"), whole("average", average, 1)
     system = app if isinstance(app, System) else assemble(app)
-    if not math.isfinite(angle):
-        raise ValueError(f"angle is {angle}; the cage angle must be finite, in rad")
-    if not (average >= 1 and average % 1 == 0):
-        raise ValueError(f"average is {average}; it must be a whole number of cage angles, at least 1")
     if start is not None and start.x.shape != (system.n,):
         raise ValueError(
             f"start has {start.x.size} coordinates and the system {system.n}; start from a state of the same "
@@ -112,7 +132,7 @@ def equilibrium(
     q = None if start is None else rest.T.T @ (system.M @ start.x)
     passage: list[dict[str, BearingState]] = []
     first, x = system, np.zeros(system.n)
-    for i in range(int(average)):
+    for i in range(average):
         # the angle stays with the system, so that what starts from here finds the balls where they are
         bearings = tuple(
             replace(t, bearing=t.bearing.turned(angle + i / average * 2 * math.pi / t.bearing.Z))

@@ -14,6 +14,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import Application
+from bearingdyn.checks import numbers
 from bearingdyn.material import Maxwell
 from bearingdyn.system import QUANTITIES, RATES, System, assemble
 from bearingdyn.types import Array, Complex
@@ -55,9 +56,12 @@ class Linear:
 
 
 def linear(source: Equilibrium | Application | System) -> Linear:
-    """What a harmonic analysis starts from.
+    """The linear system that a harmonic analysis starts from.
 
-    Raises ValueError for bearings without an equilibrium.
+    Raises
+    ------
+    ValueError
+        For bearings without an equilibrium.
     """
     if isinstance(source, Equilibrium):
         return Linear(source.system, source.bearing_K, source.bearing_C)
@@ -70,11 +74,10 @@ def linear(source: Equilibrium | Application | System) -> Linear:
 
 
 def frequencies(frequency: ArrayLike) -> Array:
-    """(f,) Hz. Raises ValueError for an empty list, or values that are negative or not finite."""
-    f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
-    if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f >= 0).all()):
-        raise ValueError("frequency must be a list of finite values of zero or more, in Hz")
-    return f
+    """Frequencies (f,), Hz; ValueError for none, and for one that is negative or not finite."""
+    return numbers(
+        "frequency", frequency, "frequency must be one or more finite values of zero or more, in Hz", 0.0
+    )
 
 
 def frequency_response(
@@ -99,22 +102,32 @@ def frequency_response(
         Channels: "shaft.left.y" is a force there, N (or N m); "ground.y" is a motion of the ground, all of
         it together, in the quantity of the outputs: the response to it is the transmissibility.
     outputs
-        Channels: "shaft.left.y" is the motion there, absolute where the ground moves. Forces: "left.force.y",
-        which bearing "left" passes from its inner ring to its outer (x, y, z); "ground.block.feet.y", which
-        the ground bears where it holds "block.feet" (with moments θx, θy, θz); "layer.inner.force.y", which
-        part "layer" puts on all it is joined to at its interface "inner".
+        Channels: "shaft.left.y" is the motion there, absolute where the ground moves. Forces are
+        "left.force.y", which bearing "left" passes from its inner ring to its outer ring (x, y, z);
+        "ground.block.feet.y", which the ground bears where it holds "block.feet" (with moments θx, θy, θz);
+        and "layer.inner.force.y", which part "layer" exerts on everything joined to its interface "inner".
     speed
         rad/s of the shaft, for gyroscopic forces; it is not the excitation frequency.
     quantity
         "displacement", "velocity" or "acceleration", of motions.
 
-    Returns a Dataset with response (frequency, output, input), complex.
+    Returns
+    -------
+    xarray.Dataset
+        response (frequency, output, input), complex. At 0 Hz it is the static response, without the free spin
+        of a shaft unless a force drives it.
 
-    At 0 Hz the response is the static one; the free spin of a shaft, which no such force drives, is left out.
+    Raises
+    ------
+    ValueError
+        For an unknown channel or quantity, a negative frequency, bearings without an equilibrium, a part that
+        would turn although its damping is known at rest only.
+    ArithmeticError
+        Where the dynamic stiffness is singular.
 
-    Raises ValueError for an unknown channel or quantity, a negative frequency, bearings without equilibrium,
-    a damped part that would turn;
-    ArithmeticError where the dynamic stiffness is singular.
+    References
+    ----------
+    Paper section 4.1, eq (20).
 
     Examples
     --------
@@ -176,7 +189,7 @@ def _unit(quantity: str, outputs: Sequence[Output], inputs: Sequence[Input]) -> 
 
 
 def _at_rest(system: System, force: Array) -> System:
-    """The system with its free motions held, unless a force drives one."""
+    """The system with its free motions held, unless a force drives one of them."""
     if not all(isinstance(layer.material, Maxwell) for layer in system.layers):
         return system
     free = system.free_motions()

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
+from bearingdyn.analysis.channels import Channel
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.analysis.running import part_of
-from bearingdyn.analysis.transient import checked_speed
+from bearingdyn.analysis.march import March
+from bearingdyn.application import Application
 from bearingdyn.system import System, factor
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
-
-Channel = tuple[int, Array | None, int, int]
 
 # steps whose powers are held at once
 PIECE = 2000
@@ -33,9 +32,16 @@ class Sink:
     rows: Array
     channel: tuple[int, int, int] | None = None
 
+    def channels(self) -> list[Channel]:
+        """What the core must record for it."""
+        if self.channel is None:
+            return [(core.CHANNEL_KINDS["velocity"], row, 0, 0) for row in self.rows]
+        kind, bearing, index = self.channel
+        return [(kind, None, bearing, index)]
+
 
 def dissipation(
-    source: Equilibrium,
+    source: Equilibrium | Application,
     *,
     speed: float | tuple[ArrayLike, ArrayLike],
     dt: float,
@@ -44,75 +50,62 @@ def dissipation(
     scheme: core.Scheme | None = None,
     progress: core.Progress | None = None,
 ) -> xarray.Dataset:
-    """March as `transient` does, and sum up what every part, bearing and spring turns into heat.
+    """March as `transient` does, and sum what every part, bearing and spring turns into heat.
 
-    Viscous damping loses ẋᵀCẋ; the shear of a viscoelastic part, "layer (shear)", what the dashpots of its
-    branches and its η0 lose; a bearing what its contacts lose. Powers are summed by the trapezoidal rule over
-    the last `steps` steps, without `settle` all but the first, as in the audit of `transient`, whose linear,
-    branch and contact losses these are parts of. A part whose damping turns with the shaft is reckoned by its
-    motion in the fixed frame.
+    Viscous damping loses ẋᵀCẋ. The shear of a viscoelastic part, "layer (shear)", loses what the dashpots of
+    its branches and its η0 lose; a bearing what its contacts lose. Powers are summed by the trapezoidal rule
+    over the last `steps` steps (without `settle` all but the first), as in the audit of `transient`: the
+    entries are the parts of its linear, branch and contact losses. The loss of a part whose damping turns
+    with the shaft is that of its motion in the fixed frame.
 
-    speed, dt, steps, settle, scheme, progress: as in `transient`.
+    Parameters
+    ----------
+    source
+        Equilibrium, or an application, whose equilibrium is found first.
+    speed, dt, steps, settle, scheme, progress
+        As in `transient`; at least one step.
 
-    Returns a Dataset over "part": energy, J, and power, its mean, W.
+    Returns
+    -------
+    xarray.Dataset
+        Over "part": energy, J, and power, its mean, W. Attribute `complete` is 0 where the march did not
+        reach its end.
 
-    Raises ValueError and SolverError as `transient`.
+    Raises
+    ------
+    ValueError
+        As `transient`; also for a system, which no longer says what its bearings lose once linearised.
+    SolverError, Interrupted
+        As `transient`; `partial` is the Dataset up to there.
     """
-    if not (dt > 0 and math.isfinite(dt)):
-        raise ValueError(f"dt is {dt}; the time step must be positive, in s")
-    for name, value, least in (("steps", steps, 1), ("settle", settle, 0)):
-        if not value >= least or value % 1 != 0:
-            raise ValueError(f"{name} is {value}; it must be a whole number of at least {least}")
-    if source.modulus != "relaxed":
+    given: object = source
+    if isinstance(given, System):
         raise ValueError(
-            f"the equilibrium has its layers at their {source.modulus} modulus; a march starts with relaxed "
-            f'ones: take equilibrium(app, modulus="relaxed")'
+            f"source is {given!r}; pass the application or bd.equilibrium(app): a linearised system no "
+            f"longer says what its bearings lose"
         )
-    system = source.system
-    system.check_speed(checked_speed(speed))
-    modal, T = system.modal()
-    sinks = _sinks(modal)
-    channels: list[Channel] = []
-    sizes = []
-    for sink in sinks:
-        if sink.channel is not None:
-            kind, bearing, index = sink.channel
-            channels.append((kind, None, bearing, index))
-        else:
-            channels += [(core.CHANNEL_KINDS["velocity"], row, 0, 0) for row in sink.rows]
-        sizes.append(1 if sink.channel is not None else len(sink.rows))
-    model = modal.model(channels)
-    base = scheme or core.Scheme(dt)
-    own = core.Scheme(dt, base.beta, base.gamma, speed, base.tolerance, base.max_iterations, False, base.isa)
+    march = March.of(source, speed=speed, dt=dt, steps=steps, settle=settle, scheme=scheme, least_steps=1)
+    sinks = _sinks(march.modal)
+    channels = [sink.channels() for sink in sinks]
+    model = march.modal.model([channel for own in channels for channel in own])
+    dt, sizes = march.stepping.dt, [len(own) for own in channels]
 
-    state = model.state(0.0, T.T @ system.M @ source.x, np.zeros(system.n))
-    total = int(settle) + int(steps)
-    energy, last, done, start = np.zeros(len(sinks)), np.zeros((0, len(sinks))), 0, True
-    while done < total:
-        settling = done < settle
-        count = int(settle) - done if settling else min(PIECE, total - done)
-        # the last settled step is the first whose power counts
-        rows, state, report = core.march(
-            model,
-            state,
-            own,
-            count,
-            count if settling else 1,
-            start=start,
-            progress=part_of(progress, done, total),
-        )
-        if report.status != 0:
-            failed = core.Interrupted if report.status == core.INTERRUPTED else None
-            text = f"{report.text} in step {done + report.steps + 1} at t = {report.t:.6g} s"
-            raise failed(text) if failed else core.SolverError(f"{text}; try a smaller dt", report)
+    state = march.start(model)
+    energy, last, done = np.zeros(len(sinks)), np.zeros((0, len(sinks))), 0
+    # the power of the last state before the record is the first that counts
+    for rows, _, report in march.pieces(
+        model, state, start=True, size=PIECE, keep_settled=True, progress=progress
+    ):
         power = np.vstack([last, _powers(sinks, sizes, rows)])
-        energy += dt * (power.sum(axis=0) - 0.5 * (power[0] + power[-1]))
-        last, start, done = power[-1:], False, done + count
+        if len(power):
+            energy += dt * (power.sum(axis=0) - 0.5 * (power[0] + power[-1]))
+        last, done = power[-1:], done + report.steps
 
     from bearingdyn.results import dataset, inputs_of
 
-    duration = dt * (steps if settle else max(steps - 1, 1))
-    return dataset(
+    counted = max(done - march.settle, 0)
+    duration = dt * max(counted if march.settle else counted - 1, 1)
+    result = dataset(
         {
             "energy": ("part", energy, "J", "energy turned into heat"),
             "power": ("part", energy / duration, "W", "its mean power"),
@@ -120,12 +113,15 @@ def dissipation(
         {
             "analysis": "dissipation",
             "dt": dt,
-            "settle": int(settle),
-            "steps": int(steps),
-            **inputs_of(system.inputs),
+            "settle": march.settle,
+            "steps": counted,
+            "complete": int(report.status == 0),
+            "status": report.text,
+            **inputs_of(march.system.inputs),
         },
         {"part": ([s.name for s in sinks], "")},
     )
+    return march.ended(result, replace(report, steps=done))
 
 
 def _sinks(system: System) -> list[Sink]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-# an eigenvalue this close to the real axis, relative to its size, does not swing
+# an eigenvalue this close to the real axis, relative to its size, does not oscillate
 REAL = 1e-9
 
 
@@ -29,18 +29,36 @@ def modes(
     damped: bool = False,
     modulus: str = "relaxed",
 ) -> xarray.Dataset:
-    """Natural modes about an equilibrium (bearings at their tangents), or of an application without bearings.
+    """Natural modes about an equilibrium, or of an application without bearings.
 
-    Undamped: layers at their "relaxed" or "instantaneous" modulus, gyroscopic forces at `speed` (rad/s), no
-    damping, nor the circulatory force of damping that turns.
-    Damped: (K, C, G, N) and every Maxwell branch as a state, so eigenvalues are those of the
-    frequency-dependent problem itself.
+    Parameters
+    ----------
+    source
+        Equilibrium, whose bearings act by their tangents; or an application or system without bearings.
+    count
+        How many modes, the lowest first; None for all.
+    speed
+        rad/s of the shaft, for gyroscopic forces and, in damped modes, damping that turns.
+    damped
+        False: only masses, stiffnesses and gyroscopic forces act. True: C, G, K, N and every Maxwell branch
+        act, each branch as a state, so that the eigenvalues solve the frequency-dependent problem exactly.
+    modulus
+        Of the layers in undamped modes, "relaxed" or "instantaneous".
 
-    Returns a Dataset over "mode": frequency (Hz), damping_ratio, eigenvalue (rad/s, complex), shape (mode,
-    coordinate) complex, of the system's coordinates; motion of a place is rows(place) @ shape.
+    Returns
+    -------
+    xarray.Dataset
+        Over "mode": frequency (Hz), damping_ratio, eigenvalue (rad/s, complex), and shape (mode, coordinate),
+        complex, in the coordinates of the system; the motion of a place is rows(place) @ shape.
 
-    Raises ValueError for bearings without an equilibrium, or a damped part that would turn at speed.
+    Raises
+    ------
+    ValueError
+        For bearings without an equilibrium, and for a part that would turn although its damping is known at
+        rest only.
 
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> app = bd.Application()
     >>> app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))

@@ -1,8 +1,9 @@
-"""Sound power that vibrating surfaces would radiate as plane waves do: one number for a whole housing.
+"""Equivalent radiated power (ERP) of vibrating surfaces: one number for a whole housing.
 
-ERP = ½ ρ c ∫ |v_n|² dA of the normal velocity's amplitude v_n. It has the radiation efficiency 1, which the
-surface of a machine reaches above its critical frequency and falls short of below: an upper estimate, and a
-fair measure to compare designs with, where one point of the surface is not.
+ERP = ½ ρ c ∫ |v_n|² dA, with the amplitude v_n of the normal velocity, is what the surfaces would radiate as
+plane waves do, with radiation efficiency 1. The surface of a machine reaches that efficiency above its
+critical frequency and falls short of it below. ERP is thus an upper estimate, and a fairer measure for
+comparing designs than the motion of any one point.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import frequencies, linear
 from bearingdyn.analysis.recovery import Input
 from bearingdyn.application import Application
+from bearingdyn.checks import positive
 from bearingdyn.cms import Surface
 from bearingdyn.system import PartTerm, System
 
@@ -47,15 +49,20 @@ def radiated_power(
     density, sound_speed
         Of the medium, kg/m³ and m/s; those of air at 20 °C.
 
-    Returns a Dataset over (frequency, surface, input): power, W per N², and mean_square, the squared
-    amplitude of the normal velocity averaged over the area, (m/s)² per N²; and area (surface), m².
+    Returns
+    -------
+    xarray.Dataset
+        Over (frequency, surface, input): power, W per N², and mean_square, the squared amplitude of the
+        normal velocity averaged over the area, (m/s)² per N²; and area (surface), m².
 
-    Raises ValueError for an unknown surface or channel, a medium that is none, and as `frequency_response`.
+    Raises
+    ------
+    ValueError
+        For an unknown surface or channel, a density or speed of sound that is not positive, and as
+        `frequency_response`.
     """
     f = frequencies(frequency)
-    for name, number in (("density", density), ("sound_speed", sound_speed)):
-        if not (number > 0 and np.isfinite(number)):
-            raise ValueError(f"{name} is {number}; it must be positive")
+    density, sound_speed = positive("density", density), positive("sound_speed", sound_speed)
     state = linear(source)
     state.system.check_speed(speed)
     found = [_surface(state.system, name) for name in surfaces]

@@ -17,8 +17,16 @@ from bearingdyn.types import Array, Complex
 class Input:
     """A unit force, or a unit acceleration of the ground along an axis (0, 1, 2).
 
-    force (n,): on the system, N, or −M R for the ground. part, load: the part a force acts on, and the force
-    (m,) in its own coordinates.
+    Parameters
+    ----------
+    name
+        The channel.
+    force
+        On the system (n,), N; −M R for the ground.
+    axis
+        Of the ground's motion; None for a force.
+    part, load
+        Part that a force acts on, and the force (m,) in the coordinates of that part.
     """
 
     name: str
@@ -36,7 +44,10 @@ class Input:
     def of(cls, system: System, name: str) -> Input:
         """An input by its channel.
 
-        Raises ValueError for an unknown one, or the ground under a part that holds itself.
+        Raises
+        ------
+        ValueError
+            For an unknown channel, and for the ground under a part that holds itself.
         """
         place, _, component = name.rpartition(".")
         if place != GROUND:
@@ -63,11 +74,21 @@ class Input:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """A motion row @ x, or a force: the sum of what parts, springs and bearings put on something.
+    """A motion row @ x, or a force: the sum of what parts, springs and bearings exert on something.
 
-    parts: a part, and which of its coordinates is balanced. springs: a spring, and the share (k,) of each of
-    its forces. bearings: the first coefficient of a bearing among all, its B, and the share (coefs,) of each
-    of its forces.
+    Parameters
+    ----------
+    name
+        The channel.
+    row
+        (n,), of a motion.
+    parts
+        Of each part, which of its coordinates is in balance with the force.
+    springs
+        Of each spring, the share (k,) of each of its forces.
+    bearings
+        Of each bearing, the index of its first coefficient among all, its B, and the share (coefs,) of each
+        of its forces.
     """
 
     name: str
@@ -109,7 +130,10 @@ class Output:
     def of(cls, system: System, name: str) -> Output:
         """An output by its channel.
 
-        Raises ValueError for an unknown one.
+        Raises
+        ------
+        ValueError
+            For an unknown channel; says what there is.
         """
         place, _, _ = name.rpartition(".")
         component = component_of(name)
@@ -153,7 +177,7 @@ class Output:
 
     @classmethod
     def _held(cls, system: System, name: str, joint: tuple[str, ...], k: int) -> Output:
-        """Component k of what all that is fastened to a joint of interfaces puts on the ground there."""
+        """Component k of the force on the ground from everything fastened to a joint of interfaces."""
         parts = [
             (term, int(term.element.interfaces[rest][k]))
             for term in system.parts
@@ -200,7 +224,7 @@ class Output:
 def _balance(
     term: PartTerm, k: int, x: Complex, omega: Array, speed: float, inputs: Sequence[Input]
 ) -> Complex:
-    """Force (f, i) that a part puts on what joins its coordinate k, from its motions (f, n, i)."""
+    """Force (f, i) that a part exerts through its coordinate k, from its motions (f, n, i)."""
     e = term.element
     D = (
         -(omega[:, None] ** 2) * e.M[k]
@@ -220,7 +244,7 @@ def _balance(
 
 
 def requested(outputs: Sequence[Output], n: int) -> Array:
-    """All rows that the outputs need, one under another, (k, n)."""
+    """All rows (k, n) that the outputs need, stacked."""
     return np.vstack([np.zeros((0, n)), *(o.rows for o in outputs)])
 
 

@@ -1,4 +1,4 @@
-"""Mode shapes where they can be seen: on the interfaces and points of the parts, and on their surfaces."""
+"""Mode shapes where they can be seen: at the interfaces and outputs of the parts, and on their surfaces."""
 
 from __future__ import annotations
 
@@ -23,8 +23,16 @@ if TYPE_CHECKING:
 class MovedSurface:
     """The surface of a part where it stands, and its motion in a mode.
 
-    part: name. points: (p, 3), m, from the first interface of the first part. faces: (f, 3 or 4), corners
-    among the points. motion: (p, 3), complex, m, of the size that the mode has.
+    Parameters
+    ----------
+    part
+        Its name.
+    points
+        (p, 3), m, from the first interface of the first part.
+    faces
+        (f, 3 or 4), the corners of each face among the points.
+    motion
+        (p, 3), complex, m, of the size that the mode has.
     """
 
     part: str
@@ -34,14 +42,26 @@ class MovedSurface:
 
 
 def mode_shapes(source: Equilibrium | Application | System, found: xarray.Dataset) -> xarray.Dataset:
-    """Motion of every interface and point in the modes that `modes` found, and where it stands.
+    """Motion of every interface and output in the modes that `modes` found, and where each stands.
 
-    Returns a Dataset with motion (mode, place, component), complex, m and rad, NaN for rotations of points
-    that have none; position (place, axis), m, from the first interface of the first part; and frequency
-    (mode). A mode has the size that `modes` gave it. Places that nothing joins to the first part are left
-    out.
+    Parameters
+    ----------
+    source
+        What the modes were found of.
+    found
+        As `modes` returns it.
 
-    Raises ValueError for modes of another system, or a system that does not know its parts.
+    Returns
+    -------
+    xarray.Dataset
+        motion (mode, place, component), complex, m and rad, of the size that the modes have, NaN for the
+        rotations of outputs without any; position (place, axis), m, from the first interface of the first
+        part; and frequency (mode). Places that nothing joins to the first part are left out.
+
+    Raises
+    ------
+    ValueError
+        For modes of another system, and for a system that does not know its parts.
     """
     system, shape = _of_one_system(source, found)
     places = [name for name in system.outputs if name in system.positions]
@@ -60,7 +80,7 @@ def mode_shapes(source: Equilibrium | Application | System, found: xarray.Datase
                 ("mode", "place", "component"),
                 motion,
                 "m, rad",
-                "mode shape at interfaces and points",
+                "mode shape at interfaces and outputs",
             ),
             "position": (
                 ("place", "axis"),
@@ -81,13 +101,29 @@ def mode_surfaces(
     mode: int,
     parts: Sequence[str] | None = None,
 ) -> list[MovedSurface]:
-    """One of the modes that `modes` found, on the surfaces of the parts that know theirs.
+    """One of the modes that `modes` found, on the surfaces of the parts.
 
-    parts: names of those wanted; None: all that have a surface and are joined to the first part. Bare
-    superelements and imported matrices have none.
+    Parameters
+    ----------
+    source
+        What the modes were found of.
+    found
+        As `modes` returns it.
+    mode
+        Which of them, counted from 0.
+    parts
+        Names of the parts wanted; None for all that have a surface and are joined to the first part. Bare
+        superelements and imported matrices have no surface.
 
-    Raises ValueError for modes of another system, a mode that is not there, a part without surface or place,
-    or when no part has one.
+    Returns
+    -------
+    list of MovedSurface
+
+    Raises
+    ------
+    ValueError
+        For modes of another system, a mode that does not exist, a part without a surface or a known place,
+        and where no part has a surface.
     """
     system, shape = _of_one_system(source, found)
     if not 0 <= mode < len(shape):

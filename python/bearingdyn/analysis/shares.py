@@ -1,4 +1,4 @@
-"""Which part stores and which part loses the energy of a mode.
+"""Which parts store the energy of a mode, and which parts lose it.
 
 For a mode φ e^{λt}, averaged over its phase and in units of ¼e^{2 Re λ t}: kinetic |λ|² φᴴMφ; stored in
 springs φᴴKφ, and in a Maxwell branch 2 G |λτ/(1 + λτ)|² |Lᵀφ|²; lost in dampers, twice |λ|² φᴴCφ and 2 Gτ
@@ -35,16 +35,29 @@ class Store:
 
 
 def energy_shares(source: Equilibrium | Application | System, found: xarray.Dataset) -> xarray.Dataset:
-    """Shares of each part, bearing and spring in the energy and the loss of modes that `modes` found.
+    """Share of each part, bearing and spring in the energy and the loss of the modes that `modes` found.
 
-    The shear of a viscoelastic part stands by itself, as "layer (shear)"; "layer" is the rest of it: its
-    mass, elastic regions and change of volume. A bearing has its tangent stiffness and damping.
+    The shear of a viscoelastic part has an entry of its own, "layer (shear)"; "layer" is the rest of the
+    part: its mass, elastic regions and change of volume. A bearing has its tangent stiffness and damping.
 
-    Returns a Dataset over (mode, part): kinetic, strain and dissipation, shares that sum to 1 (the last to 0
-    for undamped modes), and damping, each one's part of the damping ratio. Material that turns with the shaft
-    may feed a mode, and its share then is negative.
+    Parameters
+    ----------
+    source
+        What the modes were found of.
+    found
+        As `modes` returns it.
 
-    Raises ValueError for modes of another system, or bearings without an equilibrium.
+    Returns
+    -------
+    xarray.Dataset
+        Over (mode, part): kinetic, strain and dissipation, shares that sum to 1 (the dissipation of undamped
+        modes to 0); and damping, what each part adds to the damping ratio. It is negative where material
+        that turns with the shaft feeds the mode.
+
+    Raises
+    ------
+    ValueError
+        For modes of another system, and for bearings without an equilibrium.
     """
     system = linear(source).system
     if not system.parts:

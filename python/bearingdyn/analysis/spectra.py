@@ -18,10 +18,27 @@ WINDOWS = ("hann", "none")
 def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarray.Dataset:
     """One-sided amplitude spectrum (zero-to-peak) of a recorded channel, its mean removed.
 
-    A sine of amplitude A on a line of the grid shows as A whatever the window. The resolution is 1/T of the
-    record.
+    A sine of amplitude A whose frequency is on a line of the spectrum shows as A, whatever the window. The
+    resolution is 1/T of a record of length T.
 
-    Raises ValueError for an unknown channel or window, or fewer than four samples.
+    Parameters
+    ----------
+    result
+        As `transient` returns it.
+    channel
+        Name of a recorded channel.
+    window
+        "hann" or "none".
+
+    Returns
+    -------
+    xarray.Dataset
+        amplitude (frequency), in the unit of the channel.
+
+    Raises
+    ------
+    ValueError
+        For an unknown channel or window, and for fewer than four samples.
     """
     check_window(window)
     signal = signal_of(result, channel)
@@ -44,14 +61,24 @@ def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarr
 def orbit(result: xarray.Dataset, x: str, y: str) -> xarray.Dataset:
     """Two channels against each other, each with the mean of its record subtracted.
 
-    The mean is the static deflection and what running at speed adds to it.
+    The mean is the static deflection and what the rotation adds to it.
 
-    Raises ValueError for an unknown channel.
+    Parameters
+    ----------
+    result
+        As `transient` returns it.
+    x, y
+        Names of recorded channels, m.
 
-    result: as `transient` returns it.
-    x, y: names of recorded channels, m.
+    Returns
+    -------
+    xarray.Dataset
+        x and y (time), m.
 
-    Returns a Dataset with x and y (time), m.
+    Raises
+    ------
+    ValueError
+        For an unknown channel.
     """
     from bearingdyn.results import dataset
 
@@ -67,7 +94,7 @@ def orbit(result: xarray.Dataset, x: str, y: str) -> xarray.Dataset:
 
 
 def signal_of(result: xarray.Dataset, channel: str) -> Array:
-    """Samples (n,) of a recorded channel. Raises ValueError for an unknown one."""
+    """Samples (n,) of a recorded channel; ValueError for one that was not recorded."""
     known = [str(c) for c in result["channel"].values]
     if channel not in known:
         raise ValueError(f"channel {channel!r} was not recorded; there are {known}")
@@ -85,7 +112,7 @@ def sampling_time(result: xarray.Dataset) -> float:
 
 
 def speed_profile(result: xarray.Dataset) -> tuple[Array, Array]:
-    """Times, s, and speeds of the shaft, rad/s, linear in between; one of each where it is steady."""
+    """Times, s, and speeds of the shaft, rad/s, linear in between; one of each for a steady speed."""
     speeds = np.atleast_1d(np.asarray(result.attrs["speed"], dtype=np.float64))
     return np.atleast_1d(np.asarray(result.attrs.get("speed_time", [0.0]), dtype=np.float64)), speeds
 
@@ -97,7 +124,7 @@ def check_window(window: str) -> None:
 
 
 def amplitudes(signal: Array, window: str) -> Array:
-    """One-sided amplitudes (..., n//2 + 1), zero-to-peak, of signals (..., n), each less its mean."""
+    """One-sided amplitudes (..., n//2 + 1), zero-to-peak, of signals (..., n) with their means removed."""
     n = signal.shape[-1]
     weight = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(n) / n) if window == "hann" else np.ones(n)
     centred = signal - signal.mean(axis=-1, keepdims=True)

@@ -1,4 +1,4 @@
-"""Spectra over the turn of the shaft: orders, which stay where they are while the speed changes."""
+"""Spectra over orders of the shaft speed: an order keeps its place while the speed changes."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.analysis.spectra import amplitudes, check_window, signal_of, speed_profile, unit_of
+from bearingdyn.checks import numbers, positive, require, whole
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ def shaft_angle(result: xarray.Dataset) -> Array:
     times, speeds = speed_profile(result)
     if speeds.size == 1:
         return np.asarray(speeds[0] * t)
-    # as the core reckons: the first speed holds before the profile, the last after it
+    # as in the core: the first speed holds before the profile, the last after it
     at = np.concatenate([[0.0], np.cumsum(0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times))])
     k = np.clip(np.searchsorted(times, t, side="right") - 1, 0, times.size - 2)
     inside = np.clip(t, times[0], times[-1]) - times[k]
@@ -37,14 +38,32 @@ def shaft_angle(result: xarray.Dataset) -> Array:
 def order_spectrum(
     result: xarray.Dataset, channel: str, highest: float, window: str = "hann"
 ) -> xarray.Dataset:
-    """One-sided amplitude spectrum (zero-to-peak) over orders of the shaft speed, through a run-up or not.
+    """One-sided amplitude spectrum (zero-to-peak) over orders of the shaft speed, steady or not.
 
-    The record is taken at equal steps of the shaft's angle by quintic splines, over as many whole turns as it
-    holds; the resolution is one over their number. highest: the highest order wanted; eight samples in its
-    period keep its amplitude to 1e-3, sixteen to 1e-5.
+    Quintic splines resample the record at equal steps of the shaft's angle, over as many whole turns as it
+    holds. The resolution is one over the number of turns.
 
-    Raises ValueError for an unknown channel or window, a shaft that stands or turns back, less than one turn,
-    or a record too coarse for the highest order.
+    Parameters
+    ----------
+    result
+        As `transient` returns it.
+    channel
+        Name of a recorded channel.
+    highest
+        The highest order wanted. Eight samples in its period keep its amplitude to 1e-3, sixteen to 1e-5.
+    window
+        "hann" or "none".
+
+    Returns
+    -------
+    xarray.Dataset
+        amplitude (order), in the unit of the channel.
+
+    Raises
+    ------
+    ValueError
+        For an unknown channel or window, a shaft that stands still or reverses, less than one turn, and a
+        record too coarse for the highest order.
     """
     check_window(window)
     angle, values = _over_angle(result, channel, highest)
@@ -71,25 +90,41 @@ def track_orders(
 ) -> xarray.Dataset:
     """Amplitude and phase of orders of the shaft speed along a run-up.
 
-    Over every `turns` turns, half of them shared with the next, a Hann-weighted least-squares fit of all the
-    orders and a mean: a cosine of one of them, of steady amplitude, is found as it is, even with neighbours
-    an order apart.
+    All orders and a mean are fitted together by Hann-weighted least squares to pieces of `turns` turns, each
+    of which overlaps the next by half. A cosine of steady amplitude in one of the orders is thus recovered
+    exactly, even beside neighbours one order away.
 
-    Returns a Dataset with amplitude (time, order), complex, zero-to-peak: Re(amplitude·e^{i·order·angle}) of
-    the shaft's angle, and speed (time), rad/s, in the middle of each piece.
+    Parameters
+    ----------
+    result
+        As `transient` returns it.
+    channel
+        Name of a recorded channel.
+    orders
+        Multiples of the shaft speed, positive.
+    turns
+        Length of a piece, at least 2.
 
-    Raises ValueError for an unknown channel, no order or one that is not positive, fewer than two turns, or
-    as `order_spectrum`.
+    Returns
+    -------
+    xarray.Dataset
+        amplitude (time, order), complex, zero-to-peak: the signal is Re(amplitude·e^{i·order·angle}), with
+        the shaft's angle; and speed (time), rad/s. Both in the middle of each piece.
+
+    Raises
+    ------
+    ValueError
+        For an unknown channel, no order or one that is not positive, fewer than two turns, and as
+        `order_spectrum`.
     """
-    wanted = np.atleast_1d(np.asarray(orders, dtype=np.float64))
-    if wanted.ndim != 1 or wanted.size == 0 or not (np.isfinite(wanted).all() and (wanted > 0).all()):
-        raise ValueError(f"orders is {orders!r}; give one or more positive orders of the shaft speed")
-    if not (turns >= 2 and turns % 1 == 0):
-        raise ValueError(f"turns is {turns}; it must be a whole number of at least 2")
+    remedy = "give one or more positive orders of the shaft speed"
+    wanted = numbers("orders", orders, remedy)
+    require(bool((wanted > 0).all()), "orders", orders, remedy)
+    turns = whole("turns", turns, 2)
     highest = float(wanted.max())
     angle, values = _over_angle(result, channel, highest)
     per_turn = int(np.ceil(PER_ORDER * highest))
-    length = int(turns) * per_turn
+    length = turns * per_turn
     count = int((angle[-1] - angle[0]) / (2 * np.pi) * per_turn)
     if count < length:
         raise ValueError(f"channel {channel!r} holds less than {turns} turns of the shaft; march longer")
@@ -121,20 +156,19 @@ def track_orders(
             ),
             "speed": ("time", np.interp(middle, *speed_profile(result)), "rad/s", "speed of the shaft"),
         },
-        {"analysis": "order tracking", "channel": channel, "turns": int(turns)},
+        {"analysis": "order tracking", "channel": channel, "turns": turns},
         {"time": (middle, "s"), "order": (wanted, "1")},
     )
 
 
 def _over_angle(result: xarray.Dataset, channel: str, highest: float) -> tuple[Array, Array]:
     """Angle and samples of a channel, checked to be fine enough for the highest order."""
-    if not (highest > 0 and np.isfinite(highest)):
-        raise ValueError(f"highest is {highest}; give the highest order wanted, above zero")
+    highest = positive("highest", highest, "give the highest order wanted, above zero")
     values = signal_of(result, channel)
     angle = np.sign(np.sum(np.diff(shaft_angle(result)))) * shaft_angle(result)
     steps = np.diff(angle)
     if steps.size == 0 or not (steps > 0).all():
-        raise ValueError("the shaft stands or turns back; orders need a shaft that turns one way")
+        raise ValueError("the shaft stands still or reverses; orders need a shaft that turns one way")
     finest = np.pi / float(steps.max())
     if highest > finest:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Spectra of what changes with time: the envelope of a band, and the spectrum piece by piece."""
+"""Spectra of signals that change with time: of the envelope in a band, and of one piece after another."""
 
 from __future__ import annotations
 
@@ -22,17 +22,34 @@ if TYPE_CHECKING:
 def envelope_spectrum(
     result: xarray.Dataset, channel: str, band: tuple[float, float], window: str = "hann"
 ) -> xarray.Dataset:
-    """Amplitude spectrum (zero-to-peak) of the envelope of a recorded channel within a band, Hz.
+    """Amplitude spectrum (zero-to-peak) of the envelope of a recorded channel within a band.
 
-    The band is cut out without a skirt and made analytic in the frequency domain (Hilbert transform); the
-    envelope is its modulus. Impacts that ring a resonance in the band show at the rate they repeat at. A
-    carrier A (1 + m cos ω_m t) cos ω_c t shows A·m at ω_m.
+    The band is cut out with sharp edges in the frequency domain and made analytic there (Hilbert transform);
+    the envelope is the absolute value. Impacts that excite a resonance in the band show at their rate of
+    repetition. A carrier A (1 + m cos ω_m t) cos ω_c t shows A·m at ω_m.
 
-    Returns a Dataset with amplitude (frequency), the mean of the envelope left out, up to the width of the
-    band, and envelope (time).
+    Parameters
+    ----------
+    result
+        As `transient` returns it.
+    channel
+        Name of a recorded channel.
+    band
+        Lower and upper limit, Hz.
+    window
+        "hann" or "none".
 
-    Raises ValueError for an unknown channel or window, a band that is none or beyond half the sampling rate,
-    or fewer than four samples.
+    Returns
+    -------
+    xarray.Dataset
+        amplitude (frequency), without the mean of the envelope, up to the width of the band; and envelope
+        (time).
+
+    Raises
+    ------
+    ValueError
+        For an unknown channel or window, a band that does not rise or passes half the sampling rate, and for
+        fewer than four samples.
     """
     check_window(window)
     signal = signal_of(result, channel)
@@ -67,14 +84,31 @@ def envelope_spectrum(
 def waterfall(
     result: xarray.Dataset, channel: str, length: float, overlap: float = 0.5, window: str = "hann"
 ) -> xarray.Dataset:
-    """Amplitude spectra (zero-to-peak) of pieces of a record, each `length` s long, one after another.
+    """Amplitude spectra (zero-to-peak) of one piece of a record after another.
 
-    overlap: share of a piece that the next repeats, 0 ≤ overlap < 1. The resolution is 1/length.
+    Parameters
+    ----------
+    result
+        As `transient` returns it.
+    channel
+        Name of a recorded channel.
+    length
+        Of a piece, s; the resolution is 1/length.
+    overlap
+        Share of a piece that the next one repeats, 0 ≤ overlap < 1.
+    window
+        "hann" or "none".
 
-    Returns a Dataset with amplitude (time, frequency), at the middle of each piece, and speed (time), rad/s.
+    Returns
+    -------
+    xarray.Dataset
+        amplitude (time, frequency) and speed (time), rad/s, at the middle of each piece.
 
-    Raises ValueError for an unknown channel or window, a piece of fewer than four samples or longer than the
-    record, or an overlap outside its range.
+    Raises
+    ------
+    ValueError
+        For an unknown channel or window, a piece of fewer than four samples or longer than the record, and
+        an overlap outside its range.
     """
     check_window(window)
     signal = signal_of(result, channel)

@@ -30,8 +30,18 @@ UNFELT = 1e-9
 class BearingState:
     """A bearing in the static state, linearised at rest.
 
-    z (n,) relative raceway coefficients, m; g (n,) force on them, N; K, C (n, n) tangents, N/m and N s/m;
-    loads (Z,) of the balls, N. series: which coefficients; five between rigid rings.
+    Parameters
+    ----------
+    z
+        Relative raceway coefficients (n,), m.
+    g
+        Force on them (n,), N.
+    K, C
+        Tangents (n, n), N/m and N s/m.
+    loads
+        Of the balls (Z,), N.
+    series
+        Which coefficients they are; between rigid rings there are five.
     """
 
     z: Array
@@ -43,7 +53,7 @@ class BearingState:
 
     @property
     def radial_stiffness(self) -> float:
-        """Mean of the two radial diagonal tangents, N/m; of the balls alone, whatever the rings do."""
+        """Mean of the two radial diagonal tangents, N/m; of the balls alone, without the rings' own give."""
         x, y = (self.series.index(0, 1, sine) for sine in (0, 1))
         return float(self.K[x, x] + self.K[y, y]) / 2
 

@@ -12,6 +12,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.application import Application
+from bearingdyn.checks import numbers
 from bearingdyn.system import QUANTITIES, System
 
 if TYPE_CHECKING:
@@ -39,15 +40,23 @@ def unbalance_response(
     quantity
         "displacement", "velocity" or "acceleration", of motions.
 
-    Returns a Dataset with response (speed, output), complex, zero-to-peak: Re(response·e^{iΩt}), the shaft at
-    angle Ωt.
+    Returns
+    -------
+    xarray.Dataset
+        response (speed, output), complex, zero-to-peak: the motion is Re(response·e^{iΩt}) while the shaft
+        stands at the angle Ωt.
 
-    Raises ValueError for negative speeds, an application without unbalance, an unknown channel or quantity, a
-    damped part that would turn; ArithmeticError where the dynamic stiffness is singular.
+    Raises
+    ------
+    ValueError
+        For negative speeds, an application without unbalance, an unknown channel or quantity, a part that
+        would turn although its damping is known at rest only.
+    ArithmeticError
+        Where the dynamic stiffness is singular.
     """
-    given = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
-    if given.ndim != 1 or given.size == 0 or not (np.isfinite(given).all() and (given >= 0).all()):
-        raise ValueError("speeds must be a list of finite values of zero or more, in rad/s")
+    given = numbers(
+        "speeds", speeds, "speeds must be one or more finite values of zero or more, in rad/s", 0.0
+    )
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {list(QUANTITIES)}")
     state = linear(source)

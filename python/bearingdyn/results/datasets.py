@@ -80,8 +80,8 @@ def march_dataset(
 ) -> xarray.Dataset:
     """Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
 
-    facts: channels, units, dt, speed (times and speeds), decimate, settle, steps and, where known, inputs,
-    as in a run file's header.
+    facts: channels, units, dt, speed (times and speeds), decimate, settle, steps and, where known, inputs and
+    system_hash, as in a run file's header.
     """
     origin, count = float(state[0]), int(state[1])
     decimate = int(facts["decimate"])
@@ -106,6 +106,7 @@ def march_dataset(
             "complete": int(report.status == 0 and report.steps == facts["settle"] + facts["steps"]),
             "status": report.text,
             **inputs_of(facts.get("inputs", "")),
+            **{name: facts[name] for name in ("system_hash",) if name in facts},
             **(attrs or {}),
         },
         {"time": (time, "s"), "channel": (facts["channels"], "")},

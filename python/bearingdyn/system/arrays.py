@@ -9,7 +9,6 @@ property of time or frequency, not of the matrices.
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -21,6 +20,7 @@ from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Part
 from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
 from bearingdyn.bearing.series import RIGID, RacewaySeries
+from bearingdyn.checks import number
 from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.material import Maxwell
 from bearingdyn.types import Array, Index
@@ -35,6 +35,9 @@ SLOW = 1e-6
 ROUND_OFF, SLOW_ROUND_OFF = 1e-12, 1e-13
 # below this share of the largest (scaled) eigenvalue a matrix has none: rigid motions of a deviatoric one
 RANK = 1e-11
+# of two entries that should be equal, as a share of the largest of the matrix: far above the round-off of
+# double precision in any change of coordinates, far below what a wrong sign makes
+ASYMMETRY = 1e-9
 # a test spring in N/m that stands for a bearing when free motions are sought: any stiff value serves
 TEST_SPRING = 1e8
 
@@ -50,10 +53,20 @@ class LayerTerm:
 
 @dataclass(frozen=True, eq=False)
 class BearingTerm:
-    """One bearing or loose fit: B (n_coefs, n) gives its relative coefficients, inner minus outer.
+    """One bearing or loose fit.
 
-    offset: m along z that the inner ring sits beyond the motion B x. ends: rows (n_coefs, 6) of the interface
-    at each end.
+    Parameters
+    ----------
+    name, bearing
+        Its name and what it is.
+    B
+        (n_coefs, n); B x are its relative raceway coefficients, inner minus outer, m.
+    series
+        Which coefficients they are.
+    offset
+        Distance along z, m, of the inner ring from where B x puts it.
+    ends
+        Rows (n_coefs, 6) of the interface at each end, by the interface's name.
     """
 
     name: str
@@ -75,10 +88,19 @@ class BearingTerm:
 
 @dataclass(frozen=True, eq=False)
 class PartTerm:
-    """One part: its own coordinates are place @ x, place (m, n).
+    """One part of the system.
 
-    rigid (m, 6): its coordinates in unit rigid motions x, y, z, θx, θy, θz of its first interface; NaN where
-    it holds itself. source: what it was reduced from.
+    Parameters
+    ----------
+    name, element
+        Its name and its matrices.
+    place
+        (m, n); place @ x are the coordinates of the part.
+    rigid
+        (m, 6), its coordinates in unit rigid motions x, y, z, θx, θy, θz of its first interface; NaN for a
+        part that holds itself.
+    source
+        What it was reduced from.
     """
 
     name: str
@@ -90,9 +112,18 @@ class PartTerm:
 
 @dataclass(frozen=True, eq=False)
 class SpringTerm:
-    """Springs and dampers (k,), N/m and N s/m, on the motion across @ x, across (k, n).
+    """Springs and dampers of one joint.
 
-    ends: rows (k, 6) of the interface at each end.
+    Parameters
+    ----------
+    name
+        Of the joint.
+    across
+        (k, n); across @ x are the motions that they resist.
+    stiffness, damping
+        (k,), N/m and N s/m (N m/rad and N m s/rad of rotations).
+    ends
+        Rows (k, 6) of the interface at each end, by the interface's name.
     """
 
     name: str
@@ -120,21 +151,28 @@ class LoadTerm:
     own_sin: Array | None = None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class System:
-    """Matrices (n, n), terms, and rows (3 or 6, n) of every interface and point by name."""
+    """Matrices (n, n), terms, and rows (3 or 6, n) of every interface and output by name.
 
-    inputs: str = field(default="", kw_only=True)
-    """What the system was assembled from, as `bearingdyn.inputs` writes it."""
+    All fields are given by name; M, C, G, K, N is the order wherever the matrices are listed.
+
+    Raises
+    ------
+    ValueError
+        For M, C or K that is not symmetric, G or N that is not skew-symmetric, and matrices of unequal
+        shape or with an entry that is not finite; names the matrix and the entry.
+    """
+
     M: Array
     C: Array
-    K: Array
     G: Array
+    K: Array
     N: Array
-    layers: tuple[LayerTerm, ...]
-    bearings: tuple[BearingTerm, ...]
-    loads: tuple[LoadTerm, ...]
-    outputs: Mapping[str, Array]
+    layers: tuple[LayerTerm, ...] = ()
+    bearings: tuple[BearingTerm, ...] = ()
+    loads: tuple[LoadTerm, ...] = ()
+    outputs: Mapping[str, Array] = field(default_factory=dict)
     standstill: tuple[str, ...] = ()
     """Parts that turn with the shaft, but whose damping is written for the fixed frame."""
     inertia: Array | None = None
@@ -146,7 +184,14 @@ class System:
     turning: tuple[str, ...] = ()
     """Parts that turn with the shaft."""
     positions: Mapping[str, Array] = field(default_factory=dict)
-    """Where interfaces and points stand, (3,) m, from the first interface of the first part."""
+    """Where interfaces and outputs stand, (3,) m, from the first interface of the first part."""
+    inputs: str = ""
+    """What the system was assembled from, as `bearingdyn.inputs` writes it."""
+
+    def __post_init__(self) -> None:
+        """Check the matrices."""
+        for name in "MCGKN":
+            check_matrix(name, getattr(self, name), self.n, sign=-1 if name in "GN" else 1)
 
     def __repr__(self) -> str:
         """One line instead of the matrices."""
@@ -164,20 +209,26 @@ class System:
         return np.vstack([np.zeros((0, self.n)), *(b.B for b in self.bearings)])
 
     def rows(self, name: str) -> Array:
-        """Rows (3 or 6, n) of an interface or point.
+        """Rows (3 or 6, n) of an interface or output.
 
-        Raises ValueError when there is none of that name.
+        Raises
+        ------
+        ValueError
+            Where none has that name.
         """
         if name not in self.outputs:
             near = difflib.get_close_matches(name, self.outputs, n=1)
             meant = f"; did you mean {near[0]!r}?" if near else ";"
-            raise ValueError(f"{name!r} is no interface or point{meant} there are {sorted(self.outputs)}")
+            raise ValueError(f"{name!r} is no interface or output{meant} there are {sorted(self.outputs)}")
         return self.outputs[name]
 
     def row(self, channel: str) -> Array:
         """Row (n,) of one component: "shaft.left.y"; rotations are θx, θy, θz or rx, ry, rz.
 
-        Raises ValueError when the place or component does not exist.
+        Raises
+        ------
+        ValueError
+            Where the place or the component does not exist.
         """
         if channel in self.outputs:
             raise ValueError(f"{channel!r} is a place; add what of it is meant, as {channel + '.y'!r}")
@@ -191,13 +242,18 @@ class System:
         return np.asarray(rows[COMPONENTS.index(component)])
 
     def check_speed(self, speed: float) -> None:
-        """Refuse a speed (rad/s) that is not finite, or at which a part's damping would be wrong: ValueError.
+        """Refuse a speed at which the damping of a part would be wrong.
 
-        Damping of material that turns acts on ẋ − Ω J x; without its circulatory part a whirl that it drives
+        Damping of material that turns acts on ẋ − Ω J x. Without its circulatory part, a whirl that it makes
         unstable would look damped.
+
+        Raises
+        ------
+        ValueError
+            For a speed (rad/s) that is not finite, and for any but 0 where the damping of a part that turns
+            is known at rest only; names the part.
         """
-        if not math.isfinite(speed):
-            raise ValueError(f"speed is {speed}; it must be finite, in rad/s")
+        number("speed", speed, "it must be finite, in rad/s")
         if speed != 0.0 and self.standstill:
             raise ValueError(
                 f"{self.standstill[0]!r} turns with the shaft, and its damping is known for a part at rest "
@@ -233,8 +289,8 @@ class System:
             self,
             M=congruence(self.M),
             C=congruence(self.C),
-            K=congruence(self.K),
             G=congruence(self.G),
+            K=congruence(self.K),
             N=congruence(self.N),
             layers=tuple(replace(t, L=T.T @ t.L) for t in self.layers),
             bearings=tuple(replace(t, B=t.B @ T) for t in self.bearings),
@@ -246,12 +302,12 @@ class System:
         )
 
     def blocks(self) -> list[Index]:
-        """Coordinates that the structure without its bearings couples, block by block."""
+        """Coordinates that the structure couples, its bearings left out, block by block."""
         touched = [np.abs(layer.L).sum(axis=1) for layer in self.layers]
-        return coupled_blocks(self.M, self.C, self.K, self.G, self.N, *(np.outer(t, t) for t in touched))
+        return coupled_blocks(self.M, self.C, self.G, self.K, self.N, *(np.outer(t, t) for t in touched))
 
     def basis(self, modulus: str = "relaxed") -> tuple[Array, Array]:
-        """ω² (n,) and modes T (n, n), x = T q, of the structure without its bearings, block by block."""
+        """ω² (n,) and modes T (n, n), x = T q, of the structure, its bearings left out, block by block."""
         K = self.stiffness(modulus)
         T = np.zeros((self.n, self.n))
         squares = np.zeros(self.n)
@@ -263,7 +319,7 @@ class System:
     def modal(self) -> tuple[System, Array]:
         """The system in modes of its relaxed stiffness and mass, block by block, and T with x = T q.
 
-        M is then exactly the identity and the relaxed stiffness exactly diagonal, which a long march wants.
+        M is then exactly the identity and the relaxed stiffness exactly diagonal, as a long march needs.
         """
         squares, T = self.basis()
         modal = self.transformed(T)
@@ -274,14 +330,22 @@ class System:
         return replace(modal, M=np.eye(self.n), K=np.diag(squares) - relaxed), T
 
     def free_motions(self, modulus: str = "relaxed") -> Array:
-        """Motions (n, m) that nothing holds, bearings counted as springs, mass-normalised."""
+        """Motions (n, m) that nothing holds, mass-normalised; bearings count as springs."""
         K = self.stiffness(modulus) + TEST_SPRING * (self.B.T @ self.B)
         squares, shapes = natural(K, self.M)
         return np.asarray(shapes[:, squares <= 0.0])
 
     def model(self, channels: list[tuple[int, Array | None, int, int]], relaxed: bool = True) -> core.Model:
-        """The core's model. With `relaxed`, layers carry G0 inside K, as the march wants; else K leaves all
-        of their deviatoric part to a modulus given per frequency."""
+        """The core's model.
+
+        Parameters
+        ----------
+        channels
+            Kind, row (n,), bearing and index of what a march records.
+        relaxed
+            True, for a march: K holds the layers at their G0, and branches do the rest. False, for a
+            harmonic response: the whole deviatoric stiffness is left to a modulus given per frequency.
+        """
         C = self.viscous() if relaxed else self.C
         K = self.stiffness("relaxed") if relaxed else self.K
         empty = np.zeros(0)
@@ -290,25 +354,47 @@ class System:
             for t in self.layers
         ]
         return core.Model(
-            self.M,
-            C,
-            self.G,
-            K,
-            self.N,
-            layers,
-            [(t.kernel().packed(), t.B) for t in self.bearings],
-            [(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
-            channels,
+            M=self.M,
+            C=C,
+            G=self.G,
+            K=K,
+            N=self.N,
+            layers=layers,
+            bearings=[(t.kernel().packed(), t.B) for t in self.bearings],
+            loads=[(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
+            channels=channels,
+        )
+
+
+def check_matrix(name: str, A: Array, n: int, sign: int) -> None:
+    """Refuse A that is not (n, n), finite, and symmetric (sign 1) or skew-symmetric (sign −1): ValueError.
+
+    Round-off of a congruence transformation, a share of the largest entry, is let through.
+    """
+    if A.shape != (n, n):
+        raise ValueError(f"{name} has the shape {A.shape}; it must be {(n, n)}, as M")
+    if not np.isfinite(A).all():
+        i, j = np.argwhere(~np.isfinite(A))[0]
+        raise ValueError(f"{name}[{i}, {j}] is {A[i, j]}; every entry must be finite")
+    off = np.abs(A - sign * A.T)
+    i, j = np.unravel_index(np.argmax(off), off.shape) if n else (0, 0)
+    if n and off[i, j] > ASYMMETRY * np.abs(A).max():
+        kind = "symmetric" if sign > 0 else "skew-symmetric"
+        raise ValueError(
+            f"{name}[{i}, {j}] is {A[i, j]:g} and {name}[{j}, {i}] is {A[j, i]:g}; {name} must be {kind}"
         )
 
 
 def natural(K: Array, M: Array) -> tuple[Array, Array]:
-    """ω² (n,) and mass-normalised shapes (n, n) of a symmetric (K, M); what is only round-off is zero.
+    """ω² (n,) and mass-normalised shapes (n, n) of a symmetric (K, M); an ω² within round-off becomes zero.
 
-    A suspension of 1 Hz beside a layer's inner mode of 1 MHz is 1e-12 of it: the slow modes are therefore
-    solved for again, among themselves.
+    The ω² of a suspension at 1 Hz is 1e-12 of that of a layer's inner mode at 1 MHz. The slow modes are
+    therefore solved for once more, among themselves.
 
-    Raises ValueError for a mass matrix that is not positive definite.
+    Raises
+    ------
+    ValueError
+        For a mass matrix that is not positive definite.
     """
     try:
         squares, shapes = scipy.linalg.eigh(K, M)
@@ -330,7 +416,7 @@ def natural(K: Array, M: Array) -> tuple[Array, Array]:
 
 
 def factor(A: Array) -> Array:
-    """L (n, rank) with A = L Lᵀ of a positive semi-definite matrix, what is only round-off left out."""
+    """L (n, rank) with A = L Lᵀ for a positive semi-definite A; directions within round-off are left out."""
     scale = np.sqrt(np.maximum(np.diag(A), 0.0))
     scale[scale == 0.0] = 1.0
     values, vectors = np.linalg.eigh(A / np.outer(scale, scale))
@@ -350,6 +436,7 @@ def is_rotation(channel: str) -> bool:
 
 
 def static_modulus(layer: LayerTerm, modulus: str) -> float:
+    """The "relaxed" or "instantaneous" shear modulus of a layer, Pa; ValueError for any other word or law."""
     if not isinstance(layer.material, Maxwell):
         raise ValueError(
             f"layer {layer.part!r} has the material {type(layer.material).__name__}; statics and the time "

@@ -32,14 +32,14 @@ def assemble(app: Application) -> System:
         moving = np.flatnonzero(place >= 0)
         select[part][moving, place[moving]] = 1.0
 
-    M, C, K, G, N, firm = (np.zeros((n, n)) for _ in range(6))
+    M, C, G, K, N, firm = (np.zeros((n, n)) for _ in range(6))
     inertia = np.zeros((n, 3))
     layers: list[LayerTerm] = []
     terms: list[PartTerm] = []
     outputs: dict[str, Array] = {}
     for part, element in app.parts.items():
-        own = (element.M, element.C, element.K, element.G, element.N)
-        for total, A in zip((M, C, K, G, N), own, strict=True):
+        own = (element.M, element.C, element.G, element.K, element.N)
+        for total, A in zip((M, C, G, K, N), own, strict=True):
             total += select[part].T @ np.asarray(A) @ select[part]
         R = app.rigid_shapes(part)
         rigid = np.full((element.n, 6), np.nan) if R is None else R
@@ -89,22 +89,22 @@ def assemble(app: Application) -> System:
         name for name, e in turning.items() if e.viscoelastic or (np.any(e.C) and not np.any(e.N))
     )
     system = System(
-        M,
-        C,
-        K,
-        G,
-        N,
-        tuple(layers),
-        tuple(bearings),
-        loads,
-        outputs,
-        standstill,
-        inertia,
-        tuple(terms),
-        tuple(springs),
-        _held(app),
-        tuple(turning),
-        app.positions(),
+        M=M,
+        C=C,
+        G=G,
+        K=K,
+        N=N,
+        layers=tuple(layers),
+        bearings=tuple(bearings),
+        loads=loads,
+        outputs=outputs,
+        standstill=standstill,
+        inertia=inertia,
+        parts=tuple(terms),
+        springs=tuple(springs),
+        held=_held(app),
+        turning=tuple(turning),
+        positions=app.positions(),
     )
     check_held(system, firm)
     return noted(system, app)

@@ -10,9 +10,20 @@ from bearingdyn.types import Array
 
 
 def check_held(system: System, firm: Array) -> None:
-    """Nothing may be free to move but the spin of what the bearings carry.
+    """Refuse a system in which anything but the spin of a shaft in its bearings is free to move.
 
-    firm: (n, n) stiffness without the parts that creep (G0 = 0); under a constant load it alone counts.
+    Parameters
+    ----------
+    system
+        The system.
+    firm
+        Stiffness (n, n) without the parts that creep (G0 = 0); under a constant load only this part holds.
+
+    Raises
+    ------
+    ValueError
+        For coordinates without mass, a body that is free (named, with its direction), a load that turns a
+        free shaft, and a constant load that rests on a layer without a relaxed modulus.
     """
     unsupported = np.flatnonzero(np.diag(system.M) <= 0.0)
     if unsupported.size:
@@ -45,16 +56,16 @@ def check_held(system: System, firm: Array) -> None:
     torque = free.T @ load
     if np.abs(torque).max() > 1e-9 * max(1.0, float(np.abs(load).max())):
         raise ValueError(
-            "a constant load turns a shaft about z, where its bearings do not hold it; "
-            "ground that rotation or leave the torque out"
+            "a constant load turns a shaft about z, and bearings do not resist that rotation; "
+            "ground it or leave the torque out"
         )
     _check_creep(system, firm, free)
 
 
 def _check_creep(system: System, firm: Array, free: Array) -> None:
-    """A constant load may not rest on a layer without relaxed modulus.
+    """Refuse a constant load that rests on a layer without a relaxed modulus: ValueError.
 
-    In such a layer the reduced shapes still resist a change of volume; the rubber itself would flow.
+    The reduced shapes of such a layer still resist a change of volume, but the rubber itself would flow.
     """
     soft = [t.part for t in system.layers if static_modulus(t, "relaxed") == 0.0]
     load = system.static_load()
@@ -65,7 +76,7 @@ def _check_creep(system: System, firm: Array, free: Array) -> None:
     creeping = creeping - free @ (free.T @ (system.M @ creeping))
     if np.abs(creeping.T @ load).max(initial=0.0) > 1e-9 * float(np.abs(shapes.T @ load).max()):
         raise ValueError(
-            f"layer {soft[0]!r} has G0 = 0; it creeps without end under a constant load and there is no "
+            f"layer {soft[0]!r} has G0 = 0; under a constant load it creeps without end, and there is no "
             f"equilibrium; fit the material with a relaxed modulus G0 > 0"
         )
 

@@ -1,4 +1,4 @@
-"""What a system was assembled from, noted on it so that results can say it."""
+"""What a system was assembled from, kept with it so that results can say it."""
 
 from __future__ import annotations
 
