@@ -29,8 +29,8 @@ def test_one_part_under_two_names_is_reduced_once():
     app.add("left", BODY)
     app.add("right", BODY)
     app.add("other", RigidBody(2.0, (0.01, 0.01, 0.015)))
-    assert app.parts["left"] is app.parts["right"]
-    assert app.parts["other"] is not app.parts["left"]
+    assert app.plan.parts["left"] is app.plan.parts["right"]
+    assert app.plan.parts["other"] is not app.plan.parts["left"]
 
 
 def test_a_twin_added_later_is_at_its_own_temperature():
@@ -42,7 +42,7 @@ def test_a_twin_added_later_is_at_its_own_temperature():
     app.add("warm", layer)
     app.temperature("warm", 60.0)
     app.add("cool", layer)
-    materials = [app.parts[name].viscoelastic[0].material for name in ("warm", "cool")]
+    materials = [app.plan.parts[name].viscoelastic[0].material for name in ("warm", "cool")]
     # WLF: log10 a_T = −8·40/160 = −2
     assert [m.tau[0] for m in materials] == pytest.approx([1e-5, 1e-3], rel=1e-12)
 
@@ -130,7 +130,7 @@ def test_bad_input_is_named(act, message):
     with pytest.raises(ValueError, match=message):
         act(app)
     # nothing half-made stays behind
-    assert (app.connections, app.supports, app.bearings, app.loads) == ([], {}, {}, [])
+    assert (app.plan.connections, app.plan.supports, app.plan.bearings, app.plan.loads) == ([], {}, {}, [])
 
 
 def test_an_interface_is_connected_once():
@@ -153,9 +153,9 @@ def test_a_loose_interface_is_named():
     app = pair()
     app.connect("shaft.left", "block.centre")
     with pytest.raises(ValueError, match=r"shaft\.right is not connected.*app\.free\(\"shaft\.right\"\)"):
-        app.check_joints()
+        app.plan.check_joints()
     app.free("shaft.right")
-    app.check_joints()
+    app.plan.check_joints()
 
 
 def test_an_empty_application_says_so():
@@ -184,12 +184,12 @@ def test_inputs_are_copied():
     app = pair()
     app.load("shaft.left", vector, time=[0.0, 1.0], value=value)
     vector[0], value[0] = 7.0, 7.0
-    assert app.loads[0].vector[0] == 0.0
-    assert app.loads[0].value[0] == 0.0
+    assert app.plan.loads[0].vector[0] == 0.0
+    assert app.plan.loads[0].value[0] == 0.0
 
 
 def test_what_is_reduced_already_is_a_part():
     app = Application()
     element = SHAFT.superelement()
     app.add("shaft", element)
-    assert app.parts["shaft"] is element
+    assert app.plan.parts["shaft"] is element

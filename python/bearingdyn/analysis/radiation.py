@@ -17,7 +17,8 @@ from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import frequencies, linear
 from bearingdyn.analysis.recovery import Input
-from bearingdyn.application import Application
+from bearingdyn.application import Application, Place
+from bearingdyn.checks import name_list
 from bearingdyn.cms import Surface
 from bearingdyn.system import PartTerm, System
 
@@ -53,6 +54,7 @@ def radiated_power(
     Raises ValueError for an unknown surface or channel, a medium that is none, and as `frequency_response`.
     """
     f = frequencies(frequency)
+    inputs, surfaces = name_list("inputs", inputs), name_list("surfaces", surfaces, "surfaces")
     for name, number in (("density", density), ("sound_speed", sound_speed)):
         if not (number > 0 and np.isfinite(number)):
             raise ValueError(f"{name} is {number}; it must be positive")
@@ -116,12 +118,11 @@ def radiated_power(
 
 
 def _surface(system: System, name: str) -> tuple[PartTerm, Surface]:
-    head, _, rest = name.partition(".")
+    place = Place.parse(name)
     for term in system.parts:
-        if term.name == head:
-            if rest not in term.element.surfaces:
-                raise ValueError(
-                    f"part {head!r} has no surface {rest!r}; it has {sorted(term.element.surfaces)}"
-                )
-            return term, term.element.surfaces[rest]
+        if term.name == place.part:
+            known = term.element.surfaces
+            if place.name not in known:
+                raise ValueError(f"part {place.part!r} has no surface {place.name!r}; it has {sorted(known)}")
+            return term, known[place.name]
     raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")

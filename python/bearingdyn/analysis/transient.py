@@ -14,17 +14,18 @@ from numpy.typing import ArrayLike
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.running import digest, run
-from bearingdyn.application import Application
+from bearingdyn.application import COMPONENTS, QUANTITIES, Application, Channel
 from bearingdyn.bearing import ConstantDamping
 from bearingdyn.bearing.series import NET
+from bearingdyn.checks import name_list
 from bearingdyn.results import march_dataset
-from bearingdyn.system import QUANTITIES, RATES, System, is_rotation
+from bearingdyn.system import System
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-Channel = tuple[int, Array | None, int, int]
+CoreChannel = tuple[int, Array | None, int, int]
 
 
 def transient(
@@ -111,8 +112,7 @@ def transient(
     for name, value, least in (("steps", steps, 0), ("settle", settle, 0), ("decimate", decimate, 1)):
         if not value >= least or value % 1 != 0:
             raise ValueError(f"{name} is {value}; it must be a whole number of at least {least}")
-    if isinstance(record, str):
-        raise ValueError(f"record is {record!r}; give a list of channels, [{record!r}]")
+    record = name_list("record", record)
     if resume is not None and stream is not None:
         raise ValueError("a stream goes on by itself; give resume or stream, not both")
     if resume is not None and initial:
@@ -245,31 +245,31 @@ def _moved(system: System, x: Array, initial: Mapping[str, ArrayLike]) -> Array:
     return x
 
 
-def _channel(system: System, name: str) -> tuple[Channel, str]:
+def _channel(system: System, name: str) -> tuple[CoreChannel, str]:
     """Kind, row, bearing and index of a channel by name, and its unit."""
     bearings = [b.name for b in system.bearings]
-    head, _, rest = name.partition(".")
-    if head in bearings:
+    channel = Channel.parse(name)
+    head = next((b for b in bearings if f"{name}.".startswith(f"{b}.")), None)
+    if head is not None:
         which = bearings.index(head)
-        ball = re.fullmatch(r"ball(\d+)", rest)
-        if rest == "loss":
+        ball = re.fullmatch(r"ball(\d+)", channel.component)
+        motion = channel.at == head and not channel.is_force
+        if motion and channel.component == "loss":
             return (core.CHANNEL_KINDS["contact_loss"], None, which, 0), "W"
-        if rest == "loaded":
+        if motion and channel.component == "loaded":
             return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
-        if ball and 1 <= int(ball[1]) <= system.bearings[which].bearing.Z:
+        if motion and ball and 1 <= int(ball[1]) <= system.bearings[which].bearing.Z:
             return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
         series = system.bearings[which].series
-        term = NET["xyz".index(rest[-1])] if rest in ("force.x", "force.y", "force.z") else None
+        along = channel.at == head and channel.is_force and channel.component in COMPONENTS[:3]
+        term = NET[COMPONENTS.index(channel.component)] if along else None
         if term in series.terms:
             return (core.CHANNEL_KINDS["force"], None, which, series.index(*term)), "N"
         raise ValueError(
             f"channel {name!r}: bearing {head!r} offers loaded, loss, ball1 … "
             f"ball{system.bearings[which].bearing.Z}, force.x, force.y and force.z"
         )
-    if rest.startswith(("ball", "force.")) or rest in ("loaded", "loss"):
-        raise ValueError(f"channel {name!r}: {head!r} is no bearing; there are {bearings}")
-    place, _, quantity = name.rpartition(".")
-    if quantity not in QUANTITIES:
-        place, quantity = name, "displacement"
-    unit = ("rad" if is_rotation(place) else "m") + RATES[quantity]
-    return (core.CHANNEL_KINDS[quantity], system.row(place), 0, 0), unit
+    if channel.quantity == "force" or re.fullmatch(r"loaded|loss|ball\d*", channel.component):
+        raise ValueError(f"channel {name!r}: {channel.at!r} is no bearing; there are {bearings}")
+    kind = core.CHANNEL_KINDS[channel.quantity or QUANTITIES[0]]
+    return (kind, system.row(channel), 0, 0), channel.motion_unit()

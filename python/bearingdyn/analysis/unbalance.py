@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
-from bearingdyn.application import Application
-from bearingdyn.system import QUANTITIES, System
+from bearingdyn.application import QUANTITIES, Application
+from bearingdyn.checks import name_list
+from bearingdyn.system import System
 
 if TYPE_CHECKING:
     import xarray
@@ -48,6 +49,7 @@ def unbalance_response(
     given = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
     if given.ndim != 1 or given.size == 0 or not (np.isfinite(given).all() and (given >= 0).all()):
         raise ValueError("speeds must be a list of finite values of zero or more, in rad/s")
+    outputs = name_list("outputs", outputs)
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {list(QUANTITIES)}")
     state = linear(source)

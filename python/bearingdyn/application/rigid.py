@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import scipy.linalg
 
-from bearingdyn.application.notes import COMPONENTS
+from bearingdyn.application.place import COMPONENTS
 from bearingdyn.cms import Superelement
 from bearingdyn.types import Array
 
