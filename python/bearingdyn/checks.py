@@ -57,7 +57,7 @@ def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> 
 def name_list(field: str, value: object, what: str = "channels") -> list[str]:
     """The value as a list of names; ValueError for one name alone, or an entry that is no text."""
     if isinstance(value, str):
-        raise ValueError(f"{field} is {value!r}; it must be a list of {what}: give [{value!r}]")
+        raise ValueError(f"{field} is {value!r}; give a list of {what}, [{value!r}]")
     try:
         found = list(value)  # type: ignore[call-overload]
     except TypeError:

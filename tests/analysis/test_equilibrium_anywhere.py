@@ -29,6 +29,7 @@ def built() -> Application:
 def layered_motor() -> Application:
     """The paper's motor with a layer around each outer ring, unloaded."""
     app = copy.copy(built())
+    app.plan = copy.copy(app.plan)
     app.plan.loads, app.plan.bearings = [], dict(app.plan.bearings)
     return app
 

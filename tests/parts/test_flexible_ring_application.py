@@ -109,7 +109,7 @@ def test_energy_of_a_run_in_a_loose_seat_is_accounted_for() -> None:
 
 def test_the_application_is_the_bearing_by_itself() -> None:
     free = hung(RING)
-    free.supports.clear()
+    free.plan.supports.clear()
     free.ground("ring.outer")
     eq = bd.equilibrium(free)
     brg = FlexibleBearing(B6305, RING)

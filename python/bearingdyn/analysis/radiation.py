@@ -118,11 +118,10 @@ def radiated_power(
 
 
 def _surface(system: System, name: str) -> tuple[PartTerm, Surface]:
-    place = Place.parse(name)
-    for term in system.parts:
-        if term.name == place.part:
-            known = term.element.surfaces
-            if place.name not in known:
-                raise ValueError(f"part {place.part!r} has no surface {place.name!r}; it has {sorted(known)}")
-            return term, known[place.name]
-    raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")
+    owner = next((term for term in system.parts if name.startswith(f"{term.name}.")), None)
+    if owner is None:
+        raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")
+    place, known = Place.parse(name), owner.element.surfaces
+    if place.name not in known:
+        raise ValueError(f"part {owner.name!r} has no surface {place.name!r}; it has {sorted(known)}")
+    return owner, known[place.name]

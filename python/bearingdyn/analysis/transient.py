@@ -252,22 +252,22 @@ def _channel(system: System, name: str) -> tuple[CoreChannel, str]:
     head = next((b for b in bearings if f"{name}.".startswith(f"{b}.")), None)
     if head is not None:
         which = bearings.index(head)
-        ball = re.fullmatch(r"ball(\d+)", channel.component)
-        motion = channel.at == head and not channel.is_force
-        if motion and channel.component == "loss":
-            return (core.CHANNEL_KINDS["contact_loss"], None, which, 0), "W"
-        if motion and channel.component == "loaded":
-            return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
-        if motion and ball and 1 <= int(ball[1]) <= system.bearings[which].bearing.Z:
-            return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
-        series = system.bearings[which].series
-        along = channel.at == head and channel.is_force and channel.component in COMPONENTS[:3]
-        term = NET[COMPONENTS.index(channel.component)] if along else None
-        if term in series.terms:
-            return (core.CHANNEL_KINDS["force"], None, which, series.index(*term)), "N"
+        series, Z = system.bearings[which].series, system.bearings[which].bearing.Z
+        if channel.at == head and channel.quantity == "force" and channel.component in COMPONENTS[:3]:
+            term = NET[COMPONENTS.index(channel.component)]
+            if term in series.terms:
+                return (core.CHANNEL_KINDS["force"], None, which, series.index(*term)), "N"
+        elif channel.at == head and not channel.quantity:
+            ball = re.fullmatch(r"ball(\d+)", channel.component)
+            if channel.component == "loss":
+                return (core.CHANNEL_KINDS["contact_loss"], None, which, 0), "W"
+            if channel.component == "loaded":
+                return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
+            if ball and 1 <= int(ball[1]) <= Z:
+                return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
         raise ValueError(
-            f"channel {name!r}: bearing {head!r} offers loaded, loss, ball1 … "
-            f"ball{system.bearings[which].bearing.Z}, force.x, force.y and force.z"
+            f"channel {name!r}: bearing {head!r} offers loaded, loss, ball1 … ball{Z}, force.x, force.y and "
+            f"force.z"
         )
     if channel.quantity == "force" or re.fullmatch(r"loaded|loss|ball\d*", channel.component):
         raise ValueError(f"channel {name!r}: {channel.at!r} is no bearing; there are {bearings}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import cast
 
@@ -219,20 +218,9 @@ class Application:
             not finite.
         """
         self.plan.check_new("bearing", name)
-        shaft = self.plan.interface(inner)
-        housing = self.plan.raceway_or_interface(outer)
-        joint = BearingJoint(name, bearing, shaft, housing, offset)
-        raceway = self.plan.raceway(housing)
-        if raceway is not None:
-            if not math.isclose(raceway.arm, bearing.arm, rel_tol=1e-9):
-                raise ValueError(
-                    f"bearing {name!r} has its arm at {bearing.arm:.9g} m and {outer} at "
-                    f"{raceway.arm:.9g} m; make the ring with arm=bearing.arm"
-                )
-            if any(b.outer == housing for b in self.plan.bearings.values()):
-                raise ValueError(
-                    f"bearing {name!r}: {outer} carries a bearing already; give each its own raceway"
-                )
+        ends = self.plan.interface(inner), self.plan.raceway_or_interface(outer)
+        joint = BearingJoint(name, bearing, *ends, offset)
+        self.plan.check_raceway(joint)
         self.plan.bearings[name] = joint
 
     def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
@@ -255,15 +243,15 @@ class Application:
             If this is no loose fit, a name is unknown or taken, or the ring's outside is no raceway.
         """
         self.plan.check_new("fit", name)
-        outside = self.plan.place(ring)
-        if self.plan.raceway(outside) is None:
+        joint = LooseJoint(name, fit, self.plan.place(ring), self.plan.interface_or_ground(bore))
+        if self.plan.raceway(joint.ring) is None:
             raise ValueError(
                 f'fit {name!r}: {ring!r} is no flexible face; make the ring with outside="flexible" and '
                 f'name its "outside"'
             )
-        if outside in self.plan.raceways_used():
+        if joint.ring in self.plan.raceways_used():
             raise ValueError(f"fit {name!r}: {ring} is in use already; give each its own")
-        self.plan.fits[name] = LooseJoint(name, fit, outside, self.plan.interface_or_ground(bore))
+        self.plan.fits[name] = joint
 
     def load(
         self,

@@ -171,7 +171,7 @@ class SampledLoad(DirectedLoad):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        t, v = (np.atleast_1d(np.array(a, dtype=np.float64)) for a in (self.time, self.value))
+        t, v = (self._samples("time", self.time), self._samples("value", self.value))
         if t.ndim != 1 or t.shape != v.shape or t.size < 2:
             raise ValueError(
                 f"{self._name('time')} has {t.size} samples and value {v.size}; give two or more of each"
@@ -180,6 +180,13 @@ class SampledLoad(DirectedLoad):
             raise ValueError(f"{self._name('time')} must increase and all samples must be finite")
         object.__setattr__(self, "time", t)
         object.__setattr__(self, "value", v)
+
+    def _samples(self, field: str, samples: object) -> Array:
+        try:
+            return np.atleast_1d(np.array(samples, dtype=np.float64))
+        except (TypeError, ValueError):
+            require(False, self._name(field), samples, "it must be real numbers, two or more")
+            raise
 
     def core(self, rows: Array) -> CoreLoad:
         force = self._force(rows)

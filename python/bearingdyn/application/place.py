@@ -42,6 +42,11 @@ class Place:
         """The name as it is written, "part.name"."""
         return f"{self.part}.{self.name}" if self.name else self.part
 
+    @property
+    def told_as(self) -> str:
+        """What stands for it where results keep what they were made from."""
+        return str(self)
+
     @classmethod
     def parse(cls, text: str | Place) -> Place:
         """The place that a text names: up to its first dot the part, after it the place.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol
 
 import numpy as np
@@ -137,6 +138,27 @@ class Plan:
     def raceway(self, place: Place) -> Raceway | None:
         """The raceway at a place; None where there is none."""
         return self.parts[place.part].raceways.get(place.name) if place.part in self.parts else None
+
+    def check_raceway(self, joint: BearingJoint) -> None:
+        """Check a new bearing against the raceway it is hung in, if it is hung in one.
+
+        Raises
+        ------
+        ValueError
+            If the raceway was made for another arm, or carries a bearing already.
+        """
+        raceway, name, arm = self.raceway(joint.outer), joint.name, joint.bearing.arm
+        if raceway is None:
+            return
+        if not math.isclose(raceway.arm, arm, rel_tol=1e-9):
+            raise ValueError(
+                f"bearing {name!r} has its arm at {arm:.9g} m and {joint.outer} at {raceway.arm:.9g} m; "
+                f"make the ring with arm=bearing.arm"
+            )
+        if any(b.outer == joint.outer for b in self.bearings.values()):
+            raise ValueError(
+                f"bearing {name!r}: {joint.outer} carries a bearing already; give each its own raceway"
+            )
 
     def raceways_used(self) -> set[Place]:
         """Raceways that carry balls or sit in a bore, among the other ends of bearings."""
