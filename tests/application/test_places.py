@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -67,6 +70,19 @@ def test_only_the_ground_moves_as_the_ground():
     assert Channel.parse("ground.y").of_ground
     assert not Channel.parse("ground.block.feet.y").of_ground  # a force
     assert str(GROUND) == "ground"
+
+
+def test_names_are_taken_apart_in_one_module_alone():
+    package = Path(bd.__file__).parent
+    # names of modules and of files are no names of places
+    others = {"notice.py", "fem/exchange/calculix.py"}
+    apart = re.compile(r"""partition\(["']\.|split\(["']\.""")
+    found = {
+        path.relative_to(package).as_posix()
+        for path in package.rglob("*.py")
+        if apart.search(path.read_text(encoding="utf-8"))
+    }
+    assert found - others == {"application/place.py"}
 
 
 # ------------------------------------------------------------------- wrong objects where names are meant

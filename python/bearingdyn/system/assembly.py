@@ -16,10 +16,13 @@ from bearingdyn.types import Array, Index
 
 
 def assemble(app: Application) -> System:
-    """An application as arrays.
+    """Make the arrays of an application.
 
-    Raises ValueError for an interface left loose, a body that nothing holds (named, with its direction), a
-    dead load on a layer without relaxed modulus, gravity or base motion on a part that holds itself.
+    Raises
+    ------
+    ValueError
+        For an interface left loose, a body that nothing holds (named, with its direction), a constant load
+        on a layer without relaxed modulus, or gravity or base motion on a part that holds itself.
     """
     plan = app.plan
     plan.check_joints()
