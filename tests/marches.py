@@ -43,12 +43,12 @@ def marched(
     settle = int(np.ceil(np.log(1e11) / slowest / dt / per)) * per  # what is left: 1e-11
     app = built(2)
     t = dt * np.arange(settle + per + 1)
-    loads = list(app.loads)
+    loads = list(app.plan.loads)
     app.load("shaft.middle", (0, amplitude, 0, 0, 0, 0), time=t, value=np.resize(wave, t.size))
     try:
         state = bd.equilibrium(app)
     finally:
-        app.loads[:] = loads
+        app.plan.loads[:] = loads
     run = bd.transient(
         state.linearised() if linear else state,
         speed=0.0,

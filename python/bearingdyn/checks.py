@@ -71,3 +71,17 @@ def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> 
     )
     require(bool(np.isfinite(x).all()), field, value, f"all entries must be finite: {meaning}")
     return x
+
+
+def name_list(field: str, value: object, what: str = "channels") -> list[str]:
+    """The value as a list of names; ValueError for one name alone, or an entry that is no text."""
+    if isinstance(value, str):
+        raise ValueError(f"{field} is {value!r}; give a list of {what}, [{value!r}]")
+    try:
+        found = list(value)  # type: ignore[call-overload]
+    except TypeError:
+        found = [None]
+    wrong = next((name for name in found if not isinstance(name, str)), "")
+    remedy = f"it must be a list of {what}, each a text"
+    require(isinstance(wrong, str), field, value, remedy)
+    return [str(name) for name in found]

@@ -27,7 +27,7 @@ def describe(value: Any, *, strict: bool = True) -> Any:
     """A value as JSON's own types, the same for equal values in any process.
 
     Numbers, texts, dataclasses, arrays (sparse ones too), mappings, sequences, sets, functions by their
-    names, and objects by their attributes.
+    names, and objects by their `told_as` where they have it, else by their attributes.
 
     Raises ValueError for what has no content to tell it by, such as an open file; where not strict, its
     class stands for it.
@@ -56,6 +56,8 @@ def describe(value: Any, *, strict: bool = True) -> Any:
         return sorted((told(item) for item in value), key=lambda item: json.dumps(item, sort_keys=True))
     if isinstance(value, np.ndarray):
         return _array(value, told)
+    if hasattr(value, "told_as") and not isinstance(value, type):
+        return value.told_as
     return _object(value, told, strict)
 
 

@@ -29,7 +29,8 @@ def built() -> Application:
 def layered_motor() -> Application:
     """The paper's motor with a layer around each outer ring, unloaded."""
     app = copy.copy(built())
-    app.loads, app.bearings = [], dict(app.bearings)
+    app.plan = copy.copy(app.plan)
+    app.plan.loads, app.plan.bearings = [], dict(app.plan.bearings)
     return app
 
 
@@ -43,9 +44,9 @@ def loaded(rng: np.random.Generator) -> Application:
         force = size * direction[:3] / np.linalg.norm(direction)
         moment = 0.02 * size * direction[3:] / np.linalg.norm(direction)
         app.load(place, (*force, *moment, 0.0))
-    for name, hung in app.bearings.items():
+    for name, hung in app.plan.bearings.items():
         bearing = dataclasses.replace(hung.bearing, clearance=rng.uniform(0.0, 100e-6))
-        app.bearings[name] = dataclasses.replace(hung, bearing=bearing)
+        app.plan.bearings[name] = dataclasses.replace(hung, bearing=bearing)
     return app
 
 

@@ -174,7 +174,7 @@ def test_surfaces_stand_where_the_parts_stand_and_move_as_they_do():
     found = modes(state, 12)
     shapes = mode_shapes(state, found)
     surfaces = {s.part: s for s in mode_surfaces(state, found, 8)}
-    assert set(surfaces) == set(app.parts)
+    assert set(surfaces) == set(app.plan.parts)
     z = {name: (s.points[:, 2].min(), s.points[:, 2].max()) for name, s in surfaces.items()}
     # from the shaft's left seat at z = 60 mm; arms come out of the reduced rigid motions
     assert z["shaft"] == pytest.approx((-0.06, 0.24), abs=1e-9)
@@ -195,7 +195,7 @@ def test_what_a_raceway_carries_stands_around_the_balls():
     app.connect("ring.outer", "house.centre")
     app.bearing("right", BEARING, inner="shaft.right", outer="ring.raceway")
     app.free("shaft.left")
-    at = app.positions()
+    at = app.plan.positions()
     for name in ("ring.raceway", "ring.outer", "house.centre"):
         np.testing.assert_allclose(at[name], (0.0, 0.0, 0.18), atol=1e-9)
 

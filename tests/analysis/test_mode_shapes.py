@@ -24,7 +24,7 @@ def test_places_stand_where_they_were_drawn():
     app.add("house", Housing(0.08, 0.09, 0.02, 0.04, feet=Feet(0.02), f_max=8e3, element_size=0.02))
     app.connect("house.bore", "cap.centre")
     app.free("house.feet")
-    at = app.positions()
+    at = app.plan.positions()
     wanted = {
         "shaft.left": (0.0, 0.0, 0.0),
         "shaft.right": (0.0, 0.0, 0.18),
@@ -46,7 +46,7 @@ def test_a_part_that_nothing_joins_stands_nowhere():
     app = motor()
     app.add("stray", RigidBody(1.0, (1.0, 1.0, 1.0)))
     app.free("stray.centre")
-    assert "stray.centre" not in app.positions()
+    assert "stray.centre" not in app.plan.positions()
 
 
 def test_first_bending_of_a_shaft_on_two_pins_is_half_a_sine():

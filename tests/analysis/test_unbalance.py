@@ -186,7 +186,7 @@ def test_a_housing_moved_as_a_body_pushes_with_its_projected_faces(feet):
     w, h, length, d = 0.10, 0.12, 0.03, 0.05
     app = Application()
     app.add("housing", Housing(w, h, length, d, feet=feet, f_max=8e3, element_size=0.02))
-    element, R = app.parts["housing"], app.rigid_shapes("housing")
+    element, R = app.plan.parts["housing"], app.plan.rigid_shapes("housing")
     assert R is not None
     flange = 2 * 0.02 * 0.02 if feet is not None and feet.height else 0.0
     face = w * h - math.pi * d**2 / 4 + flange

@@ -29,8 +29,8 @@ def test_one_part_under_two_names_is_reduced_once():
     app.add("left", BODY)
     app.add("right", BODY)
     app.add("other", RigidBody(2.0, (0.01, 0.01, 0.015)))
-    assert app.parts["left"] is app.parts["right"]
-    assert app.parts["other"] is not app.parts["left"]
+    assert app.plan.parts["left"] is app.plan.parts["right"]
+    assert app.plan.parts["other"] is not app.plan.parts["left"]
 
 
 def test_a_twin_added_later_is_at_its_own_temperature():
@@ -42,7 +42,7 @@ def test_a_twin_added_later_is_at_its_own_temperature():
     app.add("warm", layer)
     app.temperature("warm", 60.0)
     app.add("cool", layer)
-    materials = [app.parts[name].viscoelastic[0].material for name in ("warm", "cool")]
+    materials = [app.plan.parts[name].viscoelastic[0].material for name in ("warm", "cool")]
     # WLF: log10 a_T = −8·40/160 = −2
     assert [m.tau[0] for m in materials] == pytest.approx([1e-5, 1e-3], rel=1e-12)
 
@@ -81,14 +81,14 @@ def test_part_names_without_dots(name):
 
 def test_a_name_is_given_once():
     app = pair()
-    with pytest.raises(ValueError, match="'shaft' is there already"):
+    with pytest.raises(ValueError, match=r"'shaft'.*taken"):
         app.add("shaft", BODY)
     with pytest.raises(ValueError, match=r"'shaft'.*taken"):
         app.bearing("shaft", BEARING, inner="shaft.left", outer="ground")
     app.bearing("front", BEARING, inner="shaft.left", outer="ground")
     with pytest.raises(ValueError, match=r"'front'.*taken"):
         app.bearing("front", BEARING, inner="shaft.right", outer="ground")
-    with pytest.raises(ValueError, match="'front' is there already"):
+    with pytest.raises(ValueError, match=r"'front'.*taken"):
         app.add("front", BODY)
 
 
@@ -97,21 +97,24 @@ def test_a_name_is_given_once():
     [
         (lambda a: a.connect("shaft.left", "block.middle"), r"'block' has no interface 'middle'.*centre"),
         (lambda a: a.connect("axle.left", "block.centre"), r"'axle.left' names no part.*block.*shaft"),
-        (lambda a: a.connect("shaft", "block.centre"), "'shaft' names no part"),
+        (lambda a: a.connect("shaft", "block.centre"), "'shaft' names no place"),
         (lambda a: a.connect("shaft.end", "block.centre"), "no interface 'end'"),
         (lambda a: a.connect("shaft.left", "shaft.left"), "to itself"),
         (lambda a: a.connect("shaft.left", "shaft.right"), "one part"),
         (lambda a: a.ground("shaft.foot"), "no interface 'foot'"),
-        (lambda a: a.ground("shaft.left", stiffness=(1e6, 1e6)), r"shape \(2,\); give six"),
-        (lambda a: a.ground("shaft.left", stiffness=1e6), r"shape \(\); give six"),
+        (
+            lambda a: a.ground("shaft.left", stiffness=(1e6, 1e6)),
+            r"shape is \(2,\), it must be \(6,\): six numbers",
+        ),
+        (lambda a: a.ground("shaft.left", stiffness=1e6), r"shape is \(\), it must be \(6,\): six numbers"),
         (lambda a: a.ground("shaft.left", damping=(-1, 0, 0, 0, 0, 0)), "cannot be negative"),
         (lambda a: a.ground("shaft.left", stiffness=(np.nan,) * 6), "finite"),
         (lambda a: a.free("shaft.foot"), "no interface 'foot'"),
         (lambda a: a.bearing("b.1", BEARING, inner="shaft.left", outer="ground"), "without dots"),
         (lambda a: a.bearing("b", BEARING, inner="shaft.left", outer="shaft.left"), "both rings"),
-        (lambda a: a.bearing("b", BEARING, inner="ground", outer="shaft.left"), "'ground' names no part"),
+        (lambda a: a.bearing("b", BEARING, inner="ground", outer="shaft.left"), "'ground' names no place"),
         (lambda a: a.load("shaft.foot", (0,) * 6), "no interface or output 'foot'"),
-        (lambda a: a.load("shaft.left", (0, 1, 0)), r"shape \(3,\); give six"),
+        (lambda a: a.load("shaft.left", (0, 1, 0)), r"shape is \(3,\), it must be \(6,\): six numbers"),
         (lambda a: a.load("shaft.left", (0, np.inf, 0, 0, 0, 0)), "finite"),
         (lambda a: a.load("shaft.left", (1,) * 6, frequency=0.0), "frequency is 0.0; it must be positive"),
         (lambda a: a.load("shaft.left", (1,) * 6, frequency=np.nan), "frequency is nan"),
@@ -130,7 +133,7 @@ def test_bad_input_is_named(act, message):
     with pytest.raises(ValueError, match=message):
         act(app)
     # nothing half-made stays behind
-    assert (app.connections, app.supports, app.bearings, app.loads) == ([], {}, {}, [])
+    assert (app.plan.connections, app.plan.supports, app.plan.bearings, app.plan.loads) == ([], {}, {}, [])
 
 
 def test_an_interface_is_connected_once():
@@ -153,14 +156,14 @@ def test_a_loose_interface_is_named():
     app = pair()
     app.connect("shaft.left", "block.centre")
     with pytest.raises(ValueError, match=r"shaft\.right is not connected.*app\.free\(\"shaft\.right\"\)"):
-        app.check_joints()
+        app.plan.check_joints()
     app.free("shaft.right")
-    app.check_joints()
+    app.plan.check_joints()
 
 
 def test_an_empty_application_says_so():
     with pytest.raises(ValueError, match="no parts"):
-        Application().check_joints()
+        Application().plan.check_joints()
 
 
 def test_a_point_without_rotation_takes_no_moment():
@@ -184,12 +187,12 @@ def test_inputs_are_copied():
     app = pair()
     app.load("shaft.left", vector, time=[0.0, 1.0], value=value)
     vector[0], value[0] = 7.0, 7.0
-    assert app.loads[0].vector[0] == 0.0
-    assert app.loads[0].value[0] == 0.0
+    assert app.plan.loads[0].vector[0] == 0.0
+    assert app.plan.loads[0].value[0] == 0.0
 
 
 def test_what_is_reduced_already_is_a_part():
     app = Application()
     element = SHAFT.superelement()
     app.add("shaft", element)
-    assert app.parts["shaft"] is element
+    assert app.plan.parts["shaft"] is element

@@ -47,7 +47,7 @@ SMALL = Housing(0.08, 0.09, 0.02, 0.04, f_max=8e3, element_size=0.02)
 def test_a_part_moves_rigidly_without_force(part, arm):
     app = Application()
     app.add("part", part)
-    R, element = app.rigid_shapes("part"), app.parts["part"]
+    R, element = app.plan.rigid_shapes("part"), app.plan.parts["part"]
     assert R is not None
     K = element.K + 1e6 * sum((t.H for t in element.viscoelastic), np.zeros_like(element.K))
     # round-off of the reduction
@@ -84,7 +84,7 @@ def test_a_shaft_sags_under_its_own_weight():
 
 def test_bearings_carry_the_weight_of_what_hangs_in_them():
     app = motor()
-    app.loads.clear()
+    app.plan.loads.clear()
     app.load("cap.centre", (0, 0, 180.0, 0, 0, 0))
     app.gravity((0.0, -9.81, 0.0))
     state = equilibrium(app)
@@ -139,10 +139,10 @@ def test_a_moving_ground_is_a_ground_part_of_huge_mass():
     app, heavy = motor(), 1e6
     app.add("floor", RigidBody(heavy, (1e8,) * 3))
     app.ground("floor.centre", stiffness=(1e7,) * 6)
-    for name, support in list(app.supports.items()):
-        if name != "floor.centre":
-            del app.supports[name]
-            app.spring(name, "floor.centre", support.stiffness, support.damping)
+    for name, support in list(app.plan.supports.items()):
+        if str(name) != "floor.centre":
+            del app.plan.supports[name]
+            app.spring(str(name), "floor.centre", support.stiffness, support.damping)
     state = equilibrium(app)
     found = frequency_response(state, f, ["floor.centre.y"], [*outputs, "floor.centre.y"]).response.values
     # the static states differ by round-off of the floor's soft spring; the floor feels 1e-5 of its own mass

@@ -42,4 +42,4 @@ def test_what_is_printed_fits_on_the_screen() -> None:
     app = suspended()
     eq = equilibrium(app)
     assert "mass" in repr(app)
-    assert max(len(repr(thing)) for thing in (eq, eq.system, app.parts["mass"])) < 120
+    assert max(len(repr(thing)) for thing in (eq, eq.system, app.plan.parts["mass"])) < 120

@@ -109,7 +109,7 @@ def test_energy_of_a_run_in_a_loose_seat_is_accounted_for() -> None:
 
 def test_the_application_is_the_bearing_by_itself() -> None:
     free = hung(RING)
-    free.supports.clear()
+    free.plan.supports.clear()
     free.ground("ring.outer")
     eq = bd.equilibrium(free)
     brg = FlexibleBearing(B6305, RING)
@@ -189,9 +189,9 @@ def test_bad_input_is_named() -> None:
     with pytest.raises(ValueError, match=r"arm at 0\.02"):
         app.bearing("b", replace(B6305, arm=0.02), inner="rotor.centre", outer="ring.raceway")
     with pytest.raises(ValueError, match=r"ring\.raceway carries no balls"):
-        app.check_joints()
+        app.plan.check_joints()
     app.free("ring.raceway")
-    app.check_joints()
+    app.plan.check_joints()
     app = loose(20e-6)
     with pytest.raises(ValueError, match="in use already"):
         app.fit("again", LooseFit(1e-5), ring="ring.outside", bore="ground")

@@ -214,7 +214,7 @@ class TestTurning:
         app.add("shaft", Shaft([Section(0.2, 0.02)], seats={"seat": 0.1}, damping=0.01, f_max=3e3))
         app.connect("shaft.seat", "rotor.centre")
         assemble(app).check_speed(500.0)
-        assert app.turning_parts() == {"shaft", "rotor"}
+        assert app.plan.turning_parts() == {"shaft", "rotor"}
 
 
 class TestModalCoordinates:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.modes import modes
-from bearingdyn.application import Application
+from bearingdyn.application import Application, Place
 from bearingdyn.checks import numbers, whole
 from bearingdyn.system import System, assemble
 from bearingdyn.types import Array, Complex
@@ -141,7 +141,7 @@ def whirl(system: System, shapes: Complex) -> Array:
     sideways, as a rigid body that tilts about its centre, their tilts θx, θy take the place of x, y.
     """
     turning = set(system.turning)
-    rows = [r for name, r in system.outputs.items() if not turning or name.partition(".")[0] in turning]
+    rows = [r for name, r in system.outputs.items() if not turning or Place.parse(name).part in turning]
     mass = np.abs(np.einsum("mi,ij,mj->m", shapes.conj(), system.M, shapes))
     found = np.zeros(len(shapes))
     for first, heavy in ((3, _tilting(system)), (0, float(np.abs(system.M).max()))):

@@ -6,15 +6,16 @@ import re
 from typing import TypeAlias
 
 from bearingdyn import core
+from bearingdyn.application import COMPONENTS, QUANTITIES, Channel
 from bearingdyn.bearing.series import NET
-from bearingdyn.system import QUANTITIES, RATES, System, is_rotation
+from bearingdyn.system import System
 from bearingdyn.types import Array
 
-Channel: TypeAlias = tuple[int, Array | None, int, int]
+CoreChannel: TypeAlias = tuple[int, Array | None, int, int]
 """kind, row (n,), bearing, index"""
 
 
-def channel_of(system: System, name: str) -> tuple[Channel, str]:
+def channel_of(system: System, name: str) -> tuple[CoreChannel, str]:
     """Kind, row, bearing and index of a channel by name, as core.Model takes it, and its unit.
 
     Raises
@@ -23,28 +24,28 @@ def channel_of(system: System, name: str) -> tuple[Channel, str]:
         For a name that is no channel of this system; says what there is.
     """
     bearings = [b.name for b in system.bearings]
-    head, _, rest = name.partition(".")
-    if head in bearings:
+    channel = Channel.parse(name)
+    head = next((b for b in bearings if f"{name}.".startswith(f"{b}.")), None)
+    if head is not None:
         which = bearings.index(head)
-        ball = re.fullmatch(r"ball(\d+)", rest)
-        if rest == "loss":
-            return (core.CHANNEL_KINDS["contact_loss"], None, which, 0), "W"
-        if rest == "loaded":
-            return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
-        if ball and 1 <= int(ball[1]) <= system.bearings[which].bearing.Z:
-            return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
-        series = system.bearings[which].series
-        term = NET["xyz".index(rest[-1])] if rest in ("force.x", "force.y", "force.z") else None
-        if term in series.terms:
-            return (core.CHANNEL_KINDS["force"], None, which, series.index(*term)), "N"
+        series, Z = system.bearings[which].series, system.bearings[which].bearing.Z
+        if channel.at == head and channel.quantity == "force" and channel.component in COMPONENTS[:3]:
+            term = NET[COMPONENTS.index(channel.component)]
+            if term in series.terms:
+                return (core.CHANNEL_KINDS["force"], None, which, series.index(*term)), "N"
+        elif channel.at == head and not channel.quantity:
+            ball = re.fullmatch(r"ball(\d+)", channel.component)
+            if channel.component == "loss":
+                return (core.CHANNEL_KINDS["contact_loss"], None, which, 0), "W"
+            if channel.component == "loaded":
+                return (core.CHANNEL_KINDS["loaded"], None, which, 0), "1"
+            if ball and 1 <= int(ball[1]) <= Z:
+                return (core.CHANNEL_KINDS["ball"], None, which, int(ball[1]) - 1), "N"
         raise ValueError(
-            f"channel {name!r}: bearing {head!r} offers loaded, loss, ball1 … "
-            f"ball{system.bearings[which].bearing.Z}, force.x, force.y and force.z"
+            f"channel {name!r}: bearing {head!r} offers loaded, loss, ball1 … ball{Z}, force.x, force.y and "
+            f"force.z"
         )
-    if rest.startswith(("ball", "force.")) or rest in ("loaded", "loss"):
-        raise ValueError(f"channel {name!r}: {head!r} is no bearing; there are {bearings}")
-    place, _, quantity = name.rpartition(".")
-    if quantity not in QUANTITIES:
-        place, quantity = name, "displacement"
-    unit = ("rad" if is_rotation(place) else "m") + RATES[quantity]
-    return (core.CHANNEL_KINDS[quantity], system.row(place), 0, 0), unit
+    if channel.quantity == "force" or re.fullmatch(r"loaded|loss|ball\d*", channel.component):
+        raise ValueError(f"channel {name!r}: {channel.at!r} is no bearing; there are {bearings}")
+    kind = core.CHANNEL_KINDS[channel.quantity or QUANTITIES[0]]
+    return (kind, system.row(channel), 0, 0), channel.motion_unit()

@@ -13,10 +13,10 @@ from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.analysis.statics import HOLD
-from bearingdyn.application import Application
-from bearingdyn.checks import numbers
+from bearingdyn.application import QUANTITIES, RATES, Application
+from bearingdyn.checks import name_list, numbers
 from bearingdyn.material import Maxwell
-from bearingdyn.system import QUANTITIES, RATES, System, assemble
+from bearingdyn.system import System, assemble
 from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
@@ -140,6 +140,7 @@ def frequency_response(
     (('frequency', 'output', 'input'), ['1.000e-06', '1.109e-06'])
     """
     f = frequencies(frequency)
+    inputs, outputs = name_list("inputs", inputs), name_list("outputs", outputs)
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {list(QUANTITIES)}")
     state = linear(source)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.channels import Channel
+from bearingdyn.analysis.channels import CoreChannel
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.application import Application
@@ -32,7 +32,7 @@ class Sink:
     rows: Array
     channel: tuple[int, int, int] | None = None
 
-    def channels(self) -> list[Channel]:
+    def channels(self) -> list[CoreChannel]:
         """What the core must record for it."""
         if self.channel is None:
             return [(core.CHANNEL_KINDS["velocity"], row, 0, 0) for row in self.rows]

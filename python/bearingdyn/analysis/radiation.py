@@ -18,8 +18,8 @@ from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import frequencies, linear
 from bearingdyn.analysis.recovery import Input
-from bearingdyn.application import Application
-from bearingdyn.checks import positive
+from bearingdyn.application import Application, Place
+from bearingdyn.checks import name_list, positive
 from bearingdyn.cms import Surface
 from bearingdyn.system import PartTerm, System
 
@@ -62,6 +62,7 @@ def radiated_power(
         `frequency_response`.
     """
     f = frequencies(frequency)
+    inputs, surfaces = name_list("inputs", inputs), name_list("surfaces", surfaces, "surfaces")
     density, sound_speed = positive("density", density), positive("sound_speed", sound_speed)
     state = linear(source)
     state.system.check_speed(speed)
@@ -123,12 +124,10 @@ def radiated_power(
 
 
 def _surface(system: System, name: str) -> tuple[PartTerm, Surface]:
-    head, _, rest = name.partition(".")
-    for term in system.parts:
-        if term.name == head:
-            if rest not in term.element.surfaces:
-                raise ValueError(
-                    f"part {head!r} has no surface {rest!r}; it has {sorted(term.element.surfaces)}"
-                )
-            return term, term.element.surfaces[rest]
-    raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")
+    owner = next((term for term in system.parts if name.startswith(f"{term.name}.")), None)
+    if owner is None:
+        raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")
+    place, known = Place.parse(name), owner.element.surfaces
+    if place.name not in known:
+        raise ValueError(f"part {owner.name!r} has no surface {place.name!r}; it has {sorted(known)}")
+    return owner, known[place.name]

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearingdyn.application import COMPONENTS, GROUND
+from bearingdyn.application import COMPONENTS, GROUND, QUANTITIES, Channel, Place
 from bearingdyn.bearing.series import NET
-from bearingdyn.system import RATES, PartTerm, SpringTerm, System, component_of
+from bearingdyn.system import PartTerm, SpringTerm, System
 from bearingdyn.types import Array, Complex
 
 
@@ -38,7 +38,7 @@ class Input:
     @property
     def turning(self) -> bool:
         """Whether it is a moment."""
-        return component_of(self.name) in COMPONENTS[3:]
+        return Channel.parse(self.name).is_rotation
 
     @classmethod
     def of(cls, system: System, name: str) -> Input:
@@ -49,17 +49,18 @@ class Input:
         ValueError
             For an unknown channel, and for the ground under a part that holds itself.
         """
-        place, _, component = name.rpartition(".")
-        if place != GROUND:
-            force = system.row(name)
-            head, _, rest = place.partition(".")
+        channel = _without_quantity(name)
+        axis = channel.index
+        if not channel.of_ground:
+            force, place = system.row(channel), Place.parse(channel.at)
             for term in system.parts:
-                if term.name == head:
-                    own = term.element.rows(rest)[COMPONENTS.index(component_of(name))]
-                    return cls(name, force, part=head, load=own)
-            return cls(name, force, part=head)
-        if component not in COMPONENTS[:3]:
-            raise ValueError(f"{name!r}: the ground moves along {list(COMPONENTS[:3])}, not {component!r}")
+                if term.name == place.part:
+                    own = term.element.rows(place.name)[axis]
+                    return cls(name, force, part=place.part, load=own)
+            return cls(name, force, part=place.part)
+        if axis is None or axis >= 3:
+            known = list(COMPONENTS[:3])
+            raise ValueError(f"{name!r}: the ground moves along {known}, not {channel.component!r}")
         if system.inertia is None:
             raise ValueError(f"{name!r}: the system was made without an application and knows no ground")
         for term in system.parts:
@@ -68,7 +69,6 @@ class Input:
                     f"{name!r}: part {term.name!r} has no rigid motion of its own (no interface, or a "
                     f"stiffness that holds it); base motion needs parts that are free by themselves"
                 )
-        axis = COMPONENTS.index(component)
         return cls(name, -system.inertia[:, axis], axis)
 
 
@@ -105,13 +105,12 @@ class Output:
     @property
     def turning(self) -> bool:
         """Whether it is a rotation or moment."""
-        return component_of(self.name) in COMPONENTS[3:]
+        return Channel.parse(self.name).is_rotation
 
     def unit(self, quantity: str) -> str:
         """Unit of a force, or of a motion's displacement, velocity or acceleration."""
-        if self.is_force:
-            return "N m" if self.turning else "N"
-        return ("rad" if self.turning else "m") + RATES[quantity]
+        channel = Channel.parse(self.name)
+        return channel.force_unit if self.is_force else channel.motion_unit(quantity)
 
     @property
     def rows(self) -> Array:
@@ -135,16 +134,14 @@ class Output:
         ValueError
             For an unknown channel; says what there is.
         """
-        place, _, _ = name.rpartition(".")
-        component = component_of(name)
-        on_ground = place.startswith(f"{GROUND}.")
-        if not on_ground and not place.endswith(".force"):
-            return cls(name, system.row(name))
-        place = place.removeprefix(f"{GROUND}.") if on_ground else place.removesuffix(".force")
+        channel = _without_quantity(name)
+        if not channel.is_force:
+            return cls(name, system.row(channel))
+        on_ground, place, k = channel.quantity == "reaction", channel.at, channel.index
         first = 0
         for hung in system.bearings:
             if hung.name == place and not on_ground:
-                term = NET[COMPONENTS.index(component)] if component in COMPONENTS[:3] else None
+                term = NET[k] if k is not None and k < 3 else None
                 if term not in hung.series.terms:
                     offered = [
                         f"force.{c}" for c, t in zip("xyz", NET, strict=True) if t in hung.series.terms
@@ -152,21 +149,20 @@ class Output:
                     raise ValueError(f"{name!r}: bearing {place!r} offers {', '.join(offered)}")
                 return cls(name, bearings=((first, hung.B, np.eye(len(hung.B))[hung.series.index(*term)]),))
             first += len(hung.B)
-        head, _, interface = place.partition(".")
-        owner = next((term for term in system.parts if term.name == head), None)
-        if owner is not None and interface not in owner.element.interfaces:
-            known = sorted(owner.element.interfaces)
-            raise ValueError(f"{name!r}: forces pass through interfaces; {head!r} has {known}")
+        owner = next((term for term in system.parts if f"{place}.".startswith(f"{term.name}.")), None)
         if owner is None:
             raise ValueError(
                 f"{name!r}: {place!r} is no bearing and no interface of the system; there are bearings "
                 f"{[b.name for b in system.bearings]} and parts {[t.name for t in system.parts]}"
             )
-        if component not in COMPONENTS:
-            raise ValueError(f"{name!r}: there are {list(COMPONENTS)}, not {component!r}")
-        k = COMPONENTS.index(component)
+        interfaces = {str(Place(owner.name, n)): index for n, index in owner.element.interfaces.items()}
+        if place not in interfaces:
+            known = sorted(owner.element.interfaces)
+            raise ValueError(f"{name!r}: forces pass through interfaces; {owner.name!r} has {known}")
+        if k is None:
+            raise ValueError(f"{name!r}: there are {list(COMPONENTS)}, not {channel.component!r}")
         if not on_ground:
-            return cls(name, parts=((owner, int(owner.element.interfaces[interface][k])),))
+            return cls(name, parts=((owner, int(interfaces[place][k])),))
         supports = [s for s in system.springs if s.name == f"{place}–{GROUND}"]
         if supports:
             return cls(name, springs=tuple((s, np.eye(6)[k]) for s in supports))
@@ -179,10 +175,10 @@ class Output:
     def _held(cls, system: System, name: str, joint: tuple[str, ...], k: int) -> Output:
         """Component k of the force on the ground from everything fastened to a joint of interfaces."""
         parts = [
-            (term, int(term.element.interfaces[rest][k]))
+            (term, int(term.element.interfaces[place.name][k]))
             for term in system.parts
-            for head, _, rest in (interface.partition(".") for interface in joint)
-            if term.name == head
+            for place in map(Place.parse, joint)
+            if term.name == place.part
         ]
         # the force g on a relative motion J u of the joint pulls it by −Jᵀ g
         springs = [(s, -s.ends[i][:, k]) for s in system.springs for i in joint if i in s.ends]
@@ -219,6 +215,17 @@ class Output:
             own = slice(first, first + len(B))
             total += sprung(share @ K[own, own], share @ C[own, own], taken(len(B)))
         return total
+
+
+def _without_quantity(name: str) -> Channel:
+    """A channel by its name, of which the analysis says whether displacement or a rate of it is meant."""
+    channel = Channel.parse(name)
+    if channel.quantity in QUANTITIES:
+        raise ValueError(
+            f"{name!r} names a quantity, which holds for all outputs here; leave .{channel.quantity} out and "
+            f"give quantity={channel.quantity!r}"
+        )
+    return channel
 
 
 def _balance(
@@ -278,6 +285,6 @@ def recovered(
             continue
         response[:, k] = scale * own[:, 0] * (rate**power)[:, None]
         for i, given in enumerate(inputs):
-            if given.axis is not None and component_of(output.name) == COMPONENTS[given.axis]:
+            if given.axis is not None and Channel.parse(output.name).index == given.axis:
                 response[:, k, i] += 1.0
     return response

@@ -11,6 +11,7 @@ import numpy as np
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.application import COMPONENTS, Application
 from bearingdyn.application.rigid import arm
+from bearingdyn.checks import name_list
 from bearingdyn.parts.outline import Outlined
 from bearingdyn.system import System, assemble
 from bearingdyn.types import Array, Complex, Index
@@ -126,6 +127,7 @@ def mode_surfaces(
         and where no part has a surface.
     """
     system, shape = _of_one_system(source, found)
+    parts = None if parts is None else name_list("parts", parts, "parts")
     if not 0 <= mode < len(shape):
         raise ValueError(f"mode is {mode}; there are modes 0 to {len(shape) - 1}")
     moved = []

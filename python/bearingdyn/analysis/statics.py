@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg
 
 from bearingdyn import core
-from bearingdyn.application import COMPONENTS
+from bearingdyn.application import COMPONENTS, Place
 from bearingdyn.bearing.minimum import NoBalance, minimum
 from bearingdyn.bearing.series import NET, RIGID, RacewaySeries
 from bearingdyn.system import BearingTerm, System
@@ -168,6 +168,6 @@ def lost(system: System, x: Array) -> str:
         motion = rows[:3] @ x
         k = int(np.argmax(np.abs(motion)))
         if abs(motion[k]) > abs(best[2]):
-            best = (repr(name.partition(".")[0]), k, float(motion[k]))
+            best = (repr(Place.parse(name).part), k, float(motion[k]))
     name, k, size = best
     return f"{name} finds no support along {COMPONENTS[k]}: it has moved by {size:.3g} m there"

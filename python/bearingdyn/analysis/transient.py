@@ -13,7 +13,7 @@ from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.application import Application
-from bearingdyn.checks import whole
+from bearingdyn.checks import name_list, whole
 from bearingdyn.results import march_dataset
 from bearingdyn.system import System
 
@@ -111,8 +111,7 @@ def transient(
     >>> bool(np.allclose(y, 1e-6 * np.cos(1000 * y["time"]), atol=1e-9))  # m; √(k/m) is 1000 rad/s
     True
     """
-    if isinstance(record, str):
-        raise ValueError(f"record is {record!r}; give a list of channels, [{record!r}]")
+    record = name_list("record", record)
     if resume is not None and stream is not None:
         raise ValueError(
             "resume and stream are both given; a stream continues by itself, so give one of them"

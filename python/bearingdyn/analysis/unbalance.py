@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
-from bearingdyn.application import Application
-from bearingdyn.checks import numbers
-from bearingdyn.system import QUANTITIES, System
+from bearingdyn.application import QUANTITIES, Application
+from bearingdyn.checks import name_list, numbers
+from bearingdyn.system import System
 
 if TYPE_CHECKING:
     import xarray
@@ -57,6 +57,7 @@ def unbalance_response(
     given = numbers(
         "speeds", speeds, "speeds must be one or more finite values of zero or more, in rad/s", 0.0
     )
+    outputs = name_list("outputs", outputs)
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {list(QUANTITIES)}")
     state = linear(source)

@@ -1,29 +1,31 @@
 """An application: parts joined at rigid interfaces, bearings hung between them, loads applied."""
 
 from bearingdyn.application.builder import Application
-from bearingdyn.application.notes import (
-    COMPONENTS,
-    GRAVITY,
-    GROUND,
-    Bush,
-    Connection,
-    HungBearing,
-    HungFit,
-    Load,
-    Part,
-    Support,
-)
+from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
+from bearingdyn.application.loads import ConstantLoad, CoreLoad, HarmonicLoad, Load, SampledLoad, Unbalance
+from bearingdyn.application.place import COMPONENTS, GRAVITY, GROUND, QUANTITIES, RATES, Channel, Place
+from bearingdyn.application.plan import Part, Plan
 
 __all__ = [
     "COMPONENTS",
     "GRAVITY",
     "GROUND",
+    "QUANTITIES",
+    "RATES",
     "Application",
+    "BearingJoint",
     "Bush",
+    "Channel",
     "Connection",
-    "HungBearing",
-    "HungFit",
+    "ConstantLoad",
+    "CoreLoad",
+    "HarmonicLoad",
     "Load",
+    "LooseJoint",
     "Part",
+    "Place",
+    "Plan",
+    "SampledLoad",
     "Support",
+    "Unbalance",
 ]

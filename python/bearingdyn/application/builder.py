@@ -1,106 +1,40 @@
-"""An application: parts joined at rigid interfaces, bearings hung between them, loads applied.
-
-The builder only takes notes and checks names; `bearingdyn.system.assemble` makes matrices of them.
-"""
+"""The application as its user builds it: every call is checked and written into the plan."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.application.notes import (
-    GRAVITY,
-    GROUND,
-    Bush,
-    Connection,
-    HungBearing,
-    HungFit,
-    Load,
-    Part,
-    Support,
-)
-from bearingdyn.application.plan import Plan
+from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
+from bearingdyn.application.loads import Unbalance, in_time
+from bearingdyn.application.place import GRAVITY, GROUND
+from bearingdyn.application.plan import Part, Plan
 from bearingdyn.application.summary import summary
-from bearingdyn.bearing import BallBearing, LooseFit
+from bearingdyn.bearing import BallBearing, LooseFit, Pair
+from bearingdyn.checks import number, require
 from bearingdyn.cms import Viscoelastic
 from bearingdyn.types import Array
 
 
-def _six(name: str, value: ArrayLike, positive: bool = False) -> Array:
-    vector = np.array(value, dtype=np.float64)
-    if vector.shape != (6,):
-        raise ValueError(
-            f"{name} has shape {vector.shape}; give six numbers (x, y, z, θx, θy, θz) in SI units"
-        )
-    if not np.isfinite(vector).all():
-        raise ValueError(f"{name} is {vector.tolist()}; every number must be finite")
-    if positive and not (vector >= 0).all():
-        raise ValueError(f"{name} is {vector.tolist()}; stiffness and damping cannot be negative")
-    return vector
+class Application:
+    """A machine: parts, joints, bearings and loads, by name.
 
-
-def _three(name: str, value: ArrayLike) -> Array:
-    vector = np.array(value, dtype=np.float64)
-    if vector.shape != (3,) or not np.isfinite(vector).all():
-        raise ValueError(f"{name} is {vector.tolist()}; give three finite numbers (x, y, z) in m/s²")
-    return vector
-
-
-def _load(
-    where: str,
-    vector: Array,
-    frequency: float | None,
-    phase: float,
-    time: ArrayLike | None,
-    value: ArrayLike | None,
-) -> Load:
-    """A load by its course in time: constant, harmonic or sampled."""
-    if frequency is None and phase != 0.0:
-        raise ValueError(f"load at {where}: phase is {phase}; it belongs to a frequency, and none is given")
-    if frequency is not None and (time is not None or value is not None):
-        raise ValueError(f"load at {where}: give frequency, or time and value, not both")
-    if frequency is not None:
-        if not (frequency > 0 and math.isfinite(frequency)):
-            raise ValueError(
-                f"load at {where}: frequency is {frequency}; it must be positive, in Hz "
-                f"(leave it out for a constant load)"
-            )
-        if not math.isfinite(phase):
-            raise ValueError(f"load at {where}: phase is {phase}; it must be finite, in rad")
-        return Load(where, "harmonic", vector, 2 * math.pi * frequency, phase)
-    if time is None and value is None:
-        return Load(where, "constant", vector)
-    t = np.atleast_1d(np.array([] if time is None else time, dtype=np.float64))
-    v = np.atleast_1d(np.array([] if value is None else value, dtype=np.float64))
-    if t.ndim != 1 or t.shape != v.shape or t.size < 2:
-        raise ValueError(
-            f"load at {where}: time has {t.size} samples and value {v.size}; give two or more of each"
-        )
-    if not (np.isfinite(t).all() and np.isfinite(v).all() and (np.diff(t) > 0).all()):
-        raise ValueError(f"load at {where}: time must increase and all samples must be finite")
-    return Load(where, "sampled", vector, time=t, value=v)
-
-
-def _through(name: str, offset: ArrayLike, stiffness: Array | None) -> Array:
-    """An offset (6,) that acts through springs."""
-    vector = _six(name, offset)
-    if stiffness is None or (vector[stiffness == 0.0] != 0.0).any():
-        raise ValueError(f"{name} is {vector.tolist()}; it acts through springs: give a stiffness there")
-    return vector
-
-
-class Application(Plan):
-    """Parts, joints, bearings and loads, by name.
-
-    An interface is named "part.interface" ("shaft.left"); a point that a part offers for output and loads
+    An interface is named "part.interface", as "shaft.left"; a point that a part offers for output and loads
     is named in the same manner. Every interface must be joined, grounded, given a bearing, or declared free.
 
-    Names are checked at once, joints when the system is assembled; either way a ValueError names the part and
-    interface. Lengths, forces, masses in SI; vectors in the order (x, y, z, θx, θy, θz).
+    Names are checked at once, joints when the system is assembled. Either way a ValueError names the part and
+    interface. Lengths, forces and masses are in SI; vectors have the order (x, y, z, θx, θy, θz).
 
+    Attributes
+    ----------
+    plan
+        All that was added, for those who read it.
+
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> app = bd.Application()
     >>> app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
@@ -110,46 +44,80 @@ class Application(Plan):
     -20.0 µm
     """
 
+    def __init__(self) -> None:
+        self.plan = Plan()
+
     def __repr__(self) -> str:
         """The summary, or that there is nothing yet."""
-        return self.summary() if self.parts else "<Application without parts>"
+        return self.summary() if self.plan.parts else "<Application without parts>"
+
+    def summary(self) -> str:
+        """What is connected to what, masses, loads, and which motions nothing holds: read it first."""
+        return summary(self.plan)
+
+    def names(self) -> list[str]:
+        """All interfaces and points, "part.name"."""
+        return self.plan.names()
+
+    def mass(self, part: str) -> float | None:
+        """Mass of a part, kg; None where it has no rigid motion of its own.
+
+        Raises
+        ------
+        ValueError
+            If there is no such part.
+        """
+        self.plan.check_part(part)
+        return self.plan.mass(part)
 
     def add(self, name: str, part: Part) -> None:
         """Add a part under a name. One object may be added under several names; it is reduced once.
 
-        Raises ValueError if the name is taken, reserved or holds a dot.
+        Parameters
+        ----------
+        name
+            A word without dots, neither "ground" nor "gravity".
+        part
+            Anything with a method `superelement()`, such as a Shaft, a Layer or a Superelement.
+
+        Raises
+        ------
+        ValueError
+            If the name is taken, reserved or has a dot, or the part cannot become a superelement.
         """
-        if not name or "." in name or name in (GROUND, GRAVITY):
+        plan = self.plan
+        plan.check_new("part", name)
+        if isinstance(part, BallBearing | Pair):
             raise ValueError(
-                f'part name {name!r} must be a word without dots and not "{GROUND}" or "{GRAVITY}"'
+                f"part {name!r} is a {type(part).__name__}; hang bearings between parts with "
+                f"app.bearing({name!r}, …, inner=…, outer=…)"
             )
-        if name in self.parts or name in self.bearings or name in self.fits:
-            raise ValueError(f"part {name!r} is there already; give each part and bearing its own name")
-        twin = next((known for known, source in self.sources.items() if source is part), None)
+        remedy = "it must be a part, such as bd.Shaft(…), bd.RigidBody(…) or bd.Layer(…)"
+        ready = not isinstance(part, type) and callable(getattr(part, "superelement", None))
+        require(ready, f"part {name!r}", part, remedy)
+        twin = next((known for known, source in plan.sources.items() if source is part), None)
         # the twin's own, before a temperature was put on it
-        self.reduced[name] = part.superelement() if twin is None else self.reduced[twin]
-        self.parts[name] = self.reduced[name]
-        self.sources[name] = part
+        plan.reduced[name] = part.superelement() if twin is None else plan.reduced[twin]
+        plan.parts[name] = plan.reduced[name]
+        plan.sources[name] = part
 
     def connect(self, a: str, b: str) -> None:
         """Join two interfaces rigidly: they move as one.
 
-        Raises ValueError if either is unknown or connected already, or both are of one part.
+        Raises
+        ------
+        ValueError
+            If either is unknown or connected already, or both are of one part.
         """
-        for interface in (a, b):
-            self._interface(interface)
-            for other in self.connections:
-                if interface in (other.a, other.b):
-                    partner = other.b if other.a == interface else other.a
-                    raise ValueError(
-                        f"{interface} is connected already, to {partner}; connect the third part to "
-                        f"another interface of either"
-                    )
-        if a == b:
-            raise ValueError(f"{a} cannot be connected to itself")
-        if a.partition(".")[0] == b.partition(".")[0]:
-            raise ValueError(f"{a} and {b} are of one part; connect interfaces of two parts")
-        self.connections.append(Connection(a, b))
+        first, second = self.plan.interface(a), self.plan.interface(b)
+        for place in (first, second):
+            partner = self.plan.partners().get(place)
+            if partner is not None:
+                raise ValueError(
+                    f"{place} is connected already, to {partner}; connect the third part to another "
+                    f"interface of either"
+                )
+        self.plan.connections.append(Connection(first, second))
 
     def ground(
         self,
@@ -158,21 +126,28 @@ class Application(Plan):
         damping: ArrayLike | None = None,
         offset: ArrayLike | None = None,
     ) -> None:
-        """Hold an interface: rigidly, or by six stiffnesses (N/m, N m/rad) and/or six dampings.
+        """Hold an interface: rigidly, or by springs and dampers.
 
-        offset: (6,) m and rad, where the springs carry no force: they pull the interface there (preload by
-        displacement). Choose the stiffness of what presses.
+        Parameters
+        ----------
+        interface
+            What is held. Without stiffness and damping it is held rigidly.
+        stiffness, damping
+            (6,) N/m, N m/rad and N s/m, N m s/rad.
+        offset
+            (6,) m and rad, where the springs carry no force: they pull the interface there (preload by
+            displacement). Choose the stiffness of what presses.
 
-        Raises ValueError if the interface is unknown or grounded already, a number negative, or an offset
-        has no spring to act through.
+        Raises
+        ------
+        ValueError
+            If the interface is unknown or grounded already, a number is negative, or an offset has no spring
+            to act through.
         """
-        self._interface(interface)
-        if interface in self.supports:
-            raise ValueError(f"{interface} is grounded already; give stiffness and damping in one call")
-        k = None if stiffness is None else _six(f"stiffness of {interface}", stiffness, positive=True)
-        c = None if damping is None else _six(f"damping of {interface}", damping, positive=True)
-        d = None if offset is None else _through(f"offset of {interface}", offset, k)
-        self.supports[interface] = Support(interface, k, c, d)
+        place = self.plan.interface(interface)
+        if place in self.plan.supports:
+            raise ValueError(f"{place} is grounded already; give stiffness and damping in one call")
+        self.plan.supports[place] = Support(place, *(cast(Array, v) for v in (stiffness, damping, offset)))
 
     def spring(
         self,
@@ -182,88 +157,101 @@ class Application(Plan):
         damping: ArrayLike | None = None,
         offset: ArrayLike | None = None,
     ) -> None:
-        """Hang six springs (N/m, N m/rad) and dampers between two interfaces; b may be "ground".
+        """Put six springs and dampers between two interfaces.
 
         Both references are taken to lie at one place, as in a bush: the springs act on x_a − x_b − offset.
-        offset: (6,) m and rad, preload by displacement.
 
-        Raises ValueError if an interface is unknown, both are one, a number is negative, or an offset has no
-        spring to act through.
+        Parameters
+        ----------
+        a, b
+            The interfaces; b may be "ground".
+        stiffness, damping
+            (6,) N/m, N m/rad and N s/m, N m s/rad.
+        offset
+            (6,) m and rad, preload by displacement.
+
+        Raises
+        ------
+        ValueError
+            If an interface is unknown, both are one, a number is negative, or an offset has no spring to act
+            through.
         """
-        self._interface(a)
-        if b != GROUND:
-            self._interface(b)
-        if a == b:
-            raise ValueError(f"a spring has both ends at {a}; name two interfaces")
-        name = f"spring between {a} and {b}"
-        k = _six(f"stiffness of the {name}", stiffness, positive=True)
-        c = np.zeros(6) if damping is None else _six(f"damping of the {name}", damping, positive=True)
-        d = np.zeros(6) if offset is None else _through(f"offset of the {name}", offset, k)
-        self.springs.append(Bush(a, b, k, c, d))
+        first, second = self.plan.interface(a), self.plan.interface_or_ground(b)
+        given = (stiffness, *(np.zeros(6) if v is None else v for v in (damping, offset)))
+        self.plan.springs.append(Bush(first, second, *(cast(Array, v) for v in given)))
 
     def free(self, interface: str) -> None:
-        """Declare that an interface is left unjoined on purpose, or a raceway without balls."""
-        if self.raceway(interface) is None:
-            self._interface(interface)
-        self.free_interfaces.add(interface)
+        """Declare that an interface is left unjoined on purpose, or a raceway without balls.
+
+        Raises
+        ------
+        ValueError
+            If there is no such interface or raceway.
+        """
+        place = self.plan.place(interface)
+        if self.plan.raceway(place) is None:
+            self.plan.interface(place)
+        self.plan.free_interfaces.add(place)
 
     def bearing(
         self, name: str, bearing: BallBearing, *, inner: str, outer: str, offset: float = 0.0
     ) -> None:
-        """Hang a bearing between the interface of its inner ring and that of its outer ring or "ground".
+        """Hang a bearing between the interfaces of its two rings.
 
-        outer may be the raceway of a flexible ring, "ring.raceway", made for this bearing's arm.
-        offset: m, how far along z the inner ring sits beyond where it is drawn: a spacer or nut that
-        preloads two bearings against each other by displacement.
+        Parameters
+        ----------
+        name
+            A word without dots.
+        bearing
+            What is hung; of a pair, each row by itself.
+        inner, outer
+            Interfaces of the rings. outer may be "ground", or the raceway of a flexible ring,
+            "ring.raceway", made for this bearing's arm.
+        offset
+            How far along z the inner ring sits beyond where it is drawn, m: a spacer or nut that preloads
+            two bearings against each other by displacement.
 
-        Raises ValueError if a name is unknown or taken, the raceway has another arm, or the offset is not
-        finite.
+        Raises
+        ------
+        ValueError
+            If this is no bearing, a name is unknown or taken, the raceway has another arm, or the offset is
+            not finite.
         """
-        self._new("bearing", name)
-        self._interface(inner)
-        raceway = self.raceway(outer)
-        if raceway is not None and not math.isclose(raceway.arm, bearing.arm, rel_tol=1e-9):
-            raise ValueError(
-                f"bearing {name!r} has its arm at {bearing.arm:.9g} m and {outer} at {raceway.arm:.9g} m; "
-                "make the ring with arm=bearing.arm"
-            )
-        if outer != GROUND and raceway is None:
-            self._interface(outer)
-        if raceway is not None and any(b.outer == outer for b in self.bearings.values()):
-            raise ValueError(
-                f"bearing {name!r}: {outer} carries a bearing already; give each its own raceway"
-            )
-        if inner == outer:
-            raise ValueError(f"bearing {name!r} has both rings at {inner}; name two interfaces")
-        if not math.isfinite(offset):
-            raise ValueError(f"bearing {name!r}: offset is {offset}; it must be a finite length in m")
-        self.bearings[name] = HungBearing(name, bearing, inner, outer, float(offset))
+        self.plan.check_new("bearing", name)
+        ends = self.plan.interface(inner), self.plan.raceway_or_interface(outer)
+        joint = BearingJoint(name, bearing, *ends, offset)
+        self.plan.check_raceway(joint)
+        self.plan.bearings[name] = joint
 
     def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
-        """Set a flexible ring's outside, "ring.outside", loosely in the bore of an interface or "ground".
+        """Set a flexible ring loosely in a bore.
 
-        Raises ValueError if a name is unknown or taken, or the ring's outside is no raceway.
+        Parameters
+        ----------
+        name
+            A word without dots.
+        fit
+            Clearance and contact.
+        ring
+            Outside of the ring, "ring.outside".
+        bore
+            An interface or "ground".
+
+        Raises
+        ------
+        ValueError
+            If this is no loose fit, a name is unknown or taken, or the ring's outside is no raceway.
         """
-        self._new("fit", name)
-        if self.raceway(ring) is None:
+        self.plan.check_new("fit", name)
+        joint = LooseJoint(name, fit, self.plan.place(ring), self.plan.interface_or_ground(bore))
+        if self.plan.raceway(joint.ring) is None:
             raise ValueError(
                 f'fit {name!r}: {ring!r} is no flexible face; make the ring with outside="flexible" and '
                 f'name its "outside"'
             )
-        if ring in self._raceways_used():
+        if joint.ring in self.plan.raceways_used():
             raise ValueError(f"fit {name!r}: {ring} is in use already; give each its own")
-        if bore != GROUND:
-            self._interface(bore)
-        self.fits[name] = HungFit(name, fit, ring, bore)
-
-    def _new(self, kind: str, name: str) -> None:
-        if not name or "." in name:
-            raise ValueError(f"{kind} name {name!r} must be a word without dots")
-        if name in self.bearings or name in self.parts or name in self.fits:
-            raise ValueError(f"{kind} {name!r}: the name is taken; give each part and bearing its own name")
-
-    def _raceways_used(self) -> set[str]:
-        return {b.outer for b in self.bearings.values()} | {f.ring for f in self.fits.values()}
+        self.plan.fits[name] = joint
 
     def load(
         self,
@@ -275,27 +263,74 @@ class Application(Plan):
         time: ArrayLike | None = None,
         value: ArrayLike | None = None,
     ) -> None:
-        """Apply a force and moment (Fx, Fy, Fz, Mx, My, Mz), N and N m, at an interface or point.
+        """Apply a force and moment at an interface or point.
 
-        Alone it is constant. With `frequency` (Hz) it is vector·cos(2π f t + phase), zero-to-peak. With
-        `time` (s, increasing) and `value` it is vector × value(time), linear between samples, ends held.
+        Without the arguments after `vector` the load is constant. With `frequency` it is
+        vector·cos(2π f t + phase), zero-to-peak. With `time` and `value` it is vector × value(time), linear
+        between the samples; before and after, the end values hold.
 
-        Raises ValueError for an unknown place, a wrong shape, or an unsorted table.
+        Parameters
+        ----------
+        where
+            The place, "part.place".
+        vector
+            (6,) Fx, Fy, Fz, Mx, My, Mz in N and N m; at a point without rotation the moments must be zero.
+        frequency
+            f, Hz.
+        phase
+            rad.
+        time, value
+            (k,) s, increasing, and factors of the vector.
+
+        Raises
+        ------
+        ValueError
+            For an unknown place, a wrong shape, or an unsorted table.
         """
-        rows = self._rows(where)
-        force = _six(f"load at {where}", vector)
-        if rows.shape[0] == 3 and force[3:].any():
+        place = self.plan.place(where)
+        rows = self.plan.rows(place)
+        load = in_time(place, vector, frequency, phase, time, value)
+        if rows.shape[0] == 3 and load.vector[3:].any():
             raise ValueError(f"load at {where}: the point has no rotation, so its moment must be zero")
-        self.loads.append(_load(where, force, frequency, phase, time, value))
+        self.plan.loads.append(load)
+
+    def unbalance(self, where: str, moment: float, phase: float = 0.0) -> None:
+        """Apply an unbalance, which turns with the shaft.
+
+        Parameters
+        ----------
+        where
+            The place, "part.place".
+        moment
+            Mass × eccentricity, kg m.
+        phase
+            Angle from x at which it stands when the shaft stands at zero, rad.
+
+        Raises
+        ------
+        ValueError
+            For an unknown place or a negative moment.
+        """
+        place = self.plan.place(where)
+        self.plan.rows(place)
+        self.plan.loads.append(Unbalance(place, moment, phase))
 
     def gravity(self, acceleration: ArrayLike) -> None:
-        """Weight of every part: acceleration (3,) of a falling body, m/s², such as (0, -9.81, 0).
+        """Give every part its weight.
 
-        Raises ValueError for a wrong shape, or if there is gravity already.
+        Parameters
+        ----------
+        acceleration
+            (3,) of a falling body, m/s², such as (0, -9.81, 0).
+
+        Raises
+        ------
+        ValueError
+            For a wrong shape, or if there is gravity already.
         """
-        if any(load.where == GRAVITY for load in self.loads):
+        if any(load.where == GRAVITY for load in self.plan.loads):
             raise ValueError("gravity is given already; one acceleration holds for all parts")
-        self.loads.append(Load(GRAVITY, "constant", _three("gravity", acceleration)))
+        self.plan.loads.append(in_time(GRAVITY, acceleration))
 
     def base_motion(
         self,
@@ -306,26 +341,46 @@ class Application(Plan):
         time: ArrayLike | None = None,
         value: ArrayLike | None = None,
     ) -> None:
-        """Move the ground, all of it together without turning: acceleration (3,), m/s², in time as a `load`.
+        """Move the ground, all of it together without turning.
 
         Everything is then reckoned relative to the moving ground, where each part feels −M R ü, R its rigid
-        translation: exact, for the supports see the relative motion alone. Recorded motions are relative too.
+        translation. This is exact, for the supports see the relative motion alone. Recorded motions are
+        relative too.
 
-        Raises ValueError for a wrong shape or an unsorted table.
+        Parameters
+        ----------
+        acceleration
+            (3,) m/s².
+        frequency, phase, time, value
+            Its course in time, as in `load`.
+
+        Raises
+        ------
+        ValueError
+            For a wrong shape or an unsorted table.
         """
-        vector = _three("acceleration of the base", acceleration)
-        self.loads.append(_load(GROUND, vector, frequency, phase, time, value))
+        self.plan.loads.append(in_time(GROUND, acceleration, frequency, phase, time, value))
 
     def temperature(self, part: str, T: float) -> None:
-        """Put a part's viscoelastic materials at a temperature, °C, by the shift law of each.
+        """Put a part's viscoelastic materials at a temperature, by the shift law of each.
 
-        Raises ValueError for an unknown part, one without viscoelastic material, or a material without law.
+        Parameters
+        ----------
+        part
+            Name of the part.
+        T
+            °C; a second call replaces the first.
+
+        Raises
+        ------
+        ValueError
+            For an unknown part, one without viscoelastic material, or a material without law.
         """
-        if part not in self.parts:
-            raise ValueError(f"{part!r} names no part of the application; there are {sorted(self.parts)}")
-        element = self.parts[part]
+        self.plan.check_part(part)
+        element = self.plan.parts[part]
         if not element.viscoelastic:
             raise ValueError(f"part {part!r} has no viscoelastic material; a temperature changes nothing")
+        T = number(f"temperature of part {part!r}", T, "it must be one finite number, in °C")
         moved = []
         for term in element.viscoelastic:
             at = getattr(term.material, "at", None)
@@ -338,21 +393,5 @@ class Application(Plan):
                 moved.append(Viscoelastic(at(T), term.H))
             except ValueError as error:
                 raise ValueError(f"part {part!r} at {T} °C: {error}") from None
-        self.parts[part] = replace(element, viscoelastic=tuple(moved))
-        self.temperatures[part] = float(T)
-
-    def unbalance(self, where: str, moment: float, phase: float = 0.0) -> None:
-        """An unbalance mass × eccentricity (kg m) that turns with the shaft, at `phase` (rad) from x.
-
-        Raises ValueError for an unknown place or a negative moment.
-        """
-        self._rows(where)
-        if not (moment >= 0 and math.isfinite(moment)) or not math.isfinite(phase):
-            raise ValueError(
-                f"unbalance at {where} is {moment} kg m at {phase} rad; it must be finite and not negative"
-            )
-        self.loads.append(Load(where, "rotating", np.zeros(6), phase=phase, unbalance=moment))
-
-    def summary(self) -> str:
-        """What is connected to what, masses, loads, and which motions nothing holds: read it first."""
-        return summary(self)
+        self.plan.parts[part] = replace(element, viscoelastic=tuple(moved))
+        self.plan.temperatures[part] = T

@@ -1,30 +1,60 @@
-"""The notes of an application, and what can be read from them."""
+"""The plan of an application: its parts, joints and loads, and what follows from them without matrices."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from typing import Protocol
 
 import numpy as np
 
-from bearingdyn.application.notes import GROUND, Bush, Connection, HungBearing, HungFit, Load, Part, Support
+from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
+from bearingdyn.application.loads import Load
+from bearingdyn.application.place import GRAVITY, GROUND, Place
 from bearingdyn.application.rigid import arm, rigid_shapes
 from bearingdyn.cms import Raceway, Superelement
 from bearingdyn.types import Array
 
 
+class Part(Protocol):
+    """Anything that becomes a superelement."""
+
+    def superelement(self) -> Superelement:
+        """The part's reduced matrices."""
+
+
 class Plan:
-    """Parts, joints, bearings and loads as they were noted, by name."""
+    """Parts, joints, bearings and loads by name.
+
+    `Application` writes it and checks what it writes; `bearingdyn.system.assemble` makes matrices of it.
+
+    Attributes
+    ----------
+    parts
+        Reduced parts, each at its temperature.
+    reduced
+        The same parts as they were reduced, before a temperature was put on them.
+    sources
+        What each part was reduced from.
+    connections, supports, springs, bearings, fits
+        Joints; supports by the interface they hold, bearings and fits by name.
+    loads
+        In the order in which they were given.
+    free_interfaces
+        Interfaces left unjoined on purpose, and raceways without balls.
+    temperatures
+        °C, of the parts that were given one.
+    """
 
     def __init__(self) -> None:
         self.parts: dict[str, Superelement] = {}
         self.reduced: dict[str, Superelement] = {}
         self.sources: dict[str, Part] = {}
         self.connections: list[Connection] = []
-        self.supports: dict[str, Support] = {}
-        self.bearings: dict[str, HungBearing] = {}
-        self.fits: dict[str, HungFit] = {}
+        self.supports: dict[Place, Support] = {}
+        self.bearings: dict[str, BearingJoint] = {}
+        self.fits: dict[str, LooseJoint] = {}
         self.loads: list[Load] = []
-        self.free_interfaces: set[str] = set()
+        self.free_interfaces: set[Place] = set()
         self.springs: list[Bush] = []
         self.temperatures: dict[str, float] = {}
         self._rigid: dict[str, Array | None] = {}
@@ -33,10 +63,115 @@ class Plan:
         """All interfaces and points, "part.name"."""
         return [f"{p}.{n}" for p, e in self.parts.items() for n in (*e.interfaces, *e.outputs)]
 
+    def check_new(self, kind: str, name: str) -> None:
+        """Check the name of a new "part", "bearing" or "fit".
+
+        Raises
+        ------
+        ValueError
+            If it is no word, has a dot, is reserved or taken.
+        """
+        reserved = (str(GROUND), str(GRAVITY))
+        if not isinstance(name, str) or not name or "." in name or name in reserved:
+            raise ValueError(
+                f'{kind} name is {name!r}; it must be a word without dots, and not "{GROUND}" or "{GRAVITY}"'
+            )
+        if name in self.parts or name in self.bearings or name in self.fits:
+            raise ValueError(
+                f"{kind} {name!r}: the name is taken; give each part, bearing and fit its own name"
+            )
+
+    def check_part(self, name: str) -> None:
+        """Check that there is a part of that name; ValueError otherwise."""
+        if name not in self.parts:
+            raise ValueError(f"{name!r} names no part of the application; there are {sorted(self.parts)}")
+
+    def place(self, name: str | Place) -> Place:
+        """A place by its name, on a part of the application.
+
+        Raises
+        ------
+        ValueError
+            If the name is none of a place, or there is no such part.
+        """
+        place = Place.parse(name)
+        if place.part not in self.parts:
+            known = sorted(self.parts)
+            raise ValueError(f"{str(place)!r} names no part of the application; there are {known}")
+        return place
+
+    def interface(self, name: str | Place) -> Place:
+        """A place that is an interface, where six motions can be joined.
+
+        Raises
+        ------
+        ValueError
+            If there is no such interface; a raceway is none.
+        """
+        place = self.place(name)
+        element = self.parts[place.part]
+        if place.name in element.raceways:
+            raise ValueError(
+                f"{place} is a raceway, not a rigid interface; it serves as the outer of a bearing"
+            )
+        if place.name not in element.interfaces:
+            raise ValueError(
+                f"{place.part!r} has no interface {place.name!r}; it has {sorted(element.interfaces)}"
+            )
+        return place
+
+    def interface_or_ground(self, name: str | Place) -> Place:
+        """An interface, or GROUND for "ground"; ValueError for anything else."""
+        return GROUND if name in (GROUND, str(GROUND)) else self.interface(name)
+
+    def raceway_or_interface(self, name: str | Place) -> Place:
+        """A raceway, an interface, or GROUND for "ground"; ValueError for anything else."""
+        if name in (GROUND, str(GROUND)):
+            return GROUND
+        place = self.place(name)
+        return self.interface(place) if self.raceway(place) is None else place
+
+    def rows(self, place: Place) -> Array:
+        """Motion (3 or 6, n) of a place by the coordinates of its part; ValueError if it is unknown."""
+        return self.parts[place.part].rows(place.name)
+
+    def raceway(self, place: Place) -> Raceway | None:
+        """The raceway at a place; None where there is none."""
+        return self.parts[place.part].raceways.get(place.name) if place.part in self.parts else None
+
+    def check_raceway(self, joint: BearingJoint) -> None:
+        """Check a new bearing against the raceway it is hung in, if it is hung in one.
+
+        Raises
+        ------
+        ValueError
+            If the raceway was made for another arm, or carries a bearing already.
+        """
+        raceway, name, arm = self.raceway(joint.outer), joint.name, joint.bearing.arm
+        if raceway is None:
+            return
+        if not math.isclose(raceway.arm, arm, rel_tol=1e-9):
+            raise ValueError(
+                f"bearing {name!r} has its arm at {arm:.9g} m and {joint.outer} at {raceway.arm:.9g} m; "
+                f"make the ring with arm=bearing.arm"
+            )
+        if any(b.outer == joint.outer for b in self.bearings.values()):
+            raise ValueError(
+                f"bearing {name!r}: {joint.outer} carries a bearing already; give each its own raceway"
+            )
+
+    def raceways_used(self) -> set[Place]:
+        """Raceways that carry balls or sit in a bore, among the other ends of bearings."""
+        return {b.outer for b in self.bearings.values()} | {f.ring for f in self.fits.values()}
+
+    def partners(self) -> dict[Place, Place]:
+        """Which interface each connected one moves with."""
+        return {c.a: c.b for c in self.connections} | {c.b: c.a for c in self.connections}
+
     def turning_parts(self) -> set[str]:
         """Parts that turn with the shaft: those with gyroscopic forces, and what is connected to them."""
         turning = {name for name, element in self.parts.items() if np.any(element.G)}
-        pairs = [{c.a.partition(".")[0], c.b.partition(".")[0]} for c in self.connections]
+        pairs = [{c.a.part, c.b.part} for c in self.connections]
         while True:
             joined = {name for pair in pairs if pair & turning for name in pair}
             if joined <= turning:
@@ -44,39 +179,36 @@ class Plan:
             turning |= joined
 
     def check_joints(self) -> None:
-        """Every interface must be used or declared free.
+        """Check that every interface and raceway is used or declared free.
 
-        Raises ValueError naming the interface and what to do with it.
+        Raises
+        ------
+        ValueError
+            Naming the interface and what to do with it, or if there are no parts.
         """
         if not self.parts:
             raise ValueError("the application has no parts; add some with app.add(name, part)")
-        used = {i for c in self.connections for i in (c.a, c.b)} | set(self.supports)
-        used |= {i for s in self.springs for i in (s.a, s.b)}
-        used |= {i for f in self.fits.values() for i in (f.ring, f.bore)}
-        used |= {i for b in self.bearings.values() for i in (b.inner, b.outer)} | self.free_interfaces
+        used = {place for pair in self._joined() for place in pair}
+        used |= {place for c in self.connections for place in (c.a, c.b)}
+        used |= self.supports.keys() | self.free_interfaces
         for part, element in self.parts.items():
-            for raceway in element.raceways:
-                if f"{part}.{raceway}" not in used:
+            for place in (Place(part, name) for name in element.raceways):
+                if place not in used:
                     raise ValueError(
-                        f"raceway {part}.{raceway} carries no balls; name it as the outer of a bearing, or "
-                        f'declare app.free("{part}.{raceway}")'
+                        f"raceway {place} carries no balls; name it as the outer of a bearing, or declare "
+                        f'app.free("{place}")'
                     )
-            for interface in element.interfaces:
-                if f"{part}.{interface}" not in used:
+            for place in (Place(part, name) for name in element.interfaces):
+                if place not in used:
                     raise ValueError(
-                        f"interface {part}.{interface} is not connected; connect it, ground it, hang a "
-                        f'bearing on it, or declare app.free("{part}.{interface}")'
+                        f"interface {place} is not connected; connect it, ground it, hang a bearing on it, "
+                        f'or declare app.free("{place}")'
                     )
 
     def mass(self, part: str) -> float | None:
-        """Mass by the rigid translation along y, kg; None for a part without rigid motion of its own."""
+        """Mass of a part by its translation along y, kg; None where it has no rigid motion of its own."""
         R = self.rigid_shapes(part)
         return None if R is None else float(R[:, 1] @ self.parts[part].M @ R[:, 1])
-
-    def raceway(self, name: str) -> Raceway | None:
-        """The raceway of that name, "ring.raceway"; None where the name is no raceway."""
-        part, _, rest = name.partition(".")
-        return self.parts[part].raceways.get(rest) if part in self.parts else None
 
     def rigid_shapes(self, part: str) -> Array | None:
         """Coordinates (n, 6) of a part that moves as a rigid body with its first interface.
@@ -102,38 +234,22 @@ class Plan:
                 for name, raceway in element.raceways.items():
                     centre = np.linalg.pinv(raceway.series.rigid(raceway.arm)) @ raceway.rows
                     arms[part][name] = arm(centre, R)
-        pairs = [(c.a, c.b) for c in self.connections] + [(s.a, s.b) for s in self.springs]
-        pairs += [(b.inner, b.outer) for b in self.bearings.values()]
-        pairs += [(f.ring, f.bore) for f in self.fits.values()]
+        pairs = [(c.a, c.b) for c in self.connections] + self._joined()
         origin = {part: np.zeros(3) for part in list(arms)[:1]}
         left = [pair for pair in pairs if GROUND not in pair]
         while True:
-            for near, far in [*left, *((b, a) for a, b in left)]:
-                (known, at), (part, there) = (name.partition(".")[::2] for name in (near, far))
-                ready = known in origin and part not in origin
-                if ready and at in arms[known] and there in arms.get(part, {}):
-                    origin[part] = origin[known] + arms[known][at] - arms[part][there]
+            for known, new in [*left, *((b, a) for a, b in left)]:
+                ready = known.part in origin and new.part not in origin
+                if ready and known.name in arms[known.part] and new.name in arms.get(new.part, {}):
+                    known_at = origin[known.part] + arms[known.part][known.name]
+                    origin[new.part] = known_at - arms[new.part][new.name]
                     break
             else:
                 break
         return {f"{p}.{name}": origin[p] + a for p in origin for name, a in arms[p].items()}
 
-    def _split(self, name: str) -> tuple[str, str]:
-        part, dot, rest = name.partition(".")
-        if not dot or part not in self.parts:
-            raise ValueError(f"{name!r} names no part of the application; there are {sorted(self.parts)}")
-        return part, rest
-
-    def _interface(self, name: str) -> None:
-        part, rest = self._split(name)
-        known: Sequence[str] = sorted(self.parts[part].interfaces)
-        if rest in self.parts[part].raceways:
-            raise ValueError(
-                f"{name} is a raceway, not a rigid interface; it serves as the outer of a bearing"
-            )
-        if rest not in known:
-            raise ValueError(f"{part!r} has no interface {rest!r}; it has {list(known)}")
-
-    def _rows(self, name: str) -> Array:
-        part, rest = self._split(name)
-        return self.parts[part].rows(rest)
+    def _joined(self) -> list[tuple[Place, Place]]:
+        """The two ends of each spring, bearing and fit."""
+        pairs = [(s.a, s.b) for s in self.springs]
+        pairs += [(b.inner, b.outer) for b in self.bearings.values()]
+        return pairs + [(f.ring, f.bore) for f in self.fits.values()]

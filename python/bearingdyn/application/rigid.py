@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import scipy.linalg
 
-from bearingdyn.application.notes import COMPONENTS
+from bearingdyn.application.place import COMPONENTS
 from bearingdyn.cms import Superelement
 from bearingdyn.types import Array
 
@@ -20,10 +20,10 @@ HELD = 1e-9
 def rigid_shapes(element: Superelement) -> Array | None:
     """Coordinates (n, 6) of a part that moves as a rigid body with its first interface.
 
-    Columns: unit x, y, z, θx, θy, θz of that interface. What the motion of the other coordinates is, internal
-    ones included, follows from the stiffness alone, for a rigid motion strains nothing: K_oo x_o = −K_oi x_i.
+    The columns are unit x, y, z, θx, θy, θz of that interface. The other coordinates, internal ones included,
+    follow from the stiffness alone, because a rigid motion strains nothing: K_oo x_o = −K_oi x_i.
 
-    None for a part without interfaces, or one whose own stiffness resists a rigid motion.
+    The result is None for a part without interfaces, or one whose own stiffness resists a rigid motion.
     """
     if not element.interfaces:
         return None
@@ -47,9 +47,14 @@ def rigid_shapes(element: Superelement) -> Array | None:
 
 
 def arm(rows: Array, shapes: Array) -> Array:
-    """Position (3,), m, of a place from a part's first interface: u = θ × arm of its rigid motions.
+    """Position (3,), m, of a place from the first interface of its part: a rotation θ moves it by θ × arm.
 
-    rows: (3 or 6, n) of the place; shapes: (n, 6) as `rigid_shapes`.
+    Parameters
+    ----------
+    rows
+        (3 or 6, n) motion of the place by the part's coordinates.
+    shapes
+        (n, 6) as by `rigid_shapes`.
     """
     turned = rows[:3] @ shapes[:, 3:]
     return (
@@ -60,10 +65,19 @@ def arm(rows: Array, shapes: Array) -> Array:
 def free_motions(
     shapes: Mapping[str, Array | None], held: Iterable[Mapping[str, Array]]
 ) -> list[list[tuple[str, str]]]:
-    """Motions of parts, each taken as rigid, that no constraint holds: lists of (part, component).
+    """Motions that no constraint holds, where each part is taken as rigid.
 
-    held: constraints, each rows (k, n) by part, on the coordinates of the parts together. The components are
-    those of each part's first interface. Parts without rigid shapes are taken as held.
+    Parameters
+    ----------
+    shapes
+        (n, 6) of each part as by `rigid_shapes`; a part with None is taken as held.
+    held
+        Constraints: each holds the sum of rows (k, n) @ coordinates over the parts it names.
+
+    Returns
+    -------
+    list of list of (part, component)
+        One list for each free motion: what moves in it, by the components of each part's first interface.
     """
     parts = {name: R for name, R in shapes.items() if R is not None}
     at = {name: 6 * i for i, name in enumerate(parts)}

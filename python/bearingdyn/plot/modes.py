@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.application import Place
 from bearingdyn.plot.frame import RPM, colour, finish, new_axes, style
 from bearingdyn.types import Array
 
@@ -125,7 +126,7 @@ def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis:
     up, along = up * scale, along * scale
     parts: dict[str, list[int]] = {}
     for k, name in enumerate(data["place"].values):
-        parts.setdefault(str(name).partition(".")[0], []).append(k)
+        parts.setdefault(Place.parse(str(name)).part, []).append(k)
     with style():
         ax = ax or new_axes(width=6.8)
         for k, (part, members) in enumerate(parts.items()):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.analysis import BearingState
+from bearingdyn.application import RATES, Channel
 from bearingdyn.plot.frame import (
     COLOURS,
     DASHES,
@@ -264,32 +265,26 @@ def _one_quantity(datasets: Mapping[str, xarray.Dataset]) -> str:
     return quantities.pop()
 
 
-def _is_rotation(channel: str) -> bool:
-    return channel.rpartition(".")[2] in ("θx", "θy", "θz", "rx", "ry", "rz")
-
-
 def _is_force(output: str) -> bool:
-    """Whether an output is a force or moment: on the ground, or through a bearing or interface."""
-    return output.startswith("ground.") or output.rpartition(".")[0].endswith(".force")
+    return Channel.parse(output).is_force
 
 
-def _cause(channel: str) -> str:
-    if channel.startswith("ground."):
+def _cause(input: str) -> str:
+    given = Channel.parse(input)
+    if given.of_ground:
         return "motion"
-    return "moment" if _is_rotation(channel) else "force"
+    return "moment" if given.is_rotation else "force"
 
 
 def _response_unit(quantity: str, output: str, input: str) -> str:
-    rate = {"displacement": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
-    on_ground = input.startswith("ground.")
-    if _is_force(output):
-        force = "N m" if _is_rotation(output) else "N"
-        below = f"m{rate}" if on_ground else "N m" if _is_rotation(input) else "N"
-        return f"({force})/({below})"
-    motion = "rad" if _is_rotation(output) else "m"
-    if on_ground:
-        return f"({motion}{rate})/(m{rate})"
-    return f"{f'({motion}{rate})' if rate else motion}/{'(N m)' if _is_rotation(input) else 'N'}"
+    found, given = Channel.parse(output), Channel.parse(input)
+    below = given.motion_unit(quantity) if given.of_ground else given.force_unit
+    if found.is_force:
+        return f"({found.force_unit})/({below})"
+    above = found.motion_unit(quantity)
+    if given.of_ground:
+        return f"({above})/({below})"
+    return f"{f'({above})' if RATES[quantity] else above}/{f'({below})' if given.is_rotation else below}"
 
 
 def continuous_phase(response: Complex) -> Array:

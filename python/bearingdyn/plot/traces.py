@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.checks import name_list
 from bearingdyn.plot.frame import colour, engineering, finish, new_axes, some, stack, style
 from bearingdyn.types import Array
 
@@ -53,27 +54,29 @@ def time(
         if "record" not in data:
             raise ValueError(f"{label!r} has no record over time; bd.transient makes one")
     first = next(iter(marches.values()))
-    names = [str(c) for c in first["channel"].values] if channels is None else list(channels)
-    if not names:
+    wanted = (
+        [str(c) for c in first["channel"].values] if channels is None else name_list("channels", channels)
+    )
+    if not wanted:
         raise ValueError("there is no channel to draw; name one or more")
     units: dict[str, list[str]] = {}
     for label, data in marches.items():
         known = [str(c) for c in data["channel"].values]
-        for name in names:
+        for name in wanted:
             if name not in known:
                 raise ValueError(f"channel {name!r} of {label!r} was not recorded; there are {known}")
-    for name in names:
+    for name in wanted:
         units.setdefault(str(first["unit"].sel(channel=name).item()), []).append(name)
     traces = {
         (label, name): _trace(data, name, span, about_mean)
         for label, data in marches.items()
-        for name in names
+        for name in wanted
     }
     if span is not None and not all(t.size for t, _ in traces.values()):
         raise ValueError(f"span is {span}; a march has no sample in it, in s")
     from matplotlib.ticker import MaxNLocator
 
-    title = f"{names[0] if len(names) == 1 else 'Recorded channels'} over time"
+    title = f"{wanted[0] if len(wanted) == 1 else 'Recorded channels'} over time"
     title += ", less the mean" if about_mean else ""
     with style():
         ax = ax or new_axes(width=6.8, height=1.4 + 1.7 * len(units))
@@ -81,7 +84,7 @@ def time(
         for panel, (unit, members) in zip(panels, units.items(), strict=True):
             drawn = [(label, name) for name in members for label in marches]
             for k, (label, name) in enumerate(drawn):
-                said = name if len(marches) == 1 else label if len(names) == 1 else f"{label}: {name}"
+                said = name if len(marches) == 1 else label if len(wanted) == 1 else f"{label}: {name}"
                 panel.plot(*traces[label, name], color=colour(k), linewidth=0.7, label=said)
             written = engineering(panel.yaxis, np.concatenate([traces[d][1] for d in drawn]), unit)
             quantity = QUANTITIES.get(unit, "value")

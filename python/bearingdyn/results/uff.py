@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.system import QUANTITIES, RATES
+from bearingdyn.application import QUANTITIES, RATES, Channel
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
-DIRECTIONS = {"x": 1, "y": 2, "z": 3, "θx": 4, "θy": 5, "θz": 6, "rx": 4, "ry": 5, "rz": 6}
 # specific data types of records 8 to 10
 TIME, FREQUENCY, REACTION, FORCE, GENERAL = 17, 18, 9, 13, 1
 MOTION = dict(zip(QUANTITIES, (8, 11, 12), strict=True))
@@ -63,7 +62,7 @@ def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
     if abscissa.size < 2:
         raise ValueError(f"the result has {abscissa.size} points along {dim}; dataset 58 needs two or more")
     names = [name for f in functions for name in (f.response, f.reference) if name]
-    nodes = list(dict.fromkeys(_split(name)[0] for name in names))
+    nodes = list(dict.fromkeys(_node(name)[0] for name in names))
     lines = [line for f in functions for line in _dataset_58(f, dim, abscissa, nodes, data.attrs)]
     target = Path(path)
     scratch = target.with_name(target.name + ".part")
@@ -81,9 +80,9 @@ def _functions(data: xarray.Dataset) -> Iterator[_Function]:
         quantity = str(data.attrs.get("quantity"))
         for i, output in enumerate(H["output"].values.astype(str)):
             for j, given in enumerate(H["input"].values.astype(str)):
-                force = output.startswith("ground.") or ".force." in output
+                force = Channel.parse(output).is_force
                 of = _quantity(output, REACTION if force else MOTION.get(quantity, GENERAL), quantity)
-                moved = given.startswith("ground.")
+                moved = Channel.parse(given).of_ground
                 per = _quantity(given, MOTION.get(quantity, GENERAL) if moved else FORCE, quantity)
                 yield _Function(FREQUENCY_RESPONSE, output, given, of, per, H.values[:, i, j])
     elif "record" in data and {"time", "channel"} <= set(data["record"].dims):
@@ -103,18 +102,16 @@ def _functions(data: xarray.Dataset) -> Iterator[_Function]:
 
 def _quantity(channel: str, kind: int, quantity: str) -> tuple[int, str]:
     """Specific data type of a channel in a frequency response, and its unit."""
-    turning = _split(channel)[1] > 3
+    named = Channel.parse(channel)
     if kind in (FORCE, REACTION):
-        return kind, "N m" if turning else "N"
-    return kind, ("rad" if turning else "m") + RATES.get(quantity, "")
+        return kind, named.force_unit
+    return kind, named.motion_unit(quantity if quantity in RATES else "displacement")
 
 
-def _split(channel: str) -> tuple[str, int]:
-    """Place and direction of a channel: "shaft.end.y.velocity" is 2 at "shaft.end"; 0 where it has none."""
-    place, _, last = channel.rpartition(".")
-    if last in QUANTITIES:
-        place, _, last = place.rpartition(".")
-    return (place, DIRECTIONS[last]) if last in DIRECTIONS else (channel, 0)
+def _node(channel: str) -> tuple[str, int]:
+    """Node and direction of a channel: "shaft.end.y.velocity" is 2 at "shaft.end"; 0 where it has none."""
+    named = Channel.parse(channel)
+    return (channel, 0) if named.index is None else (named.site, named.index + 1)
 
 
 def _ascii(text: str, width: int) -> str:
@@ -141,7 +138,7 @@ def _dataset_58(
     yield _ascii(f"inputs {attrs.get('inputs_hash', 'not known')}", WIDTH)
 
     def end(channel: str) -> str:
-        place, direction = _split(channel) if channel else ("NONE", 0)
+        place, direction = _node(channel) if channel else ("NONE", 0)
         node = nodes.index(place) + 1 if channel else 0
         return f"{_ascii(place, 10)}{node:10d}{direction:4d}"
 

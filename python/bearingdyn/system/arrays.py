@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg
 
 from bearingdyn import core
-from bearingdyn.application import COMPONENTS, Part
+from bearingdyn.application import COMPONENTS, Channel, Part
 from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
 from bearingdyn.bearing.series import RIGID, RacewaySeries
 from bearingdyn.checks import number
@@ -25,10 +25,6 @@ from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.material import Maxwell
 from bearingdyn.types import Array, Index
 
-# of a motion; the order is the number of derivatives
-QUANTITIES = ("displacement", "velocity", "acceleration")
-RATES = dict(zip(QUANTITIES, ("", "/s", "/s²"), strict=True))
-ALIASES = {"rx": "θx", "ry": "θy", "rz": "θz"}
 # below this share of the largest eigenvalue of (K, M) its round-off may hide a slow mode
 SLOW = 1e-6
 # round-off left in φᵀKφ, as a share of |φ|ᵀ|K||φ|, and in the slow modes, as a share of the fastest of them
@@ -222,7 +218,7 @@ class System:
             raise ValueError(f"{name!r} is no interface or output{meant} there are {sorted(self.outputs)}")
         return self.outputs[name]
 
-    def row(self, channel: str) -> Array:
+    def row(self, channel: str | Channel) -> Array:
         """Row (n,) of one component: "shaft.left.y"; rotations are θx, θy, θz or rx, ry, rz.
 
         Raises
@@ -230,16 +226,15 @@ class System:
         ValueError
             Where the place or the component does not exist.
         """
-        if channel in self.outputs:
-            raise ValueError(f"{channel!r} is a place; add what of it is meant, as {channel + '.y'!r}")
-        place = channel.rpartition(".")[0]
-        rows = self.rows(place)
-        component = component_of(channel)
-        if component not in COMPONENTS[: rows.shape[0]]:
-            raise ValueError(
-                f"{channel!r}: {place} has {list(COMPONENTS[: rows.shape[0]])}, not {component!r}"
-            )
-        return np.asarray(rows[COMPONENTS.index(component)])
+        wanted = Channel.parse(channel) if isinstance(channel, str) else channel
+        place = f"{wanted.site}.{wanted.component}"
+        if place in self.outputs:
+            raise ValueError(f"{place!r} is a place; add what of it is meant, as {place + '.y'!r}")
+        rows = self.rows(wanted.site)
+        if wanted.index is None or wanted.index >= rows.shape[0]:
+            known = list(COMPONENTS[: rows.shape[0]])
+            raise ValueError(f"{str(channel)!r}: {wanted.site} has {known}, not {wanted.component!r}")
+        return np.asarray(rows[wanted.index])
 
     def check_speed(self, speed: float) -> None:
         """Refuse a speed at which the damping of a part would be wrong.
@@ -422,17 +417,6 @@ def factor(A: Array) -> Array:
     values, vectors = np.linalg.eigh(A / np.outer(scale, scale))
     keep = values > RANK * values[-1]
     return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
-
-
-def component_of(channel: str) -> str:
-    """Component of a channel "place.component": rx, ry, rz are θx, θy, θz."""
-    component = channel.rpartition(".")[2]
-    return ALIASES.get(component, component)
-
-
-def is_rotation(channel: str) -> bool:
-    """Whether a channel "place.component" is a rotation."""
-    return component_of(channel) in COMPONENTS[3:]
 
 
 def static_modulus(layer: LayerTerm, modulus: str) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bearingdyn.application import COMPONENTS
+from bearingdyn.application import COMPONENTS, Place
 from bearingdyn.system.arrays import TEST_SPRING, System, natural, static_modulus
 from bearingdyn.types import Array
 
@@ -50,7 +50,7 @@ def check_held(system: System, firm: Array) -> None:
             key=lambda site: abs(float(dict(sites)[site[0]][site[1]] @ motion)),
         )
         raise ValueError(
-            f"{name.partition('.')[0]!r} is free to move in {COMPONENTS[component]} (seen at {name}); "
+            f"{Place.parse(name).part!r} is free to move in {COMPONENTS[component]} (seen at {name}); "
             f"connect it, ground it or carry it by a bearing"
         )
     torque = free.T @ load

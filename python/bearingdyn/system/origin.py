@@ -14,7 +14,7 @@ def noted(system: System, app: Application) -> System:
     # the reduced parts, and what is kept of them, follow from their sources
     held = {
         name: value
-        for name, value in vars(app).items()
+        for name, value in vars(app.plan).items()
         if name not in ("parts", "reduced") and name[0] != "_"
     }
     return replace(system, inputs=inputs.text(held))

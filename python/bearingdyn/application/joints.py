@@ -1,0 +1,202 @@
+"""What joins parts: rigid connections, supports, springs, bearings and loose fits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bearingdyn.application.place import Place
+from bearingdyn.bearing import BallBearing, LooseFit, Pair, catalogue
+from bearingdyn.checks import number, require, vector
+from bearingdyn.types import Array
+
+
+@dataclass(frozen=True)
+class Connection:
+    """Two interfaces that move as one.
+
+    Raises
+    ------
+    ValueError
+        If both are one, or of one part.
+    """
+
+    a: Place
+    b: Place
+
+    def __post_init__(self) -> None:
+        if self.a == self.b:
+            raise ValueError(f"{self.a} cannot be connected to itself; name two interfaces")
+        if self.a.part == self.b.part:
+            raise ValueError(f"{self.a} and {self.b} are of one part; connect interfaces of two parts")
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """An interface that the ground holds: rigidly, or by six springs and six dampers.
+
+    Parameters
+    ----------
+    interface
+        What is held.
+    stiffness, damping
+        (6,) N/m, N m/rad and N s/m, N m s/rad; both None where the support is rigid.
+    offset
+        (6,) m and rad, where the springs are free of force.
+
+    Raises
+    ------
+    ValueError
+        If an array has another shape or is not finite, a stiffness or damping is negative, or an offset has
+        no spring to act through.
+    """
+
+    interface: Place
+    stiffness: Array | None
+    damping: Array | None
+    offset: Array | None = None
+
+    def __post_init__(self) -> None:
+        _check_springs(self, str(self.interface))
+
+    @property
+    def rigid(self) -> bool:
+        """Whether nothing moves here."""
+        return self.stiffness is None and self.damping is None
+
+
+@dataclass(frozen=True, eq=False)
+class Bush:
+    """Six springs and six dampers between two interfaces, on x_a − x_b − offset.
+
+    Parameters
+    ----------
+    a, b
+        The interfaces; b may be GROUND.
+    stiffness, damping, offset
+        (6,) as in `Support`.
+
+    Raises
+    ------
+    ValueError
+        If both ends are one, and as `Support`.
+    """
+
+    a: Place
+    b: Place
+    stiffness: Array
+    damping: Array
+    offset: Array
+
+    def __post_init__(self) -> None:
+        if self.a == self.b:
+            raise ValueError(f"a spring has both ends at {self.a}; name two interfaces")
+        _check_springs(self, f"the spring between {self.a} and {self.b}")
+
+
+@dataclass(frozen=True)
+class BearingJoint:
+    """A bearing between two interfaces.
+
+    Parameters
+    ----------
+    name
+        Name of the bearing in the application.
+    bearing
+        What is mounted.
+    inner, outer
+        Interfaces of the two rings; outer may be the raceway of a flexible ring, or GROUND.
+    offset
+        How far along z the seat of the inner ring was put beyond where it was drawn, m.
+
+    Raises
+    ------
+    ValueError
+        If this is no bearing, both rings are at one place, or the offset is not finite.
+    """
+
+    name: str
+    bearing: BallBearing
+    inner: Place
+    outer: Place
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        field = f"bearing {self.name!r}"
+        _check_bearing(field, self.bearing)
+        if self.inner == self.outer:
+            raise ValueError(f"{field} has both rings at {self.inner}; name two interfaces")
+        offset = number(f"{field}: offset", self.offset, "it must be a finite length in m")
+        object.__setattr__(self, "offset", offset)
+
+
+@dataclass(frozen=True)
+class LooseJoint:
+    """A flexible ring that sits loosely in a bore.
+
+    Parameters
+    ----------
+    name
+        Name of the fit in the application.
+    fit
+        Its clearance and contact.
+    ring
+        Outside of the ring, a raceway.
+    bore
+        Interface of the bore, or GROUND.
+
+    Raises
+    ------
+    ValueError
+        If this is no loose fit.
+    """
+
+    name: str
+    fit: LooseFit
+    ring: Place
+    bore: Place
+
+    def __post_init__(self) -> None:
+        require(isinstance(self.fit, LooseFit), f"fit {self.name!r}", self.fit, "it must be a bd.LooseFit(…)")
+
+
+def _check_springs(joint: Support | Bush, what: str) -> None:
+    """Six stiffnesses and dampings that are not negative, and an offset where there are springs."""
+
+    def six(field: str, value: ArrayLike | None, positive: bool = True) -> Array | None:
+        if value is None:
+            return None
+        name = f"{field} of {what}"
+        array = vector(name, value, (6,), "six numbers (x, y, z, θx, θy, θz) in SI units")
+        ok = not positive or bool((array >= 0).all())
+        require(ok, name, array.tolist(), "stiffness and damping cannot be negative")
+        object.__setattr__(joint, field, array)
+        return array
+
+    stiffness = six("stiffness", joint.stiffness)
+    six("damping", joint.damping)
+    offset = six("offset", joint.offset, positive=False)
+    if offset is not None:
+        held = np.zeros(6, dtype=bool) if stiffness is None else stiffness > 0.0
+        remedy = "it acts through springs: give a stiffness there"
+        require(not offset[~held].any(), f"offset of {what}", offset.tolist(), remedy)
+
+
+def _check_bearing(field: str, bearing: object) -> None:
+    """Refuse what is no bearing, and say what to give instead."""
+    if isinstance(bearing, BallBearing):
+        return
+    if isinstance(bearing, Pair):
+        raise ValueError(
+            f"{field} is a Pair; it must be one BallBearing: hang its two rows one by one, each between "
+            f"interfaces of its own, and preload them with offset="
+        )
+    if isinstance(bearing, type):
+        raise ValueError(f"{field} is the class {bearing.__name__}; make a bearing of it first")
+    if isinstance(bearing, str | int) and str(bearing) in catalogue.CATALOGUE:
+        remedy = f"that is a designation: give bd.catalogue.bearing({str(bearing)!r})"
+    else:
+        remedy = 'it must be a bd.BallBearing(…), or one of the catalogue: bd.catalogue.bearing("6205")'
+    require(False, field, bearing, remedy)
