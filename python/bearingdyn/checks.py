@@ -52,3 +52,17 @@ def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> 
     )
     require(bool(np.isfinite(x).all()), field, value, f"all entries must be finite: {meaning}")
     return x
+
+
+def whole(field: str, value: object, least: int, most: int | None = None, remedy: str = "") -> int:
+    """The value as an integer in least...most; ValueError if it is anything else."""
+    limit = f"of {least} or more" if most is None else f"in {least}...{most}"
+    remedy = remedy or f"it must be a whole number {limit}"
+    x = number(field, value, remedy)
+    require(x == int(x) and x >= least and (most is None or x <= most), field, value, remedy)
+    return int(x)
+
+
+def one_of(field: str, value: object, choices: Sequence[object]) -> None:
+    """Raise ValueError unless the value is one of the choices."""
+    require(value in choices, field, value, f"it must be {' or '.join(repr(c) for c in choices)}")

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bearingdyn.fem.revolution import assemble
-from bearingdyn.fem.revolution_mesh import Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.fem import Rectangle, RevolutionMesh, assemble_harmonic, revolution_mesh
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts import (
     Cylinder,
@@ -74,7 +73,7 @@ def test_patch_of_uniform_strain_is_in_equilibrium_on_distorted_elements(
         (2, r, -r, zero, 0.0, 2.0),
     ]
     for n, U, V, W, trace, ee in cases:
-        K = assemble(mesh, n).stiffness([bulk], [1.0])
+        K = assemble_harmonic(mesh, n).stiffness([bulk], [1.0])
         u = np.stack([U, V, W], axis=1).ravel()
         force = (K @ u).reshape(-1, 3)
         # 1e-11: round-off; the 3×3 rule integrates these fields exactly, on parabolic sides too
@@ -88,7 +87,7 @@ def test_dilatation_linear_in_r_and_z_is_kept_whole_by_the_pressure_of_distorted
 
     Pressures linear in ξ and η would lose part of it, and their convergence.
     """
-    h = assemble(DISTORTED, 0, (0, 2))
+    h = assemble_harmonic(DISTORTED, 0, (0, 2))
     K = h.stiffness([1.0], [0.0])
     r, z = DISTORTED.r, DISTORTED.z
     for U, W, exact in (
@@ -102,7 +101,7 @@ def test_dilatation_linear_in_r_and_z_is_kept_whole_by_the_pressure_of_distorted
 @pytest.mark.parametrize("mesh", [DISTORTED, curved(DISTORTED)], ids=["straight", "curved"])
 def test_rigid_motion_costs_nothing_on_distorted_elements(mesh: RevolutionMesh) -> None:
     for n, components in ((0, (0, 2)), (0, (1,)), (1, (0, 1, 2))):
-        h = assemble(mesh, n, components)
+        h = assemble_harmonic(mesh, n, components)
         R = h.rigid_shapes(np.arange(mesh.r.size), 0.7)
         K, M = h.stiffness([3.0], [1.0]), h.mass_matrix([2.0])
         # 1e-12: round-off of a sum over 1e3 entries
@@ -225,7 +224,7 @@ def test_a_point_is_found_in_a_curved_element() -> None:
     rng = np.random.default_rng(0)
     for _ in range(20):
         r, z = rng.uniform(0.5, 2.0), rng.uniform(0.0, 1.0)
-        h = assemble(mesh, 0, (0, 2))
+        h = assemble_harmonic(mesh, 0, (0, 2))
         u = np.stack([mesh.r, mesh.z], axis=1).reshape(-1, 1)  # each node's own place
         rows = h.point_rows(r, z, 0.0, u)
         # to Newton's last step

@@ -9,10 +9,16 @@ import numpy as np
 import pytest
 
 from bearingdyn.cms import reduce, reduction_error
-from bearingdyn.fem.eigen import rigid_motion, rigid_transfer
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_mesh import SolidMesh
-from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, crowded, ring_mesh
+from bearingdyn.fem import (
+    SolidMesh,
+    assemble_solid,
+    block_with_bore,
+    box_mesh,
+    crowded,
+    rigid_motion,
+    rigid_transfer,
+    ring_mesh,
+)
 from bearingdyn.material import STEEL, Maxwell
 from bearingdyn.parts import RigidSurface, Solid
 

@@ -11,9 +11,11 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import whole
 from bearingdyn.cms.full import FullModel
+from bearingdyn.cms.options import check_f_max, check_moduli, check_rounds
 from bearingdyn.cms.superelement import ComplexModulus
-from bearingdyn.fem.eigen import factorise, lowest_modes
+from bearingdyn.fem import factorise, lowest_modes
 from bearingdyn.material import Maxwell
 from bearingdyn.types import Array, Index
 
@@ -107,11 +109,11 @@ def _free_to_move(held: Index, error: Exception) -> ValueError:
 
 def _check_truncation(f_max: float | None, n_modes: int | None) -> None:
     if (f_max is None) == (n_modes is None):
-        raise ValueError(f"f_max={f_max} and n_modes={n_modes}: give exactly one of the two")
-    if f_max is not None and not f_max >= 0.0:
-        raise ValueError(f"f_max is {f_max}; it must be a frequency in Hz, not negative")
-    if n_modes is not None and not n_modes >= 0:
-        raise ValueError(f"n_modes is {n_modes}; it must not be negative")
+        raise ValueError(f"f_max is {f_max} and n_modes is {n_modes}; give exactly one of the two")
+    if f_max is not None:
+        check_f_max(f_max, may_be_infinite=True)
+    if n_modes is not None:
+        whole("n_modes", n_modes, 0)
 
 
 def craig_bampton(
@@ -170,9 +172,7 @@ def modulus_levels(
     if not materials:
         return [[]]
     if moduli is not None:
-        if not moduli or not all(0 < G < math.inf for G in moduli):
-            raise ValueError(f"moduli is {tuple(moduli)}; it needs one or more positive shear moduli, Pa")
-        return [[float(G)] * len(materials) for G in moduli]
+        return [[G] * len(materials) for G in check_moduli(moduli)]
     low, high = [], []
     for material in materials:
         tau = np.asarray(getattr(material, "tau", ()), dtype=np.float64)
@@ -242,8 +242,7 @@ def basis_of(
     _check_truncation(f_max, n_modes)
     if not model.interfaces:
         raise ValueError("interfaces is empty; a part needs at least one to be joined by")
-    if not inertia >= 0:
-        raise ValueError(f"inertia is {inertia}; it must be a number of rounds, 0 or more")
+    check_rounds(inertia)
     for name in (attach := tuple(attach)):
         if name not in model.outputs:
             raise ValueError(f"attach has {name!r}; the outputs are {sorted(model.outputs)}")

@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 
 from bearingdyn.cms.full import FullModel
-from bearingdyn.fem.eigen import Factors, order_of
+from bearingdyn.fem import Factors, order_of
 from bearingdyn.types import Array, Complex, Index
 
 DENSE_LIMIT = 500  # below this size LAPACK solves quicker than sparse factors

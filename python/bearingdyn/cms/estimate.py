@@ -14,7 +14,7 @@ from bearingdyn.cms.basis import Basis, orthogonalise
 from bearingdyn.cms.dynamics import Dynamics, Transfer
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.reduction import project
-from bearingdyn.fem.eigen import rigid_transfer
+from bearingdyn.fem import rigid_transfer
 from bearingdyn.types import Array, Complex, Index
 
 CHANGE = 0.1  # of the estimated error by the last full solve: below it, no further one is made

@@ -36,7 +36,7 @@ class RigidInterface:
         object.__setattr__(self, "position", frozen("position", self.position, (3,)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FullModel:
     """A part's unreduced equations: M ẍ + (C + Ω G) ẋ + K x + Σ 2 G*(ω) H x = f (paper (14)).
 
@@ -58,19 +58,19 @@ class FullModel:
     """
 
     M: Any
+    C: Any = None
+    G: Any = None
     K: Any
+    E: Any = None
     interfaces: Mapping[str, RigidInterface]
     outputs: Mapping[str, Any] = field(default_factory=dict)
     viscoelastic: tuple[Viscoelastic, ...] = ()
-    C: Any = None
-    G: Any = None
-    E: Any = None
     spin: Any = None
     grounded: bool = False
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) or hasattr(self.M, "tocsr") else 0
-        for name, sign in (("M", 1.0), ("K", 1.0), ("C", 1.0), ("G", -1.0), ("E", 1.0), ("spin", -1.0)):
+        for name, sign in (("M", 1), ("C", 1), ("G", -1), ("K", 1), ("E", 1), ("spin", -1)):
             if getattr(self, name) is not None:
                 A = frozen_sparse(name, getattr(self, name), n)
                 check_symmetry(name, A, sign)
@@ -100,13 +100,14 @@ class FullModel:
     @classmethod
     def of(cls, element: Superelement) -> FullModel:
         """A superelement seen as a full model of its own coordinates, at standstill (G and N left out)."""
+        faces = {name: RigidInterface(at, np.eye(6), np.zeros(3)) for name, at in element.interfaces.items()}
         return cls(
-            element.M,
-            element.K,
-            {name: RigidInterface(at, np.eye(6), np.zeros(3)) for name, at in element.interfaces.items()},
-            element.outputs,
-            element.viscoelastic,
+            M=element.M,
             C=element.C,
+            K=element.K,
+            interfaces=faces,
+            outputs=element.outputs,
+            viscoelastic=element.viscoelastic,
             grounded=True,
         )
 

@@ -12,9 +12,10 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
+from bearingdyn.checks import positive
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.superelement import Superelement
-from bearingdyn.fem.eigen import factorise
+from bearingdyn.fem import factorise
 from bearingdyn.types import Array
 
 
@@ -60,8 +61,7 @@ def march(
     """
     if isinstance(model, Superelement):
         model = FullModel.of(model)
-    if not (dt > 0 and math.isfinite(dt)):
-        raise ValueError(f"dt is {dt}; it must be a positive time step in s")
+    positive("dt", dt, "it must be a positive time step in s")
     for part in model.viscoelastic:
         if not all(hasattr(part.material, name) for name in ("G0", "G", "tau", "eta0")):
             raise ValueError(

@@ -10,8 +10,9 @@ import numpy as np
 from bearingdyn.cms.basis import Basis, basis_of
 from bearingdyn.cms.damping import modal_damping
 from bearingdyn.cms.full import FullModel, RigidInterface
+from bearingdyn.cms.options import check_held
 from bearingdyn.cms.superelement import Superelement, Viscoelastic
-from bearingdyn.fem.eigen import rigid_body_residual, rigid_transfer
+from bearingdyn.fem import rigid_body_residual, rigid_transfer
 
 
 def reduce(
@@ -44,8 +45,7 @@ def reduce(
     the body free to move, an unknown output, and values outside their range.
     Reference: paper (21)-(25); Craig & Bampton (1968); attachment, Craig & Chang, AIAA Paper 77-405 (1977).
     """
-    if held is not None and held not in model.interfaces:
-        raise ValueError(f"held is {held!r}; the interfaces are {sorted(model.interfaces)}")
+    check_held(held, model.interfaces)
     basis = basis_of(model, f_max=f_max, n_modes=n_modes, moduli=moduli, inertia=inertia, attach=attach)
     return project(model, basis, damping=damping, held=held)
 
@@ -95,14 +95,14 @@ def project(model: FullModel, basis: Basis, *, damping: float = 0.0, held: str |
     return Superelement(
         M=M,
         C=C,
-        K=K,
         G=np.zeros_like(M) if model.G is None else basis.reduce(model.G, skew=True),
+        K=K,
+        N=N,
         interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(model.interfaces)},
         outputs={name: np.asarray(row @ basis.Psi) for name, row in model.outputs.items()},
         viscoelastic=tuple(
             Viscoelastic(part.material, P.T @ basis.reduce(part.H) @ P) for part in model.viscoelastic
         ),
-        N=N,
     )
 
 
@@ -131,5 +131,5 @@ def reduce_free_body(
 
     Raises ValueError for interfaces that overlap, or a stiffness that resists rigid motion.
     """
-    model = FullModel(M, K, interfaces, outputs or {}, G=G, spin=spin)
+    model = FullModel(M=M, G=G, K=K, interfaces=interfaces, outputs=outputs or {}, spin=spin)
     return reduce(model, f_max=f_max, n_modes=n_modes, inertia=0, damping=damping, held=held)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from bearingdyn.checks import positive
 from bearingdyn.magnitude import LONGEST_SHAFT, THICKEST_SHAFT, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.types import Array
@@ -34,10 +35,8 @@ class Section:
     d_inner: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.length > 0 and math.isfinite(self.length)):
-            raise ValueError(f"Section length is {self.length}; it must be a positive length in m")
-        if not (self.d_outer > 0 and math.isfinite(self.d_outer)):
-            raise ValueError(f"Section d_outer is {self.d_outer}; it must be a positive diameter in m")
+        positive("Section length", self.length, "it must be a positive length in m")
+        positive("Section d_outer", self.d_outer, "it must be a positive diameter in m")
         if not 0 <= self.d_inner < self.d_outer:
             raise ValueError(
                 f"Section d_inner is {self.d_inner}; it must lie from 0 to below d_outer = {self.d_outer} m"
@@ -82,7 +81,7 @@ def bending_wavelength(section: Section, material: Elastic, frequency: float) ->
 
 
 def element_matrices(section: Section, length: float, material: Elastic) -> tuple[Array, Array, Array]:
-    """Mass, stiffness and gyroscopic matrix, each (12, 12), of an element between two nodes.
+    """Mass, gyroscopic and stiffness matrix, each (12, 12), of an element between two nodes.
 
     length: of the element, m. The gyroscopic force is Ω G ẋ on the left-hand side, G[θx, θy] = +Ip for a
     disc. Bending: consistent, with the interpolation that solves the static Timoshenko equations. Stretch and
@@ -122,19 +121,19 @@ def element_matrices(section: Section, length: float, material: Elastic) -> tupl
     gyro[np.ix_(yz, xz)], gyro[np.ix_(xz, yz)] = g, -g.T
 
     bar = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    mass = np.array([[5.0, 1.0], [1.0, 5.0]]) / 12.0
-    for at, stiffness, inertia in (
+    spread = np.array([[5.0, 1.0], [1.0, 5.0]]) / 12.0
+    for at, stiffness, mass in (
         (np.array([2, 8]), E * A / L, rho * A * L),
         (np.array([5, 11]), 2.0 * G * second / L, 2.0 * rho * second * L),
     ):
-        K[np.ix_(at, at)], M[np.ix_(at, at)] = stiffness * bar, inertia * mass
-    return M, K, gyro
+        K[np.ix_(at, at)], M[np.ix_(at, at)] = stiffness * bar, mass * spread
+    return M, gyro, K
 
 
-def assemble(
+def assemble_beam(
     z: Array, sections: Sequence[Section], material: Elastic
 ) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix, scipy.sparse.csr_matrix]:
-    """Mass, stiffness and gyroscopic matrix of a shaft, sparse, (6 n, 6 n).
+    """Mass, gyroscopic and stiffness matrix of a shaft, sparse, (6 n, 6 n).
 
     z: (n,) rising node positions, m; sections: the n - 1 sections between them, whose own lengths do not
         enter.

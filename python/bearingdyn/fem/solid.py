@@ -14,15 +14,15 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.solid_element import HEX20, HEX27, TET10, SolidElement, points, shapes
-from bearingdyn.fem.solid_mesh import SolidMesh
+from bearingdyn.fem.meshes.solid_element import HEX20, HEX27, TET10, SolidElement, points, shapes
+from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 from bearingdyn.material import Elastic
 from bearingdyn.types import Array
 
 CHUNK = 1024  # elements whose matrices are in memory at a time, 54 MB a matrix of 27-node bricks
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SolidMatrices:
     """Unit matrices of a solid; coordinate 3 i + a is the displacement of node i along axis a.
 

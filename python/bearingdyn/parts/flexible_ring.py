@@ -9,13 +9,15 @@ from typing import Literal
 
 import numpy as np
 
+from bearingdyn.checks import one_of, positive
 from bearingdyn.cms import Superelement
-from bearingdyn.fem.revolution_mesh import Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.faces import Cylinder, Face, Groove, Line, Where
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
-from bearingdyn.parts.section import Cylinder, Groove, Line, Patch, Region, Surface, Where
 
 
 @dataclass(frozen=True)
@@ -59,12 +61,10 @@ class FlexibleRing:
     refinement: float = 1.0
 
     def __post_init__(self) -> None:
-        if not self.r_inner > 0:
-            raise ValueError(f"r_inner is {self.r_inner}; a ring needs a positive inner radius, m")
+        positive("r_inner", self.r_inner, "it must be a positive radius in m")
         if not self.r_inner < self.r_outer < math.inf:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
-        if not 0 < self.width < math.inf:
-            raise ValueError(f"width is {self.width}; it must be positive, m")
+        positive("width", self.width, "it must be a positive length in m")
         if self.groove is not None and not 0 < self.groove <= self.width:
             raise ValueError(f"groove is {self.groove}; it must lie in 0...width = {self.width} m")
         if self.groove_radius is not None:
@@ -76,8 +76,7 @@ class FlexibleRing:
                 )
             if not self.depth < self.r_outer - self.r_inner:
                 raise ValueError(f"the groove is {self.depth:g} m deep and cuts the ring; make it narrower")
-        if self.outside not in ("rigid", "flexible"):
-            raise ValueError(f'outside is {self.outside!r}; it must be "rigid" or "flexible"')
+        one_of("outside", self.outside, ("rigid", "flexible"))
         if self.layer is not None:
             if not math.isclose(self.layer.r_inner, self.r_outer, rel_tol=1e-9):
                 raise ValueError(
@@ -105,7 +104,7 @@ class FlexibleRing:
         """The ring, and its rubber, as a body of revolution."""
         half, track = 0.5 * self.width, 0.5 * self.track
         regions = [Region((self.r_inner, self.r_outer), (-half, half), self.material)]
-        face: Surface = Cylinder(self.r_inner, (-track, track))
+        face: Face = Cylinder(self.r_inner, (-track, track))
         outer = self.r_outer
         if self.layer is not None:
             outer, reach = self.layer.r_outer, 0.5 * self.layer.width
@@ -117,7 +116,7 @@ class FlexibleRing:
             )
             section = self._grooved([q.rectangle for q in regions], track)
         grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0)}
-        interfaces: dict[str, Surface] = {}
+        interfaces: dict[str, Face] = {}
         if self.layer is None and self.outside == "flexible":
             grooves["outside"] = Groove(Line((outer, -half), (outer, half)), outer, self.order, z=0.0)
         else:

@@ -9,8 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from bearingdyn.cms import Superelement
-from bearingdyn.fem.solid_meshers import block_with_bore
+from bearingdyn.checks import nonnegative, positive
+from bearingdyn.cms import F_MAX, Superelement, check_damping, check_f_max
+from bearingdyn.fem import block_with_bore
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
@@ -31,10 +32,8 @@ class Feet:
     height: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.width > 0 and math.isfinite(self.width)):
-            raise ValueError(f"Feet width is {self.width}; it must be a positive width in m")
-        if not (self.height >= 0 and math.isfinite(self.height)):
-            raise ValueError(f"Feet height is {self.height}; it must be 0 or a height in m")
+        positive("Feet width", self.width, "it must be a positive width in m")
+        nonnegative("Feet height", self.height, "it must be 0 or a height in m")
 
 
 @dataclass(frozen=True)
@@ -67,20 +66,15 @@ class Housing:
     material: Elastic = STEEL
     damping: float = 0.0
     feet: Feet | None = None
-    f_max: float = 20e3
+    f_max: float = F_MAX
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     element_size: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("width", "height", "length", "bore_diameter", "f_max"):
-            value = getattr(self, name)
-            if not (value > 0 and math.isfinite(value)):
-                unit = "frequency in Hz" if name == "f_max" else "length in m"
-                raise ValueError(f"{name} is {value}; it must be a positive {unit}")
-            if name != "f_max":
-                check_length(name, value)
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
+        for name in ("width", "height", "length", "bore_diameter"):
+            check_length(name, positive(name, getattr(self, name), "it must be a positive length in m"))
+        check_f_max(self.f_max)
+        check_damping(self.damping)
         d, axis = self.bore_diameter, self.axis
         if not math.isfinite(axis):
             raise ValueError(f"bore_height is {self.bore_height}; it must be a height in m")

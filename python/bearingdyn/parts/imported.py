@@ -11,8 +11,17 @@ import scipy.sparse
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from bearingdyn.cms import FullModel, RigidInterface, Superelement, reduce
-from bearingdyn.fem.exchange import FEMatrices
+from bearingdyn.cms import (
+    F_MAX,
+    FullModel,
+    RigidInterface,
+    Superelement,
+    check_damping,
+    check_f_max,
+    check_held,
+    reduce,
+)
+from bearingdyn.fem import FEMatrices
 from bearingdyn.types import Array
 
 
@@ -50,17 +59,14 @@ class Imported:
     outputs: Mapping[str, int | tuple[float, float, float]] = field(default_factory=dict)
     damping: float = 0.0
     held: str | None = None
-    f_max: float = 20e3
+    f_max: float = F_MAX
 
     def __post_init__(self) -> None:
         if self.matrices.points is None:
             raise ValueError("matrices has no points; pass the nodes' positions when they are read")
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
-        if not self.f_max > 0:
-            raise ValueError(f"f_max is {self.f_max}; it must be a positive frequency in Hz")
-        if self.held is not None and self.held not in self.interfaces:
-            raise ValueError(f"held is {self.held!r}; the interfaces are {sorted(self.interfaces)}")
+        check_damping(self.damping)
+        check_f_max(self.f_max, may_be_infinite=True)
+        check_held(self.held, self.interfaces)
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
         faces = self._faces()
@@ -79,7 +85,7 @@ class Imported:
     def full_model(self) -> FullModel:
         """The unreduced equations: sparse matrices, rigid interfaces, output rows."""
         rows = {name: self._rows(name) for name in self.outputs}
-        return FullModel(self.matrices.M, self.matrices.K, self._faces(), rows)
+        return FullModel(M=self.matrices.M, K=self.matrices.K, interfaces=self._faces(), outputs=rows)
 
     def superelement(self) -> Superelement:
         """The body reduced onto its interfaces and the fixed-interface modes up to f_max."""

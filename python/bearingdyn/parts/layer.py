@@ -9,12 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.cms import Superelement
+from bearingdyn.checks import positive
+from bearingdyn.cms import Superelement, check_moduli
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import Elastic
+from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.regions import Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
-from bearingdyn.parts.section import Cylinder, Region, ViscoelasticSolid
 from bearingdyn.types import Array, Complex
 
 
@@ -52,16 +54,14 @@ class Layer:
     refinement: float = 1.0
 
     def __post_init__(self) -> None:
-        if not 0 < self.r_inner < math.inf:
-            raise ValueError(f"r_inner is {self.r_inner}; a layer needs a positive inner radius, m")
+        positive("r_inner", self.r_inner, "it must be a positive radius in m")
         if not self.r_inner < self.r_outer < math.inf:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
-        if not 0 < self.width < math.inf:
-            raise ValueError(f"width is {self.width}; it must be positive, m")
+        positive("width", self.width, "it must be a positive length in m")
         for name in ("r_outer", "width"):
             check_length(name, getattr(self, name))
         if self.moduli is not None:
-            object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
+            object.__setattr__(self, "moduli", check_moduli(self.moduli))
         _ = self.body
 
     @property

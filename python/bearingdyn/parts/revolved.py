@@ -10,25 +10,37 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import whole
 from bearingdyn.cms import (
     Basis,
     FullModel,
     Raceway,
     Superelement,
     Viscoelastic,
+    check_damping,
+    check_f_max,
+    check_moduli,
+    check_rounds,
     modal_damping,
     modulus_levels,
 )
-from bearingdyn.fem.eigen import lowest_modes
-from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
-from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
+from bearingdyn.fem import (
+    AXIAL,
+    TORSION,
+    Harmonic,
+    RevolutionMesh,
+    assemble_harmonic,
+    lowest_modes,
+    revolution_mesh,
+)
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
+from bearingdyn.parts.faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.outline import Outline, azimuths, revolved
+from bearingdyn.parts.regions import Patch, Region, shape_moduli
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
-from bearingdyn.parts.section import Cylinder, EndFace, Groove, Patch, Region, Surface, shape_moduli
 from bearingdyn.types import Array, Complex, Index
 
 
@@ -75,7 +87,7 @@ class Revolved:
     """
 
     regions: tuple[Region | Patch, ...]
-    interfaces: Mapping[str, Surface] = field(default_factory=dict)
+    interfaces: Mapping[str, Face] = field(default_factory=dict)
     outputs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     damping: float = 0.0
     f_max: float = 0.0
@@ -87,18 +99,13 @@ class Revolved:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "regions", tuple(self.regions))
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
-        if not 0 <= self.f_max < math.inf:
-            raise ValueError(
-                f"f_max is {self.f_max}; it must be a frequency in Hz, not negative, 0 for no modes"
-            )
+        check_damping(self.damping)
+        check_f_max(self.f_max)
+        check_rounds(self.inertia)
         if self.moduli is not None:
-            object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
-            if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
-                raise ValueError(f"moduli is {self.moduli}; it needs one or more positive shear moduli, Pa")
+            object.__setattr__(self, "moduli", check_moduli(self.moduli))
         self._check_regions()
-        _ = self.mesh  # regions that overlap, and faces that are none, are refused here
+        _ = self.mesh  # refuses regions that overlap and faces that do not exist
         owner: dict[int, str] = {}
         for name, nodes in self._boundaries.nodes():
             for node in nodes.tolist():
@@ -163,7 +170,7 @@ class Revolved:
     def _harmonic(self, order: int, components: tuple[int, ...]) -> Harmonic:
         key = (order, components)
         if key not in self._harmonics:
-            self._harmonics[key] = assemble(self.mesh, order, components)
+            self._harmonics[key] = assemble_harmonic(self.mesh, order, components)
         return self._harmonics[key]
 
     @property
@@ -176,7 +183,12 @@ class Revolved:
 
     def _shape_maker(self) -> ShapeMaker:
         return ShapeMaker(
-            self._boundaries, self._bulk, self._density, self.f_max, self.mesh.size, self.inertia
+            boundaries=self._boundaries,
+            bulk=self._bulk,
+            density=self._density,
+            f_max=self.f_max,
+            size=self.mesh.size,
+            inertia_rounds=self.inertia,
         )
 
     def stiffness(self, omega: float = 0.0) -> Complex:
@@ -312,8 +324,8 @@ class Revolved:
         return Superelement(
             M=M,
             C=modal_damping(M, P @ E @ P, self.damping),
-            K=P @ K @ P,
             G=np.zeros((n, n)),
+            K=P @ K @ P,
             interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(self.interfaces)},
             outputs=rows,
             viscoelastic=tuple(Viscoelastic(m, P @ h @ P) for m, h in zip(rubbers, H, strict=True)),
@@ -353,8 +365,7 @@ class Revolved:
 
         Raises ValueError for a missing or non-positive modulus, an unknown interface, or a count below 1.
         """
-        if not count >= 1:
-            raise ValueError(f"count is {count}; ask for one mode or more")
+        whole("count", count, 1)
         shear: list[float] = []
         for q in self.regions:
             G = q.material.G if isinstance(q.material, Elastic) else modulus

@@ -6,12 +6,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
+from bearingdyn.checks import positive
 from bearingdyn.cms import Superelement
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.regions import Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
-from bearingdyn.parts.section import Cylinder, Region, ViscoelasticSolid
 
 
 @dataclass(frozen=True)
@@ -36,12 +38,10 @@ class Ring:
     refinement: float = 1.0
 
     def __post_init__(self) -> None:
-        if not self.r_inner > 0:
-            raise ValueError(f"r_inner is {self.r_inner}; a ring needs a positive inner radius, m")
+        positive("r_inner", self.r_inner, "it must be a positive radius in m")
         if not self.r_outer > self.r_inner:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
-        if not self.width > 0:
-            raise ValueError(f"width is {self.width}; it must be positive, m")
+        positive("width", self.width, "it must be a positive length in m")
         for name in ("r_outer", "width"):
             check_length(name, getattr(self, name))
         _ = self.body

@@ -10,8 +10,19 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy
 
-from bearingdyn.cms import Basis, FullModel, RigidInterface, Superelement, basis_of, project
-from bearingdyn.fem.beam import Section, assemble, bending_wavelength
+from bearingdyn.checks import nonnegative, number, positive
+from bearingdyn.cms import (
+    F_MAX,
+    Basis,
+    FullModel,
+    RigidInterface,
+    Superelement,
+    basis_of,
+    check_damping,
+    check_f_max,
+    project,
+)
+from bearingdyn.fem import Section, assemble_beam, bending_wavelength
 from bearingdyn.magnitude import LONGEST_SHAFT, check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
@@ -33,13 +44,10 @@ class Disc:
     Ip: float
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.z):
-            raise ValueError(f"Disc z is {self.z}; it must be a position in m")
-        if not (self.mass > 0 and math.isfinite(self.mass)):
-            raise ValueError(f"Disc mass is {self.mass}; it must be a positive mass in kg")
-        for name, value in (("Id", self.Id), ("Ip", self.Ip)):
-            if not (value >= 0 and math.isfinite(value)):
-                raise ValueError(f"Disc {name} is {value}; it must be a moment in kg m², not negative")
+        number("Disc z", self.z, "it must be a position in m")
+        positive("Disc mass", self.mass, "it must be a positive mass in kg")
+        nonnegative("Disc Id", self.Id, "it must be a moment in kg m², not negative")
+        nonnegative("Disc Ip", self.Ip, "it must be a moment in kg m², not negative")
         if not self.Ip <= 2.0 * self.Id * (1.0 + 1e-9):
             raise ValueError(f"Disc Ip is {self.Ip}; no disc has Ip above 2 Id = {2.0 * self.Id} kg m²")
 
@@ -88,7 +96,7 @@ class Shaft:
     discs: Sequence[Disc] = ()
     material: Elastic = STEEL
     damping: float = 0.0
-    f_max: float = 20e3
+    f_max: float = F_MAX
     element_length: float | None = None
 
     def __post_init__(self) -> None:
@@ -115,10 +123,8 @@ class Shaft:
         for (a, za), (b, zb) in itertools.pairwise(by_place):
             if not zb - za > 1e-6 * L:
                 raise ValueError(f"seats {a!r} and {b!r} are both at z = {za} m; move one, or keep one")
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
-        if not (self.f_max > 0 and math.isfinite(self.f_max)):
-            raise ValueError(f"f_max is {self.f_max}; it must be a positive frequency in Hz")
+        check_damping(self.damping)
+        check_f_max(self.f_max, may_be_zero=False)
         if self.element_length is not None and not self.element_length > 1e-4 * L:
             raise ValueError(f"element_length is {self.element_length}; it must exceed {1e-4 * L:.3g} m")
 
@@ -148,7 +154,7 @@ class Shaft:
     def full_model(self) -> FullModel:
         """The unreduced equations: sparse matrices, six coordinates at each of `nodes`."""
         z, sections = self.nodes()
-        M, K, G = assemble(z, sections, self.material)
+        M, G, K = assemble_beam(z, sections, self.material)
         n = 6 * len(z)
 
         def coordinates(place: float) -> Index:
@@ -170,7 +176,7 @@ class Shaft:
             for name, place in self.seats.items()
         }
         points = {name: selection(place) for name, place in self.points.items()}
-        return FullModel(M, K, seats, points, G=G, spin=spin_generator(len(z)))
+        return FullModel(M=M, G=G, K=K, interfaces=seats, outputs=points, spin=spin_generator(len(z)))
 
     def superelement(self) -> Superelement:
         """The shaft reduced onto its seats and the fixed-interface modes up to f_max."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -13,6 +12,7 @@ import scipy.linalg
 import scipy.sparse
 
 from bearingdyn.cms import (
+    F_MAX,
     Basis,
     FullModel,
     RigidInterface,
@@ -20,16 +20,18 @@ from bearingdyn.cms import (
     Surface,
     Viscoelastic,
     basis_of,
+    check_damping,
+    check_f_max,
+    check_held,
+    check_moduli,
+    check_rounds,
     project,
 )
-from bearingdyn.fem.eigen import factorise, rigid_motion
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_element import face_shapes
-from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
+from bearingdyn.fem import SolidMesh, SurfaceSamples, assemble_solid, face_shapes, factorise, rigid_motion
 from bearingdyn.magnitude import LARGEST_SOLID, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.section import ViscoelasticSolid
+from bearingdyn.parts.regions import ViscoelasticSolid
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -111,7 +113,7 @@ class Solid:
     mesh: SolidMesh
     materials: Mapping[str, Material] | Material
     interfaces: Mapping[str, str | RigidSurface]
-    f_max: float
+    f_max: float = F_MAX
     outputs: Mapping[str, Point | str] = field(default_factory=dict)
     damping: float = 0.0
     held: str | None = None
@@ -121,22 +123,16 @@ class Solid:
     inertia: int = 1
 
     def __post_init__(self) -> None:
-        if not 0 <= self.f_max < math.inf:
-            raise ValueError(f"f_max is {self.f_max}; it must be a frequency in Hz, 0 for no modes")
-        if not self.inertia >= 0:
-            raise ValueError(f"inertia is {self.inertia}; it must be a number of rounds, 0 or more")
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
+        check_f_max(self.f_max)
+        check_rounds(self.inertia)
+        check_damping(self.damping)
         if self.moduli is not None:
-            object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
-            if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
-                raise ValueError(f"moduli is {self.moduli}; it needs one or more positive shear moduli, Pa")
+            object.__setattr__(self, "moduli", check_moduli(self.moduli))
         check_length("the body's extent", float(np.ptp(self.mesh.points, axis=0).max()), LARGEST_SOLID)
         self._check_materials()
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
-        if self.held is not None and self.held not in self.interfaces:
-            raise ValueError(f"held is {self.held!r}; the interfaces are {sorted(self.interfaces)}")
+        check_held(self.held, self.interfaces)
         owner: dict[int, str] = {}
         for name, face in self._faces.items():
             p = self.mesh.points[face[0]]
@@ -245,12 +241,12 @@ class Solid:
                 dofs, rigid_motion(self.mesh.points[nodes], reference), reference
             )
         return FullModel(
-            M,
-            E + bulk,
-            interfaces,
-            self._rows,
-            tuple(Viscoelastic(material, H) for material, H in rubbers),
+            M=M,
+            K=E + bulk,
             E=E if rubbers else None,
+            interfaces=interfaces,
+            outputs=self._rows,
+            viscoelastic=tuple(Viscoelastic(material, H) for material, H in rubbers),
         )
 
     def full_model(self) -> FullModel:

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
-from bearingdyn.fem.exchange.matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.exchange.text import columns, existing, symmetric_from, whole
-from bearingdyn.fem.input_file import blocks, node
+from bearingdyn.fem.abaqus_input import blocks, node
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
 from bearingdyn.types import Array, Index
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from bearingdyn.fem.input_file import blocks, fields, node
-from bearingdyn.fem.raw_mesh import RawMesh
-from bearingdyn.fem.solid_element import HEX20, TET10
+from bearingdyn.fem.abaqus_input import blocks, fields, node
+from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
+from bearingdyn.fem.meshes.solid_element import HEX20, TET10
 
 SOLID = re.compile(r"C3D(\d+)")
 NODES = {20: 20, 10: 10, 8: 8, 4: 4}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,10 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.eigen import pivots, rigid_body_residual, rigid_transfer
-from bearingdyn.fem.exchange.units import SI, Units
+from bearingdyn.checks import positive
+from bearingdyn.fem.factors import pivots
+from bearingdyn.fem.matrix_files.units import SI, Units
+from bearingdyn.fem.rigid import rigid_body_residual, rigid_transfer
 from bearingdyn.types import Array, Index
 
 Points = ArrayLike | Mapping[int, ArrayLike]
@@ -25,7 +27,7 @@ SOUND = (200.0, 25e3)  # m/s, √(bulk modulus / density): stiff rubber 1300, st
 DIRECTIONS = ("x", "y", "z", "θx", "θy", "θz")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FEMatrices:
     """A finite element model read from elsewhere, in SI units.
 
@@ -37,8 +39,8 @@ class FEMatrices:
         along axis a.
     """
 
-    K: scipy.sparse.csr_matrix
     M: scipy.sparse.csr_matrix
+    K: scipy.sparse.csr_matrix
     points: Array | None = None
     nodes: Index | None = None
     dofs: Index | None = None
@@ -190,7 +192,7 @@ def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, int
     tail = np.stack([np.full(internal, -1), np.zeros(internal)], axis=1).astype(np.intp)
     if labels is None:
         if points is None:
-            return FEMatrices(k, m)
+            return FEMatrices(M=m, K=k)
         p, numbers = _positions(points, None)
         per = next((d for d in (3, 6) if d * len(p) == at_nodes), 0)
         if not per:
@@ -199,7 +201,7 @@ def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, int
                 f"({at_nodes / 3:g}, 3) or ({at_nodes / 6:g}, 3)"
             )
         place = np.stack(np.divmod(np.arange(at_nodes), per), axis=1).astype(np.intp)
-        return FEMatrices(k, m, p, numbers, np.vstack([place, tail]))
+        return FEMatrices(M=m, K=k, points=p, nodes=numbers, dofs=np.vstack([place, tail]))
     given = np.asarray(labels, dtype=np.intp)
     if given.shape != (at_nodes, 2):
         raise ValueError(f"labels has shape {given.shape}; it must be ({at_nodes}, 2): node and direction")
@@ -216,7 +218,7 @@ def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, int
     order = np.concatenate([order, np.arange(at_nodes, n)])
     positions = None if points is None else _positions(points, numbers)[0]
     dofs = np.vstack([np.stack([row.ravel(), ordered[:, 1] - 1], axis=1), tail]).astype(np.intp)
-    return FEMatrices(k[order][:, order], m[order][:, order], positions, numbers, dofs)
+    return FEMatrices(M=m[order][:, order], K=k[order][:, order], points=positions, nodes=numbers, dofs=dofs)
 
 
 def _check_coordinates(model: FEMatrices) -> None:
@@ -248,8 +250,7 @@ def _without_empty_rotations(model: FEMatrices) -> FEMatrices:
     kept = np.flatnonzero(model.K.diagonal() > 0)
     if kept.size == model.n:
         return model
-    K, M = model.K[kept][:, kept], model.M[kept][:, kept]
-    return FEMatrices(K, M, model.points, model.nodes, model.places[kept])
+    return replace(model, M=model.M[kept][:, kept], K=model.K[kept][:, kept], dofs=model.places[kept])
 
 
 def _scaled(model: FEMatrices, units: Units) -> FEMatrices:
@@ -260,7 +261,7 @@ def _scaled(model: FEMatrices, units: Units) -> FEMatrices:
     M = scipy.sparse.csr_matrix(units.mass * (D @ model.M @ D))
     K = scipy.sparse.csr_matrix(units.mass / units.time**2 * (D @ model.K @ D))
     points = None if model.points is None else units.length * model.points
-    return FEMatrices(K, M, points, model.nodes, model.dofs)
+    return replace(model, M=M, K=K, points=points)
 
 
 def _check_mass_matrix(model: FEMatrices) -> None:
@@ -301,8 +302,7 @@ def _check_mass(model: FEMatrices, expected: float | None) -> None:
         raise ValueError(f"M has the masses {mass.tolist()} kg along x, y, z; they must be equal")
     if expected is None:
         return
-    if not expected > 0:
-        raise ValueError(f"expected_mass is {expected}; it must be positive, kg")
+    positive("expected_mass", expected, "it must be a positive mass in kg")
     ratio = float(mass[0]) / expected
     if not abs(ratio - 1.0) <= EXPECTED:
         thousand = abs(abs(np.log10(ratio)) - 3.0) < 0.1

@@ -52,7 +52,7 @@ def shape_functions(xi: Array, eta: Array) -> tuple[Array, Array, Array]:
     return tuple((f[:, :, None] * g[:, None, :]).reshape(-1, 9) for f, g in ((a, b), (da, b), (a, db)))  # type: ignore[return-value]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RevolutionMesh:
     """9-node quadrilaterals in (r, z), straight or curved.
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.fem.exchange.matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.exchange.text import columns, existing, symmetric_from, whole
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
 
 
 def read_calculix(

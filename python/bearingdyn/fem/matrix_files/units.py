@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+
+from bearingdyn.checks import positive
 
 
 @dataclass(frozen=True)
@@ -19,9 +20,7 @@ class Units:
 
     def __post_init__(self) -> None:
         for name in ("length", "mass", "time"):
-            value = getattr(self, name)
-            if not 0 < value < math.inf:
-                raise ValueError(f"Units {name} is {value}; it must be positive: how much SI one unit is")
+            positive(f"Units {name}", getattr(self, name), "it must be positive: how much SI one unit is")
 
 
 SI = Units()

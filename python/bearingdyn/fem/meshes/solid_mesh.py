@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from bearingdyn.fem.solid_element import (
+from bearingdyn.fem.meshes.solid_element import (
     BRICK_EDGES,
     HEX20,
     HEX27,
@@ -30,7 +30,7 @@ from bearingdyn.types import Array, Index
 MIDDLE = 0.3  # a middle node may lie this far from the middle of its edge, in lengths of the edge
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceSamples:
     """A surface by its integration points: Σ weights·f is ∫ f dA.
 

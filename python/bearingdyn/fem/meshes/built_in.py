@@ -10,8 +10,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.solid_element import HEX20, HEX27
-from bearingdyn.fem.solid_mesh import SolidMesh, merged, second_order
+from bearingdyn.checks import positive, whole
+from bearingdyn.fem.meshes.solid_element import HEX20, HEX27
+from bearingdyn.fem.meshes.solid_mesh import SolidMesh, merged, second_order
 from bearingdyn.types import Array, Index
 
 BRICKS = (HEX20.name, HEX27.name)
@@ -84,8 +85,7 @@ def ring_mesh(
     count = len(radii) - 1
     if not (count >= 1 and radii[0] > 0 and all(b > a for a, b in itertools.pairwise(radii))):
         raise ValueError(f"radii is {tuple(radii)}; it must be two radii or more, rising from above 0, m")
-    if not (width > 0 and math.isfinite(width)):
-        raise ValueError(f"width is {width}; it must be positive, m")
+    positive("width", width, "it must be a positive length in m")
     names = tuple(regions) or tuple(f"layer {k + 1}" for k in range(count))
     steps = (across,) * count if isinstance(across, int) else tuple(across)
     if len(names) != count or len(steps) != count or len(set(names)) != count:
@@ -147,8 +147,7 @@ def o_ring_mesh(
         raise ValueError(
             f"band is {band}; it must lie in 0.2 to 0.95 of the cord, {0.2 * cord} to {0.95 * cord} m"
         )
-    if not across >= 2:
-        raise ValueError(f"across is {across}; it must be 2 or more")
+    whole("across", across, 2)
     start, end = _angles(angle, around)
     a, half, core = 0.5 * cord, math.asin(band / cord), 0.45
     # the section: a rectangle in the middle and four patches about it; lines crowd to the ends of the bands
@@ -186,8 +185,7 @@ def _angles(angle: tuple[float, float] | None, around: int) -> tuple[float, floa
     if not (start < end and (angle is None or end - start < 2.0 * math.pi - 1e-6)):
         raise ValueError(f"angle is {angle}; it must be (from, to) in rad, less than a turn; None: the whole")
     least = 6 if angle is None else 1
-    if not around >= least:
-        raise ValueError(f"around is {around}; it must be {least} or more")
+    whole("around", around, least)
     return start, end
 
 
