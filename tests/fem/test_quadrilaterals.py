@@ -299,3 +299,19 @@ def test_rectangles_are_the_mesher_s_own_quadrilaterals() -> None:
     for mesh in (layer, revolution_mesh([Rectangle((0.0, 1.0), (0, 1)), Rectangle((1.0, 2.0), (0, 3))])):
         again = quadrilaterals(np.stack([mesh.r, mesh.z], -1), mesh.elements[:, NINE], mesh.region)
         np.testing.assert_array_equal(again.elements, mesh.elements)
+
+
+def test_the_centre_of_a_curved_cell_is_where_its_eight_nodes_put_it() -> None:
+    """The serendipity map at ξ = η = 0, by scikit-fem's functions."""
+    skfem = pytest.importorskip("skfem")
+    corners = np.array([[1.0, 0.0], [2.0, 0.1], [2.1, 1.0], [0.9, 1.1]])
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
+    middles += np.array([[0.02, -0.06], [0.09, 0.01], [0.03, 0.08], [0.05, -0.02]])
+    eight = np.vstack([corners, middles])
+    unit = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5]])
+    element = skfem.ElementQuadS2()
+    order = [int(np.argmin(np.abs(element.doflocs - place).sum(axis=1))) for place in unit]
+    N = np.array([element.lbasis(np.array([[0.5], [0.5]]), i)[0][0] for i in order])
+    mesh = quadrilaterals(eight, [np.arange(8)])
+    centre = mesh.elements[0, 4]
+    np.testing.assert_allclose([mesh.r[centre], mesh.z[centre]], N @ eight, rtol=1e-14)
