@@ -17,8 +17,14 @@ def modal_damping(M: ArrayLike, K: ArrayLike, zeta: float) -> Array:
     the frequency domain. M (n, n) must be positive definite. A mode counts as rigid when its ω² is below
     round-off of the largest.
 
-    Raises ValueError for zeta outside 0...1 or an M that is not positive definite.
-    Reference: Wilson & Penzien, Int. J. Num. Meth. Eng. 4 (1972) 5-10.
+    Raises
+    ------
+    ValueError
+        For zeta outside 0...1 or an M that is not positive definite.
+
+    References
+    ----------
+    Wilson & Penzien, Int. J. Num. Meth. Eng. 4 (1972) 5-10.
     """
     m, k = np.asarray(M, dtype=np.float64), np.asarray(K, dtype=np.float64)
     check_damping(zeta, "zeta")

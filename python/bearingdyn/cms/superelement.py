@@ -52,7 +52,10 @@ def frozen_sparse(name: str, value: Any, n: int, columns: int | None = None) -> 
 def check_symmetry(name: str, A: Any, sign: int) -> None:
     """Check that a dense or sparse A is symmetric (sign 1) or skew-symmetric (sign −1).
 
-    Raises ValueError, naming the matrix and the two entries farthest from it.
+    Raises
+    ------
+    ValueError
+        Naming the matrix and the two entries farthest from it.
     """
     if 0 in A.shape:
         return
@@ -70,8 +73,12 @@ def check_symmetry(name: str, A: Any, sign: int) -> None:
 class Viscoelastic:
     """One viscoelastic material inside a superelement, or inside a full model.
 
-    material: anything with ``complex_modulus(omega)``; the time domain needs a Maxwell model.
-    H: (n, n) ∫BᵀT2B dV, m, dense if reduced and sparse (csr) if not; the deviatoric stiffness is 2·G*(ω)·H
+    Parameters
+    ----------
+    material
+        Anything with ``complex_modulus(omega)``; the time domain needs a Maxwell model.
+    H
+        (n, n) ∫BᵀT2B dV, m, dense if reduced and sparse (csr) if not; the deviatoric stiffness is 2·G*(ω)·H
         (paper (16), (23)).
     """
 
@@ -92,11 +99,17 @@ class Viscoelastic:
 
 @dataclass(frozen=True, eq=False)
 class Raceway:
-    """A race of a flexible ring: its groove-centre displacement as Fourier coefficients in the azimuth.
+    """The raceway of a flexible ring: the motion of its groove centre as Fourier coefficients in azimuth.
 
-    series: which coefficients; arm: radius, m, at which tilts become axial motion.
-    rows: (len(series), n), the coefficients by the superelement's coordinates; a load of balls g acts as
-        rowsᵀ g.
+    Parameters
+    ----------
+    series
+        Which coefficients.
+    arm
+        Radius, m, at which tilts become axial motion.
+    rows
+        (len(series), n), the coefficients by the superelement's coordinates; a load of balls g acts as rowsᵀ
+        g.
     """
 
     series: RacewaySeries
@@ -128,22 +141,36 @@ class Surface:
 class Superelement:
     """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
-    M, C, K: (n, n) symmetric mass (kg), viscous damping (N s/m) and stiffness (N/m). K holds the elastic
-        regions and the volumetric part of viscoelastic ones, not their deviatoric part.
-    G: (n, n) skew, kg: the gyroscopic force on the left-hand side is Ω G ẋ, with G[θx, θy] = +Ip and
-        G[θy, θx] = -Ip.
-    interfaces: name -> (6,) indices of the coordinates x, y, z, θx, θy, θz of a rigid joint.
-    outputs: name -> rows (6, n) or (3, n), the motion of a named point (interfaces are outputs too); a load f
+    Parameters
+    ----------
+    M, C
+        (n, n) symmetric mass, kg, and viscous damping, N s/m.
+    G
+        (n, n) skew-symmetric, kg: the gyroscopic force on the left-hand side is Ω G ẋ, with G[θx, θy] = +Ip
+        and G[θy, θx] = -Ip.
+    K
+        (n, n) symmetric stiffness, N/m, of the elastic regions, and the volumetric part of that of the
+        viscoelastic ones without the deviatoric part.
+    N
+        (n, n) skew-symmetric, N s/m: the circulatory force Ω N x on the left-hand side, which the damping C
+        of material that turns with the shaft brings with it; None: zero.
+    interfaces
+        name -> (6,) indices of the coordinates x, y, z, θx, θy, θz of a rigid joint.
+    outputs
+        name -> rows (6, n) or (3, n), the motion of a named point (interfaces are outputs too); a load f
         there acts as rowsᵀ f.
-    viscoelastic: the materials whose deviatoric stiffness is kept apart.
+    viscoelastic
+        The materials whose deviatoric stiffness is kept apart.
+    raceways
+        name -> Raceway, where a bearing's balls may run on a flexible ring.
+    surfaces
+        name -> Surface, from which sound is radiated.
 
-    N: (n, n) skew, N s/m: the circulatory force Ω N x on the left-hand side, there when the damping C belongs
-        to material that turns with the shaft; zero by default.
-    raceways: name -> Raceway, where a bearing's balls may run on a flexible ring.
-    surfaces: name -> Surface, from which sound is radiated.
-
-    Raises ValueError for a wrong shape, a matrix with non-finite entries or without its symmetry, an index
-    out of range or used twice, or a name used twice.
+    Raises
+    ------
+    ValueError
+        For a wrong shape, a matrix that has an entry that is not finite or lacks its symmetry, an index out
+        of range or used twice, or a name used twice.
     """
 
     M: Array
@@ -229,7 +256,10 @@ class Superelement:
     def rows(self, name: str) -> Array:
         """Rows (6, n) or (3, n) giving the motion of an interface or output point.
 
-        Raises ValueError when the superelement has no such name.
+        Raises
+        ------
+        ValueError
+            When the superelement has no such name.
         """
         if name in self.interfaces:
             return np.eye(self.n)[self.interfaces[name]]

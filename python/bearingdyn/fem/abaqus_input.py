@@ -48,11 +48,14 @@ def fields(line: str) -> list[str]:
 def node(line: str) -> tuple[int, tuple[float, float, float]]:
     """Number and position of a line of *NODE; a coordinate that is blank or absent is zero.
 
-    Raises ValueError for a line that is none.
+    Raises
+    ------
+    ValueError
+        If the line does not hold a node.
     """
     number, *place = (f.strip() for f in line.split(","))
     try:
         x, y, z = (float(v or "0") for v in (*place, "", "", "")[:3])
         return int(number), (x, y, z)
     except ValueError as error:
-        raise ValueError(f"{line!r} is no node: {error}") from error
+        raise ValueError(f"{line!r} does not hold a node: {error}") from error

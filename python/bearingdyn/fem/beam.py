@@ -24,10 +24,18 @@ from bearingdyn.types import Array
 class Section:
     """A length of shaft of constant circular section.
 
-    length: m. d_outer, d_inner: outer and bore diameter, m; 0 <= d_inner < d_outer.
+    Parameters
+    ----------
+    length
+        m.
+    d_outer, d_inner
+        Outer and bore diameter, m; 0 <= d_inner < d_outer.
 
-    Raises ValueError for a length or diameter that is not positive, a bore that leaves no wall, a length
-    above 100 m or a diameter above 5 m: it is then in mm.
+    Raises
+    ------
+    ValueError
+        For a length or diameter that is not positive, a bore that leaves no wall, a length above 100 m or a
+        diameter above 5 m: it is then in mm.
     """
 
     length: float
@@ -57,7 +65,9 @@ class Section:
     def shear_coefficient(self, nu: float) -> float:
         """Shear coefficient k; 6(1+ν)²/(7+12ν+4ν²) when solid.
 
-        Reference: Hutchinson, J. Applied Mechanics 68 (2001) 87-92, solid and hollow circular section.
+        References
+        ----------
+        Hutchinson, J. Applied Mechanics 68 (2001) 87-92, solid and hollow circular section.
         """
         a2, b2 = self.d_outer**2, self.d_inner**2
         s, p = a2 * a2 + b2 * b2, a2 * b2
@@ -83,10 +93,13 @@ def bending_wavelength(section: Section, material: Elastic, frequency: float) ->
 def element_matrices(section: Section, length: float, material: Elastic) -> tuple[Array, Array, Array]:
     """Mass, gyroscopic and stiffness matrix, each (12, 12), of an element between two nodes.
 
-    length: of the element, m. The gyroscopic force is Ω G ẋ on the left-hand side, G[θx, θy] = +Ip for a
-    disc. Bending: consistent, with the interpolation that solves the static Timoshenko equations. Stretch and
-    torsion: the mean of the consistent and the lumped mass, whose frequency error falls with the fourth power
-    of the length (Goudreau & Taylor, Comput. Meth. Appl. Mech. Eng. 2 (1973) 69-97).
+    Parameters
+    ----------
+    length
+        Of the element, m. The gyroscopic force is Ω G ẋ on the left-hand side, G[θx, θy] = +Ip for a disc.
+        Bending: consistent, with the interpolation that solves the static Timoshenko equations. Stretch and
+        torsion: the mean of the consistent and the lumped mass, whose frequency error falls with the fourth
+        power of the length (Goudreau & Taylor, Comput. Meth. Appl. Mech. Eng. 2 (1973) 69-97).
     """
     E, G, rho, L = material.E, material.G, material.density, length
     A, second = section.area, section.second_moment
@@ -135,10 +148,17 @@ def assemble_beam(
 ) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix, scipy.sparse.csr_matrix]:
     """Mass, gyroscopic and stiffness matrix of a shaft, sparse, (6 n, 6 n).
 
-    z: (n,) rising node positions, m; sections: the n - 1 sections between them, whose own lengths do not
-        enter.
+    Parameters
+    ----------
+    z
+        (n,) rising node positions, m.
+    sections
+        The n - 1 sections between them, whose own lengths do not enter.
 
-    Raises ValueError when z does not rise or the counts do not fit.
+    Raises
+    ------
+    ValueError
+        When z does not rise or the counts do not fit.
     """
     h = np.diff(z)
     if not np.all(h > 0):

@@ -46,7 +46,10 @@ def pivots(A: Any) -> Array:
     As many are negative as eigenvalues are (Sylvester). −1 stands where rows were exchanged, which only a
     pivot of zero makes necessary.
 
-    Raises RuntimeError for a singular matrix.
+    Raises
+    ------
+    RuntimeError
+        For a singular matrix.
     """
     found = factorise(A)
     lu, order = (found.lu, found.order) if isinstance(found, Factors) else (found, np.arange(A.shape[0]))

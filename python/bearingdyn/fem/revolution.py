@@ -33,8 +33,17 @@ class Harmonic:
 
     Coordinate c of node k is number len(components)·k + c. Matrices of all regions share one sparsity pattern
     (indices, indptr of a csc matrix) and are given by their data, (regions, nonzeros):
-    mass: per unit density, m³; volumetric: per unit bulk modulus, m; deviatoric: per 2G, m.
-    free: coordinates that remain; on the axis r = 0 regularity removes some, and in order 1 ties V to −U.
+
+    Parameters
+    ----------
+    mass
+        Per unit density, m³.
+    volumetric
+        Per unit bulk modulus, m.
+    deviatoric
+        Per 2G, m.
+    free
+        Coordinates that remain; on the axis r = 0 regularity removes some, and in order 1 ties V to −U.
     """
 
     mesh: RevolutionMesh
@@ -95,7 +104,10 @@ class Harmonic:
     def point_rows(self, r: float, z: float, phi: float, u: Array, sine: bool = False) -> Array:
         """Displacement x, y, z (3, m) at the point (r, z, φ) of shapes u (n, m); sine: the turned family.
 
-        Raises ValueError for a point outside the section.
+        Raises
+        ------
+        ValueError
+            For a point outside the section.
         """
         e, xi, eta = self.mesh.locate(r, z)
         N, _, _ = shape_functions(np.array([xi]), np.array([eta]))
@@ -219,7 +231,10 @@ def assemble_harmonic(
 ) -> Harmonic:
     """Matrices of Fourier order n = order >= 0 for the components (0: U, 1: V, 2: W).
 
-    Raises ValueError for a negative order, or components that couple with ones left out.
+    Raises
+    ------
+    ValueError
+        For a negative order, or components that couple with ones left out.
     """
     whole("order", order, 0, remedy="it must be a Fourier order: 0, 1, 2, ...")
     if components != ALL_COMPONENTS and (order > 0 or components not in (AXIAL, TORSION)):

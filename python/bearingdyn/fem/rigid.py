@@ -13,8 +13,11 @@ from bearingdyn.types import Array
 def rigid_motion(points: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
     """Displacement of points that move rigidly with a reference point: u = d + θ × (p - reference).
 
-    points: (n, 3), m. Returns (3 n, 6): the columns are unit x, y, z, θx, θy, θz of the reference
-    point, the rows x, y, z of each point in turn.
+    Parameters
+    ----------
+    points
+        (n, 3), m. Returns (3 n, 6): the columns are unit x, y, z, θx, θy, θz of the reference point, the rows
+        x, y, z of each point in turn.
     """
     p = np.atleast_2d(np.asarray(points, dtype=np.float64)) - np.asarray(reference, dtype=np.float64)
     R = np.zeros((len(p), 3, 6))
@@ -28,7 +31,10 @@ def rigid_motion(points: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> A
 def rigid_transfer(positions: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
     """Motion (6 n, 6) of six-coordinate points that move rigidly with a reference point.
 
-    positions: (n, 3), m; coordinates x, y, z, θx, θy, θz at each point and at the reference.
+    Parameters
+    ----------
+    positions
+        (n, 3), m; coordinates x, y, z, θx, θy, θz at each point and at the reference.
     """
     p = np.atleast_2d(np.asarray(positions, dtype=np.float64))
     R = np.zeros((len(p), 6, 6))

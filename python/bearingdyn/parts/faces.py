@@ -20,7 +20,7 @@ HIGHEST = 64  # Fourier order of a raceway: far more than any number of balls as
 class Cylinder:
     """Cylindrical face of radius r, m, over z = (from, to); None: all of the body at that radius.
 
-    The body it belongs to raises ValueError, naming the interface, where it has no such face.
+    A body without such a face raises ValueError and names the interface.
     """
 
     r: float
@@ -31,7 +31,7 @@ class Cylinder:
 class EndFace:
     """Flat face at z, m, over r = (from, to); None: all of the body at that z.
 
-    The body it belongs to raises ValueError, naming the interface, where it has no such face.
+    A body without such a face raises ValueError and names the interface.
     """
 
     z: float
@@ -42,7 +42,10 @@ class EndFace:
 class Line:
     """Conical face: the straight line of the section between two points (r, z), m.
 
-    Raises ValueError where both points are one.
+    Raises
+    ------
+    ValueError
+        If both points are the same.
     """
 
     start: tuple[float, float]
@@ -55,14 +58,14 @@ class Line:
 
 @dataclass(frozen=True)
 class Where:
-    """MeshFace of the nodes on the section's outline where inside(r, z) is true; r, z (n,) arrays, m."""
+    """Face of the nodes on the section's outline where inside(r, z) is true; r, z (n,) arrays, m."""
 
     inside: Callable[[Array, Array], Any]
 
 
 @dataclass(frozen=True)
 class MeshNodes:
-    """MeshFace of the nodes with these numbers, of the points of the mesh that was brought."""
+    """Face of the nodes with these numbers, counted from 0 among the points of the given mesh."""
 
     nodes: tuple[int, ...]
 
@@ -77,16 +80,26 @@ Face: TypeAlias = Cylinder | EndFace | Line | Where | MeshNodes
 class Groove:
     """A raceway: the displacement of its groove centre, radial and axial, by Fourier orders in the azimuth.
 
-    At each azimuth the face's section is given the rigid motion nearest to its own (least squares along the
-    section), and that motion is evaluated at radius `arm` and place `z`, as a rigid ring would be. A load
-    of balls acts as the transpose: spread evenly along the section, its moment linearly.
+    At each azimuth a rigid motion is fitted to that of the face's section by least squares, and evaluated at
+    radius `arm` and place `z`, as that of a rigid ring would be. A load of balls acts as the transpose:
+    spread evenly along the section, its moment linearly.
 
-    surface: the face that carries the balls.
-    arm: radius, m, at which tilts become axial motion: BallBearing.arm of the bearing to come.
-    order: highest Fourier order; up to the number of balls, see the convergence of what you need.
-    z: plane of the balls, m; None: the middle of the surface.
+    Parameters
+    ----------
+    surface
+        The face that carries the balls.
+    arm
+        Radius, m, at which tilts become axial motion: the arm of the bearing that will run here
+        (BallBearing.arm).
+    order
+        Highest Fourier order. Raise it, up to the number of balls, until what you need has converged.
+    z
+        Plane of the balls, m; None: the middle of the surface.
 
-    Raises ValueError for an arm that is not positive, or an order below 1.
+    Raises
+    ------
+    ValueError
+        For an arm that is not positive, or an order below 1.
     """
 
     surface: Face
@@ -111,7 +124,10 @@ class MeshFace:
 def find_face(mesh: RevolutionMesh, name: str, surface: Face) -> MeshFace:
     """The nodes and sides of a surface, its reference in the middle of its reach along z.
 
-    Raises ValueError, with the name of what asks for it, where the body has no such face or not all of it.
+    Raises
+    ------
+    ValueError
+        If the body lacks the face or a part of it; the message names what asked for it.
     """
     e = SAME * mesh.size
     nodes, length = _select(mesh, name, surface)

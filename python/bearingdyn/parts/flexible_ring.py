@@ -25,25 +25,45 @@ class FlexibleRing:
     """An elastic outer ring, not turning, whose "raceway" carries the balls of one bearing.
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
-    Without, the ring's own outside is "outer", held round by a rigid bore; or it is the raceway "outside",
-    as flexible as the raceway inside, and then only what carries that holds the ring.
+    Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with
+    outside="flexible", it is the raceway "outside", as flexible as the raceway inside, and the ring is held
+    only by what carries that raceway.
 
-    r_inner: bore at the shoulders, or at the bottom of the groove if no groove_radius is given; r_outer,
-        width: m. The plane of the balls is at mid-width.
-    arm: radius, m, at which tilts become axial motion: that of the bearing to come, BallBearing.arm.
-    order: highest Fourier order in the azimuth; one more than the number of balls holds all they bend
-        alike. Bending falls off as order⁻⁴. The dent around each ball falls off as 1/order only: its sum
-        grows slowly without end, and Hertz's contact has it already, so that far higher orders do no good.
-    groove: axial width of the face that carries the balls, m; None: half of the ring's.
-    groove_radius: radius of the groove's section, m (fo·Dw): the section then has the groove cut into it;
-        None: a plain rectangle.
-    layer: rubber, its r_inner equal to r_outer here; its material, moduli and refinement are taken.
-    outside: "rigid" or "flexible", where there is no layer.
-    damping: ratio ζ of the ring's free elastic modes. refinement: mesh density.
-    f_max: modes up to this frequency, Hz, join the static shapes; 0: none. In rubber static shapes alone are
-        some 6 % off at 5 kHz; with three times the highest frequency of interest 0.2 % are left.
+    Parameters
+    ----------
+    r_inner
+        Bore at the shoulders, or at the bottom of the groove if no groove_radius is given.
+    r_outer, width
+        m. The plane of the balls is at mid-width.
+    arm
+        Radius, m, at which tilts become axial motion: the arm of the bearing that will run here
+        (BallBearing.arm).
+    order
+        Highest Fourier order in the azimuth. Orders up to one more than the number of balls hold all the
+        bending that the balls cause, which falls off as order⁻⁴. Far higher orders do no good: they add the
+        dent around each ball, which falls off as 1/order only and which Hertz's contact has already.
+    groove
+        Axial width of the face that carries the balls, m; None: half of the ring's.
+    groove_radius
+        Radius of the groove's section, m (fo·Dw): the section then has the groove cut into it; None: a plain
+        rectangle.
+    layer
+        Rubber, its r_inner equal to r_outer here; its material, moduli and refinement are taken.
+    outside
+        "rigid" or "flexible", where there is no layer.
+    damping
+        Ratio ζ of the ring's free elastic modes.
+    refinement
+        Mesh density.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none, the default of bodies of
+        revolution. In rubber static shapes alone are some 6 % off at 5 kHz; with three times the highest
+        frequency of interest 0.2 % are left.
 
-    Raises ValueError for dimensions out of order, a groove that does not fit, or a layer that does not touch.
+    Raises
+    ------
+    ValueError
+        For dimensions out of order, a groove that does not fit, or a layer that does not touch.
     """
 
     r_inner: float

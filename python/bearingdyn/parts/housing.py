@@ -42,20 +42,33 @@ class Housing:
 
     width along x, height along y, length along z, m; a small length makes a plate-like pedestal.
     bore_diameter, m; bore_height: height of the bore's axis above the base, m (default: mid-height).
-    feet: what is held at the base: the whole base (None) or two strips (Feet).
-    damping: ratio ζ of every mode of the housing held at its feet.
-    f_max: fixed-interface modes are kept up to this, Hz.
-    points: name -> (x, y, z), m, from the bore's axis at mid-length: further outputs, at the nearest node.
-    element_size: longest wanted side of an element, m (default: some 300 elements).
 
-    Interfaces: "bore" (reference on the axis at mid-length) and "feet" (reference below it, on the base),
-    both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n). Surfaces: "top",
-    "front" (at +z), "back", and "outside", all but the bore and the base.
+    Two rigid interfaces: "bore", whose reference lies on the axis at mid-length, and "feet", whose reference
+    lies below it on the base. Outputs: "top", the middle of the top face, and the points; rows (3, n).
+    Surfaces: "top", "front" (at +z), "back", and "outside", all but the bore and the base.
 
-    Raises ValueError for a bore that leaves no wall, a point outside, values not positive and finite, or
-    a length above 10 m: it is then in mm.
+    Parameters
+    ----------
+    feet
+        What is held at the base: the whole base (None) or two strips (Feet).
+    damping
+        Ratio ζ of every mode of the housing held at its feet.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none; by default 20 kHz.
+    points
+        name -> (x, y, z), m, from the bore's axis at mid-length: further outputs, at the nearest node.
+    element_size
+        Longest wanted side of an element, m (default: some 300 elements).
 
-    Reference: paper section 4, which gives no dimensions.
+    Raises
+    ------
+    ValueError
+        For a bore that leaves no wall, a point outside, values not positive and finite, or a length above 10
+        m: it is then in mm.
+
+    References
+    ----------
+    Paper section 4, which gives no dimensions.
     """
 
     width: float

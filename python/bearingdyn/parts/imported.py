@@ -29,9 +29,13 @@ from bearingdyn.types import Array
 class NodeSet:
     """Nodes that move as one rigid body.
 
-    nodes: their numbers in the file (rows of its points, from 0, where it names none), or a function of all
+    Parameters
+    ----------
+    nodes
+        Their numbers in the file (rows of its points, from 0, where it names none), or a function of all
         positions (k, 3), m, that says which (k,) belong to it.
-    reference: (x, y, z), m, of the six coordinates; default: the mean of the nodes' positions.
+    reference
+        (x, y, z), m, of the six coordinates; default: the mean of the nodes' positions.
     """
 
     nodes: Sequence[int] | Callable[[Array], NDArray[np.bool_]]
@@ -42,16 +46,27 @@ class NodeSet:
 class Imported:
     """An elastic body of another program's matrices, reduced like any other part.
 
-    matrices: from fem.read_matrices, with points. Matrices reduced already (Craig-Bampton: nodes of six
+    Parameters
+    ----------
+    matrices
+        From fem.read_matrices, with points. Matrices reduced already (Craig-Bampton: nodes of six
         coordinates, then modal ones, `internal` of them) are taken too: each such node is an interface.
-    interfaces: name -> the nodes that move as one rigid body.
-    outputs: name -> number of a node, or a position (x, y, z), m, whose nearest node is meant; rows (3, n),
-        or (6, n) at a node of six coordinates.
-    damping: ratio ζ of every elastic mode, of the free body or of the body held at the interface `held`.
-    f_max: fixed-interface modes are kept up to this, Hz; math.inf keeps all of a reduced model.
+    interfaces
+        name -> the nodes that move as one rigid body.
+    outputs
+        name -> number of a node, or a position (x, y, z), m, whose nearest node is meant; rows (3, n), or (6,
+        n) at a node of six coordinates.
+    damping
+        Ratio ζ of every elastic mode, of the free body or of the body held at the interface `held`.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none; by default 20 kHz;
+        math.inf: all, for matrices that are reduced already.
 
-    Raises ValueError for an interface without nodes, with nodes on one line, or with nodes the matrices do
-    not have; for a part of the mesh that no interface holds; and for values outside their range.
+    Raises
+    ------
+    ValueError
+        For an interface without nodes, with nodes on one line, or with nodes the matrices do not have; for a
+        part of the mesh that no interface holds; and for values outside their range.
     """
 
     matrices: FEMatrices
@@ -175,7 +190,14 @@ def at_radius(
 ) -> Callable[[Array], NDArray[np.bool_]]:
     """Choice of the nodes on a cylinder about z, for NodeSet.
 
-    radius: m. axial: z from, to, m. tolerance: m, as fine as the file's digits.
+    Parameters
+    ----------
+    radius
+        m.
+    axial
+        z from, to, m.
+    tolerance
+        m, as fine as the file's digits.
     """
 
     def choose(p: Array) -> NDArray[np.bool_]:

@@ -39,10 +39,15 @@ def _check_material(material: object) -> None:
 class Region:
     """A ring of rectangular section and one material; r, z: (from, to), m.
 
-    graded: crowd the mesh towards its sides; None: do so if the material is viscoelastic.
+    Parameters
+    ----------
+    graded
+        Crowd the mesh towards its sides; None: do so if the material is viscoelastic.
 
-    Raises ValueError for a section that is none or above 10 m, or a material that is neither elastic nor has
-    G*(ω).
+    Raises
+    ------
+    ValueError
+        For a section without area or above 10 m, or a material that is neither elastic nor has G*(ω).
     """
 
     r: tuple[float, float]
@@ -70,7 +75,7 @@ class Region:
 
 @dataclass(frozen=True)
 class Patch:
-    """The elements of a mesh that was brought whose `region` is this one's place in the list of regions."""
+    """The elements of a given mesh whose `region` is this patch's place in the list of regions."""
 
     material: Elastic | ViscoelasticSolid
 

@@ -26,7 +26,10 @@ def full_model(
 ) -> FullModel:
     """Matrices of all copies of all families on one diagonal, without coordinates removed on the axis.
 
-    outputs: name -> (r, z, φ).
+    Parameters
+    ----------
+    outputs
+        name -> (r, z, φ).
     """
     rubbers: list[Any] = []
     for q in regions:
@@ -90,8 +93,12 @@ def full_basis(
 ) -> Basis:
     """The shapes of the families in the coordinates of `full_model`.
 
-    families: each with its shapes (n, columns) and the number of them that are constraint shapes.
-    level: shear modulus of each viscoelastic material, Pa, of the reference state.
+    Parameters
+    ----------
+    families
+        Each with its shapes (n, columns) and the number of them that are constraint shapes.
+    level
+        Shear modulus of each viscoelastic material, Pa, of the reference state.
     """
     count = len(model.interfaces)
     constraint = np.zeros((model.n, 6 * count))

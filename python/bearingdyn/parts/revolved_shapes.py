@@ -22,8 +22,16 @@ ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it
 class ShapeMaker:
     """What the shapes depend on besides the moduli.
 
-    bulk, density: of each region, Pa and kg/m³. f_max: limit of the modes, Hz. size: of the section, m.
-    inertia_rounds: how often the inertia of the shapes is answered.
+    Parameters
+    ----------
+    bulk, density
+        Of each region, Pa and kg/m³.
+    f_max
+        Limit of the modes, Hz.
+    size
+        Of the section, m.
+    inertia_rounds
+        How often the inertia of the shapes is answered.
     """
 
     boundaries: Boundaries

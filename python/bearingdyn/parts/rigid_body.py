@@ -18,13 +18,25 @@ from bearingdyn.parts.outline import Outline, box, carried, cylinder
 class RigidBody:
     """A rigid body with one interface, "centre", at its centre of mass.
 
-    mass: kg. inertia: (Ix, Iy, Iz), kg m², about the centre; the axes x, y, z are principal.
-    rotating: the body turns with the shaft about z; its polar inertia is then Iz, and Ix must equal Iy, for
-        the inertia of an unequal body would vary with the angle.
-    measures: (r_inner, r_outer, width), m, of the ring it is drawn as; None: the box of its inertia.
+    Parameters
+    ----------
+    mass
+        kg.
+    inertia
+        (Ix, Iy, Iz), kg m², about the centre; the axes x, y, z are principal.
+    rotating
+        The body turns with the shaft about z; its polar inertia is then Iz, and Ix must equal Iy, for the
+        inertia of an unequal body would vary with the angle.
+    measures
+        (r_inner, r_outer, width), m, of the ring it is drawn as; None: the box of its inertia.
 
-    Raises ValueError for values that are not positive or that no body can have.
+    Raises
+    ------
+    ValueError
+        For values that are not positive or that no body can have.
 
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> ring = bd.RigidBody.ring(r_inner=0.0, r_outer=0.1, width=0.02)  # a steel disc
     >>> round(ring.mass, 3), round(ring.inertia[2], 5)  # kg, m r²/2 in kg m²
@@ -61,7 +73,10 @@ class RigidBody:
     ) -> RigidBody:
         """A ring (a disc when r_inner is 0) about z, for example that of a bearing; radii and width in m.
 
-        Raises ValueError unless 0 <= r_inner < r_outer <= 10 m and 0 < width <= 10 m.
+        Raises
+        ------
+        ValueError
+            Unless 0 <= r_inner < r_outer <= 10 m and 0 < width <= 10 m.
         """
         positive("r_outer", r_outer, "it must be a positive radius in m")
         if not 0 <= r_inner < r_outer:

@@ -20,13 +20,23 @@ from bearingdyn.parts.revolved import Revolved, RevolvedModes
 class Ring:
     """An elastic ring of rectangular section, not turning; interfaces "inner" and "outer", its faces.
 
-    r_inner, r_outer, width: m; the reference point of both faces lies on the axis at mid-width.
-    damping: ratio ζ of its free elastic modes. f_max: fixed-interface modes up to this
-        frequency, Hz; 0: none.
-    refinement: mesh density.
+    Parameters
+    ----------
+    r_inner, r_outer, width
+        m; the reference point of both faces lies on the axis at mid-width.
+    damping
+        Ratio ζ of its free elastic modes.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none, the default of bodies of
+        revolution.
+    refinement
+        Mesh density.
 
-    Raises ValueError for dimensions that are not positive, r_outer not above r_inner, or more than
-    10 m: they are then in mm.
+    Raises
+    ------
+    ValueError
+        For dimensions that are not positive, r_outer not above r_inner, or more than 10 m: they are then in
+        mm.
     """
 
     r_inner: float
@@ -81,11 +91,23 @@ def damping_sample(
 ) -> Revolved:
     """Two concentric metal rings with a layer bonded between them, the paper's sample (figure 3); SI units.
 
-    radii: bore, inner bond, outer bond, outside. Interfaces "inner" (the bore) and "outer" (the outside)
-    are rigid. Raises ValueError for radii that do not rise.
+    Parameters
+    ----------
+    radii
+        Bore, inner bond, outer bond, outside. Interfaces "inner" (the bore) and "outer" (the outside) are
+        rigid.
 
-    Reference: paper section 3.4.
+    Raises
+    ------
+    ValueError
+        For radii that do not rise.
 
+    References
+    ----------
+    Paper section 3.4.
+
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> sample = bd.damping_sample(bd.Elastic(2.98e6, 0.49, 1200.0))  # G = 1 MPa
     >>> [round(float(f)) for f in sample.modes(0, 4).frequency[2:]]  # axial, torsion, Hz

@@ -35,7 +35,10 @@ ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at
 class Disc:
     """A rigid disc on a shaft, at z, m: mass, kg, diametral and polar moment of inertia Id and Ip, kg m².
 
-    Raises ValueError for a mass or moment that is not positive, or that no disc can have.
+    Raises
+    ------
+    ValueError
+        For a mass or moment that is not positive, or that no disc can have.
     """
 
     z: float
@@ -57,7 +60,10 @@ class Disc:
     ) -> Disc:
         """A cylinder centred at z with the shaft's diameter d_inner left out; lengths in m.
 
-        Raises ValueError for measures that make no cylinder.
+        Raises
+        ------
+        ValueError
+            For measures that make no cylinder.
         """
         body = Section(width, d_outer, d_inner)
         mass = material.density * body.area * width
@@ -69,20 +75,40 @@ class Disc:
 class Shaft:
     """A flexible shaft along z, from z = 0 upward, turning about z.
 
-    sections: stacked one on the other. material: of all sections.
-    seats: name -> z, m: rigid six-coordinate interfaces, to be joined or to carry a bearing's ring.
-    points: name -> z, m: outputs, rows (6, n), where loads may act and motion is read.
-    discs: rigid discs. damping: ratio ζ of every free elastic mode, turning with the shaft.
-    f_max: fixed-interface modes are kept up to this frequency, Hz: three to four times the highest of
-        interest keeps frequencies to about 0.1 %.
-    element_length: longest beam element, m; by default 1/30 of the shortest bending wave at f_max.
+    Parameters
+    ----------
+    sections
+        Stacked one on the other.
+    material
+        Of all sections.
+    seats
+        name -> z, m: rigid six-coordinate interfaces, to be joined or to carry a bearing's ring.
+    points
+        name -> z, m: outputs, rows (6, n), where loads may act and motion is read.
+    discs
+        Rigid discs.
+    damping
+        Ratio ζ of every free elastic mode, turning with the shaft.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; by default 20 kHz. It must be above
+        0, for the elements are chosen by it. Three to four times the highest frequency of interest keeps
+        frequencies to about 0.1 %.
+    element_length
+        Longest beam element, m; by default 1/30 of the shortest bending wave at f_max.
 
-    Raises ValueError for a position off the shaft, a name used twice, two seats in one place, values that
-    are not positive and finite, or more than 100 m in all.
+    Raises
+    ------
+    ValueError
+        For a position off the shaft, a name used twice, two seats in one place, values that are not positive
+        and finite, or more than 100 m in all.
 
-    Reference: J. S. Przemieniecki, Theory of Matrix Structural Analysis (Timoshenko element); H. D. Nelson,
-    J. Mech. Design 102 (1980) 793 (gyroscopic terms).
+    References
+    ----------
+    J. S. Przemieniecki, Theory of Matrix Structural Analysis (Timoshenko element); H. D. Nelson, J. Mech.
+    Design 102 (1980) 793 (gyroscopic terms).
 
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> seats = {"left": 0.02, "right": 0.28}
     >>> element = bd.Shaft([bd.Section(0.3, 0.03)], seats, points={"middle": 0.15}).superelement()

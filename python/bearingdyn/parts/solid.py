@@ -37,15 +37,20 @@ from bearingdyn.types import Array, Complex, Index
 Point = tuple[float, float, float]
 Material = Elastic | ViscoelasticSolid
 
-LOCKING = 0.45  # Poisson's ratio from which on an elastic region, too, has the cure against locking
+LOCKING = 0.45  # Poisson's ratio from which an elastic region is assembled as incompressible, lest it lock
 
 
 @dataclass(frozen=True)
 class RigidSurface:
     """Surfaces of a mesh that move together as one rigid body with six coordinates.
 
-    surface: one name or several. reference: the point (x, y, z), m, whose motion the coordinates are;
-    "centroid": of the area; "axis": the point of the z axis at the centroid's height.
+    Parameters
+    ----------
+    surface
+        One name or several.
+    reference
+        The point (x, y, z), m, whose motion the coordinates are; "centroid": of the area; "axis": the point
+        of the z axis at the centroid's height.
     """
 
     surface: str | tuple[str, ...]
@@ -84,30 +89,48 @@ class RigidSurface:
 class Solid:
     """A three-dimensional body of one or more materials, not turning, with rigid interfaces.
 
-    mesh: SolidMesh, as read_mesh, box_mesh, ring_mesh or block_with_bore return it.
-    materials: of each region by name, or one for all; Elastic, or viscoelastic in shear as Maxwell.
-    interfaces: name -> name of a surface, or RigidSurface. Feet are an interface too, which the application
-        grounds. Interfaces share no node.
-    f_max: fixed-interface modes up to this frequency, Hz, join the static shapes; 0: none. They are taken at
-        the lowest of the moduli.
-    outputs: name -> (x, y, z), m: the nearest node; or name of a surface: its motion averaged over the area.
-        Rows (3, n) give x, y, z.
-    damping: ratio ζ of the elastic modes of the elastic regions, of the free body, or held at the interface
+    Viscoelastic regions, and elastic ones with ν of 0.45 or more, are assembled as incompressible, so that
+    they do not lock: see fem.assemble_solid. In rubber use 27-node bricks, which are some five times as
+    accurate as 20-node ones; `mesh.with_centres()` makes them.
+
+    Parameters
+    ----------
+    mesh
+        SolidMesh, as read_mesh, box_mesh, ring_mesh or block_with_bore return it.
+    materials
+        Of each region by name, or one for all; Elastic, or viscoelastic in shear as Maxwell.
+    interfaces
+        name -> name of a surface, or RigidSurface. Feet are an interface too; the application grounds them.
+        No two interfaces may share a node.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none; by default 20 kHz. They are
+        taken at the lowest of the moduli.
+    outputs
+        name -> (x, y, z), m: the nearest node; or name of a surface: its motion averaged over the area. Rows
+        (3, n) give x, y, z.
+    damping
+        Ratio ζ of the elastic modes of the elastic regions, of the free body, or held at the interface
         `held`.
-    moduli: real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: chosen
-        from each material's range (cms.modulus_levels).
-    attach: outputs at which loads act, whose static shapes then join the basis.
-    radiating: surfaces of the mesh that the superelement carries for the power they radiate.
-    inertia: rounds of cms.inertia_shapes of the static shapes at each modulus: one serves better than many
-        fixed-interface modes; with moduli=(G,), 0 is the paper's basis.
+    moduli
+        Real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: chosen from
+        each material's range (cms.modulus_levels).
+    attach
+        Outputs at which loads act, whose static shapes then join the basis.
+    radiating
+        Surfaces of the mesh that the superelement carries for the power they radiate.
+    inertia
+        How many rounds of cms.inertia_shapes follow the static shapes of each modulus. One round serves
+        better than many fixed-interface modes; 0 with moduli=(G,) is the paper's basis.
 
-    Viscoelastic regions, and elastic ones with ν of 0.45 or more, have the cure against locking that their
-    element allows: see fem.assemble_solid. Of 20-node bricks in rubber, `mesh.with_centres()` makes 27-node
-    ones, which are some five times as accurate there.
+    Raises
+    ------
+    ValueError
+        For names that are not the mesh's, a region without material, interfaces that share a node or lie on a
+        line, a point away from the body, and values outside their range.
 
-    Raises ValueError for names that are not the mesh's, a region without material, interfaces that share a
-    node or lie on a line, a point away from the body, and values outside their range.
-    Reference: paper (13), (14), (21)-(25).
+    References
+    ----------
+    Paper (13), (14), (21)-(25).
     """
 
     mesh: SolidMesh
@@ -267,14 +290,20 @@ class Solid:
     def basis(self) -> Basis:
         """The shapes `superelement` takes, in the coordinates of `full_model`.
 
-        Raises ValueError if moduli cannot be chosen for a material.
+        Raises
+        ------
+        ValueError
+            If moduli cannot be chosen for a material.
         """
         return self._basis
 
     def superelement(self) -> Superelement:
         """The body reduced onto its interfaces: static shapes at each modulus, and modes up to f_max.
 
-        Raises ValueError if moduli cannot be chosen for a material.
+        Raises
+        ------
+        ValueError
+            If moduli cannot be chosen for a material.
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
         return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
@@ -309,7 +338,11 @@ class Solid:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
 
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
-        Raises ValueError where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
+
+        Raises
+        ------
+        ValueError
+            Where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
         """
         model = self._full_model
         shear = [complex(part.material.complex_modulus(omega)) for part in model.viscoelastic]

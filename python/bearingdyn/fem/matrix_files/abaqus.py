@@ -23,13 +23,19 @@ def read_abaqus(
 ) -> FEMatrices:
     """Read the two files (.mtx) that *MATRIX OUTPUT, STIFFNESS, MASS writes, in either format of text.
 
-    points: as in check_matrices, or the input file itself through read_nodes; its nodes may be more than
-        those of the matrices. Files in COORDINATE format name no nodes: points are then in the order of
-        the rows.
     The rest: as in check_matrices. Abaqus has no units: pass units=MM_TONNE for mm, t, s.
 
-    Raises ValueError for a file that is not there or not of that format, for an internal variable of Abaqus
-    (a node number below 1), or where check_matrices does.
+    Parameters
+    ----------
+    points
+        As in check_matrices, or the input file itself through read_nodes; its nodes may be more than those of
+        the matrices. Files in COORDINATE format name no nodes: points are then in the order of the rows.
+
+    Raises
+    ------
+    ValueError
+        For a file that is not there or not of that format, for an internal variable of Abaqus (a node number
+        below 1), or where check_matrices does.
     """
     files = [existing(stiffness), existing(mass)]
     K, M = (_entries(path) for path in files)
@@ -77,7 +83,10 @@ def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
 
     *INCLUDE is followed.
 
-    Raises ValueError for a file that is not there, without nodes, or with a line that is no node.
+    Raises
+    ------
+    ValueError
+        For a file that is not there, without nodes, or with a line that is no node.
     """
     p = existing(path)
     try:

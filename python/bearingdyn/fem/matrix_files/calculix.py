@@ -22,12 +22,21 @@ def read_calculix(
 ) -> FEMatrices:
     """Read what CalculiX stores: name.sti, name.mas and name.dof.
 
-    stiffness: path of the .sti; mass: of the .mas (default: beside it). The .dof lies beside the .sti.
     points and the rest: as in check_matrices; read_nodes gives the nodes of the .inp. Coordinates that
     CalculiX removed (*BOUNDARY, dependent ones of *EQUATION and *RIGID BODY) are not in its files: for a
     free body, which points ask for, store the model without them.
 
-    Raises ValueError for files that are not there or do not fit, or where check_matrices does.
+    Parameters
+    ----------
+    stiffness
+        Path of the .sti.
+    mass
+        Of the .mas (default: beside it). The .dof lies beside the .sti.
+
+    Raises
+    ------
+    ValueError
+        For files that are not there or do not fit, or where check_matrices does.
     """
     sti = existing(stiffness)
     mas = existing(sti.with_suffix(".mas") if mass is None else mass)

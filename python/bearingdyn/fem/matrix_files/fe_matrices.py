@@ -31,12 +31,18 @@ DIRECTIONS = ("x", "y", "z", "θx", "θy", "θz")
 class FEMatrices:
     """A finite element model read from elsewhere, in SI units.
 
-    K, M: (n, n) sparse stiffness, N/m, and mass, kg, made exactly symmetric.
-    points: (k, 3) node positions, m, when known.
-    nodes: (k,) their numbers, when the file names them; else a node is known by its row in points.
-    dofs: (n, 2) of each coordinate the row of its node and its direction 0...5 (x, y, z, θx, θy, θz); the row
-        is -1 for a coordinate of no node, such as a modal one. Without it coordinate 3 i + a is node i
-        along axis a.
+    Parameters
+    ----------
+    K, M
+        (n, n) sparse stiffness, N/m, and mass, kg, made exactly symmetric.
+    points
+        (k, 3) node positions, m, when known.
+    nodes
+        (k,) their numbers, when the file names them; else a node is known by its row in points.
+    dofs
+        (n, 2) of each coordinate the row of its node and its direction 0...5 (x, y, z, θx, θy, θz); the row
+        is -1 for a coordinate of no node, such as a modal one. Without it coordinate 3 i + a is node i along
+        axis a.
     """
 
     M: scipy.sparse.csr_matrix
@@ -72,7 +78,10 @@ class FEMatrices:
     def rigid_motion(self, reference: ArrayLike) -> Array:
         """Motion (n, 6) of all coordinates as one rigid body about a reference point, m.
 
-        Raises ValueError where the positions of the nodes are not known.
+        Raises
+        ------
+        ValueError
+            Where the positions of the nodes are not known.
         """
         if self.points is None:
             raise ValueError("points is not known; pass the nodes' positions when the matrices are read")
@@ -95,23 +104,35 @@ def check_matrices(
 ) -> FEMatrices:
     """Check a stiffness and mass pair of a body free in space, make it sparse and bring it to SI units.
 
-    K, M: (n, n) dense or sparse, symmetric; a triangle alone is refused. In files' units.
-    points: (k, 3) positions of the nodes, or node number -> position, in the file's unit of length. Given
-        them, K must not resist rigid motion (relative force below 1e-6), M must carry one mass in all three
-        directions, and density and speed of sound must be those of a solid.
-    labels: (n, 2) node number and direction 1...6 of each coordinate; they are put in rising order. Without
-        them there are three coordinates to a point, x, y, z, or six.
-    internal: number of coordinates at the end that belong to no node (modal ones of a reduced model).
-    units: what the file is written in.
-    expected_mass: kg, to 5 %; None: not checked.
-    sound: accepted range of √(bulk modulus/density), m/s, the mean over the body; widen it for foams.
-
     K is factorised once for its pivots: some 8 s and 1.5 GB at 35 000 coordinates.
 
     Rotations with neither stiffness nor mass, as solids have them in files of six coordinates a node, are
     left out.
 
-    Raises ValueError naming the matrix, what is wrong with it and the remedy.
+    Parameters
+    ----------
+    K, M
+        (n, n) dense or sparse, symmetric; a triangle alone is refused. In files' units.
+    points
+        (k, 3) positions of the nodes, or node number -> position, in the file's unit of length. Given them, K
+        must not resist rigid motion (relative force below 1e-6), M must carry one mass in all three
+        directions, and density and speed of sound must be those of a solid.
+    labels
+        (n, 2) node number and direction 1...6 of each coordinate; they are put in rising order. Without them
+        there are three coordinates to a point, x, y, z, or six.
+    internal
+        Number of coordinates at the end that belong to no node (modal ones of a reduced model).
+    units
+        What the file is written in.
+    expected_mass
+        kg, to 5 %; None: not checked.
+    sound
+        Accepted range of √(bulk modulus/density), m/s, the mean over the body; widen it for foams.
+
+    Raises
+    ------
+    ValueError
+        Naming the matrix, what is wrong with it and the remedy.
     """
     k, m = _sparse("K", K), _sparse("M", M)
     if k.shape != m.shape:

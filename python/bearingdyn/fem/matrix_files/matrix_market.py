@@ -23,7 +23,11 @@ def read_matrix_market(
     """Read a stiffness and a mass matrix from two MatrixMarket files (.mtx).
 
     points and the rest: as in check_matrices.
-    Raises ValueError for a file that is not there, not MatrixMarket, or fails check_matrices.
+
+    Raises
+    ------
+    ValueError
+        For a file that is not there, not MatrixMarket, or fails check_matrices.
     """
     files = [existing(stiffness), existing(mass)]
     return check_matrices(_read(files[0]), _read(files[1]), points, **check)

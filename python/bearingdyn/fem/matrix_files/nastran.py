@@ -22,13 +22,23 @@ def read_op4(
 ) -> FEMatrices:
     """Read a stiffness and a mass matrix from one output4 file, or from two (mass_path).
 
-    names: of stiffness and mass in the file. coordinates: name of a (k, 3) matrix of the grids'
-        positions in it, if it has one; else points, (k, 3), in the order of the matrices' grids. KGG and MGG
-        have six coordinates a grid, in the basic system when no grid has another.
     The rest: as in check_matrices.
 
-    Raises ValueError for a file that is not there, not output4 or without a named matrix, and where
-    check_matrices does; ImportError without pyyeti.
+    Parameters
+    ----------
+    names
+        Of stiffness and mass in the file.
+    coordinates
+        name of a (k, 3) matrix of the grids' positions in it, if it has one; else points, (k, 3), in the
+        order of the matrices' grids. KGG and MGG have six coordinates a grid, in the basic system when no
+        grid has another.
+
+    Raises
+    ------
+    ValueError
+        For a file that is not there, not output4 or without a named matrix, and where check_matrices does.
+    ImportError
+        Without pyyeti.
     """
     try:
         from pyyeti.nastran import op4

@@ -39,7 +39,10 @@ def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FE
     Pickled objects are not read. points, if given, takes the place of the file's; the rest: as in
     check_matrices.
 
-    Raises ValueError for a file that is not there, not such an archive, or fails check_matrices.
+    Raises
+    ------
+    ValueError
+        For a file that is not there, not such an archive, or fails check_matrices.
     """
     p = existing(path)
     try:

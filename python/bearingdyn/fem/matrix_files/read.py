@@ -24,12 +24,19 @@ def read_matrices(
 
     .npz: NumPy archive, one file. .op4: Nastran, one file or two. .sti: CalculiX, with its .mas and .dof
     beside it. .mtx: MatrixMarket or Abaqus, as its first line says, two files.
-    points: positions of the nodes, as in check_matrices, or the path of an .inp with *NODE blocks.
-    check: expected_mass, kg, units, internal, labels and sound, as in check_matrices; for .op4 also the
+
+    Parameters
+    ----------
+    points
+        Positions of the nodes, as in check_matrices, or the path of an .inp with *NODE blocks.
+    check
+        expected_mass, kg, units, internal, labels and sound, as in check_matrices; for .op4 also the
         matrices' names, as in read_op4.
 
-    Raises ValueError for an ending it does not know, a second file that is missing, and where the format's
-    own reader does.
+    Raises
+    ------
+    ValueError
+        For an ending it does not know, a second file that is missing, and where the format's own reader does.
     """
     path = existing(stiffness)
     if isinstance(points, str | Path):

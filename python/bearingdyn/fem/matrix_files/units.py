@@ -11,7 +11,10 @@ from bearingdyn.checks import positive
 class Units:
     """A coherent system: one unit of length in m, of mass in kg, of time in s; force is mass·length/time².
 
-    Raises ValueError for a unit that is not positive and finite.
+    Raises
+    ------
+    ValueError
+        For a unit that is not positive and finite.
     """
 
     length: float = 1.0

@@ -46,8 +46,11 @@ def read_inp(path: Path) -> RawMesh:
     Regions are the element sets of *SOLID SECTION, or the sets that divide the body. Surfaces are node sets,
     *SURFACE definitions by faces or nodes, and sets of shell or plane elements.
 
-    Raises ValueError for other solid elements, a node numbered twice, parts moved into an assembly, a set
-    that names what there is not, and a line that is no data.
+    Raises
+    ------
+    ValueError
+        For other solid elements, a node numbered twice, parts moved into an assembly, a set that names
+        something undefined, and a line that cannot be read.
     """
     model = _Model()
     for keyword, options, lines in blocks(path):

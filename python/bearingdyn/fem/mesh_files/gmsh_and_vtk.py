@@ -19,7 +19,10 @@ TAGS = ("gmsh:physical", "CellEntityIds", "region")  # arrays of numbers of grou
 def read_with_meshio(file: Path, region_data: str | None) -> RawMesh:
     """The mesh of a .msh, .vtk or .vtu file; region_data as in `read_mesh`.
 
-    Raises ImportError without meshio, and ValueError for a file that it cannot read.
+    Raises
+    ------
+    ImportError
+        Without meshio, and ValueError for a file that it cannot read.
     """
     try:
         from meshio import gmsh, vtk, vtu

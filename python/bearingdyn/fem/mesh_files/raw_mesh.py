@@ -19,10 +19,20 @@ CORNERS = {8: 20, 4: 10}  # nodes of a linear element, and of the quadratic one 
 class RawMesh:
     """Nodes, solid elements of one kind or more, and sets, unchecked.
 
-    points: (n, 3) in the unit of the file. cells: arrays (m, k) of nodes, in VTK's order.
-    numbers: what the file calls the elements of all cells in turn.
-    regions: name -> elements, counted through the cells in turn; preferred: those that carry a material.
-    surfaces: name -> nodes.
+    Parameters
+    ----------
+    points
+        (n, 3) in the unit of the file.
+    cells
+        Arrays (m, k) of nodes, in VTK's order.
+    numbers
+        What the file calls the elements of all cells in turn.
+    regions
+        name -> elements, counted through the cells in turn.
+    preferred
+        Those that carry a material.
+    surfaces
+        name -> nodes.
     """
 
     points: Array

@@ -34,14 +34,26 @@ def read_mesh(
         number; a point array of 0 and 1 makes a surface of that name.
     .msh, .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
 
-    scale: length of the file's unit, m; 1e-3 for a file in mm.
-    regions: names of the sets that are regions, for files whose sets overlap; (): one region.
-    upgrade: accept 8-node bricks and 4-node tetrahedra, and give them middle nodes on straight edges.
-    merge: make nodes closer than this, m, one. drop_unconnected: leave out nodes that no element has.
-    largest: a body longer than this, m, is taken to be in the wrong unit.
+    Parameters
+    ----------
+    scale
+        Length of the file's unit, m; 1e-3 for a file in mm.
+    regions
+        Names of the sets that are regions, for files whose sets overlap; (): one region.
+    upgrade
+        Accept 8-node bricks and 4-node tetrahedra, and give them middle nodes on straight edges.
+    merge
+        Make nodes closer than this, m, one.
+    drop_unconnected
+        Leave out nodes that no element has.
+    largest
+        A body longer than this, m, is taken to be in the wrong unit.
 
-    Raises ValueError, naming the file and the element or node, for what SolidMesh refuses, elements of
-    another kind, a body longer than `largest`, and a file that cannot be read.
+    Raises
+    ------
+    ValueError
+        Naming the file and the element or node, for what SolidMesh refuses, elements of another kind, a body
+        longer than `largest`, and a file that cannot be read.
     """
     file = Path(path)
     if not file.is_file():

@@ -34,7 +34,10 @@ def crowded(a: float, b: float, count: int) -> Array:
 def box_mesh(x: ArrayLike, y: ArrayLike, z: ArrayLike, element: str = "hex20") -> SolidMesh:
     """Bricks between grid lines x, y, z, m, each rising; surfaces "x-", "x+", "y-", "y+", "z-", "z+".
 
-    element: "hex20" or "hex27". Raises ValueError for lines that do not rise.
+    Parameters
+    ----------
+    element
+        "hex20" or "hex27". Raises ValueError for lines that do not rise.
     """
     lines = [np.asarray(v, dtype=np.float64) for v in (x, y, z)]
     for name, v in zip("xyz", lines, strict=True):
@@ -73,14 +76,29 @@ def ring_mesh(
 ) -> SolidMesh:
     """A ring about z, or a segment of it, of concentric layers, each layer a region.
 
-    radii: bore, bonds, outside, m, rising. width: along z, m, the middle at z = 0.
-    angle: (from, to), rad; None: the whole ring. across: elements through each layer; along: over the width;
-    around: over the angle. Lines crowd to the ends of the width, and to both faces of each layer.
-    regions: names of the layers (default "layer 1", ...).
     Surfaces: "inner", "outer", "z-", "z+", of a segment also "start" and "end".
 
-    Raises ValueError for measures out of order, fewer than 6 elements around a whole ring, or a segment of a
-    turn or more.
+    Parameters
+    ----------
+    radii
+        Bore, bonds, outside, m, rising.
+    width
+        Along z, m, the middle at z = 0.
+    angle
+        (from, to), rad; None: the whole ring.
+    across
+        Elements through each layer.
+    along
+        Over the width.
+    around
+        Over the angle. Lines crowd to the ends of the width, and to both faces of each layer.
+    regions
+        Names of the layers (default "layer 1", ...).
+
+    Raises
+    ------
+    ValueError
+        For measures out of order, fewer than 6 elements around a whole ring, or a segment of a turn or more.
     """
     count = len(radii) - 1
     if not (count >= 1 and radii[0] > 0 and all(b > a for a, b in itertools.pairwise(radii))):
@@ -134,12 +152,28 @@ def o_ring_mesh(
 ) -> SolidMesh:
     """An O-ring about z, or a segment of it, at rest between a shaft and a bore.
 
-    radius: of the circle of the cord's centre, m. cord: its diameter, m. band: width, m, along z, of the two
-    strips by which it holds, the innermost and the outermost of its surface; 0.2 to 0.95 of the cord.
-    angle: (from, to), rad; None: the whole ring. across: elements across each band; around: over the angle.
     Surfaces: "inner" and "outer", the bands; of a segment also "start" and "end".
 
-    Raises ValueError for measures out of range.
+    Parameters
+    ----------
+    radius
+        Of the circle of the cord's centre, m.
+    cord
+        Its diameter, m.
+    band
+        Width, m, along z, of the two strips by which it holds, the innermost and the outermost of its
+        surface; 0.2 to 0.95 of the cord.
+    angle
+        (from, to), rad; None: the whole ring.
+    across
+        Elements across each band.
+    around
+        Over the angle.
+
+    Raises
+    ------
+    ValueError
+        For measures out of range.
     """
     if not (cord > 0 and 0.5 * cord < radius < math.inf):
         raise ValueError(f"cord is {cord} and radius {radius}; they must be positive, radius above cord/2, m")
@@ -233,12 +267,21 @@ def block_with_bore(
     """Structured mesh of bricks of a block with a round bore through it along z.
 
     width along x, height along y, length along z, m; the origin is on the bore's axis at mid-length.
-    bore_height: of the axis above the base. element_size: longest wanted side, m.
-    flange: (width, height) of two flanges on the sides at the base. strip: a grid line runs this far in from
-    either side, along the base. The bore is round: its nodes lie on the circle and its edges are quadratic.
     Surfaces: "bore", "base", "top", "front" (at +z), "back"; "feet", the undersides of the flanges, the
     strips, or the base; "outside", all but the bore and the base. The measures are taken to be consistent
     (parts.Housing checks them).
+
+    Parameters
+    ----------
+    bore_height
+        Of the axis above the base.
+    element_size
+        Longest wanted side, m.
+    flange
+        (width, height) of two flanges on the sides at the base.
+    strip
+        A grid line runs this far in from either side, along the base. The bore is round: its nodes lie on the
+        circle and its edges are quadratic.
     """
     r, half, base, top = 0.5 * bore_diameter, 0.5 * width, -bore_height, height - bore_height
     low = base if bore_height - top < element_size else -top  # a box about the bore, the pedestal below it
