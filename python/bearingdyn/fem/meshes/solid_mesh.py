@@ -362,8 +362,14 @@ class SolidMesh:
 def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Array, Index, Index]:
     """Middle nodes for straight-edged bricks (m, 8) or tetrahedra (m, 4).
 
-    Returns points (n', 3), the given ones first; elements (m, 20) or (m, 10); and the ends (n' − n, 2)
-    between which each new point lies.
+    Returns
+    -------
+    points : (n', 3) array
+        The given points, then the new ones.
+    elements : (m, 20) or (m, 10) array
+        Nodes of each element.
+    ends : (n' − n, 2) array
+        The two points between which each new one lies.
     """
     p, c = np.asarray(points, dtype=np.float64), np.asarray(corners, dtype=np.intp)
     edges = np.sort(c[:, np.array(BRICK_EDGES if c.shape[1] == 8 else TET_EDGES)].reshape(-1, 2), axis=1)
