@@ -58,4 +58,4 @@ def node(line: str) -> tuple[int, tuple[float, float, float]]:
         x, y, z = (float(v or "0") for v in (*place, "", "", "")[:3])
         return int(number), (x, y, z)
     except ValueError as error:
-        raise ValueError(f"{line!r} does not hold a node: {error}") from error
+        raise ValueError(f"{line!r} is no node: {error}") from error
