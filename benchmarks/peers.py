@@ -37,7 +37,7 @@ import numpy as np
 
 import bearingdyn as bd
 from bearingdyn import core
-from bearingdyn.fem import beam
+from bearingdyn.fem import assemble_beam
 
 DT, STEPS, REPEATS = 2.5e-6, 2000, 5
 SPEED = 5000 * math.pi / 30
@@ -251,7 +251,7 @@ def by_exudyn() -> Outcome:
     import exudyn.itemInterface as eii
 
     z = np.linspace(0.0, LENGTH, ELEMENTS + 1)
-    M, K, G = (A.toarray() for A in beam.assemble(z, [bd.Section(LENGTH, DIAMETER)] * ELEMENTS, bd.STEEL))
+    M, G, K = (A.toarray() for A in assemble_beam(z, [bd.Section(LENGTH, DIAMETER)] * ELEMENTS, bd.STEEL))
     at = 6 * MIDDLE + np.arange(6)
     mass, Id, Ip = DISC
     M[at, at] += [mass, mass, mass, Id, Id, Ip]

@@ -33,8 +33,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples"))
 import motor
 
 import bearingdyn as bd
-from bearingdyn.fem import FEMatrices, assemble_solid, block_with_bore, read_matrices
-from bearingdyn.fem.eigen import lowest_modes
+from bearingdyn.fem import FEMatrices, assemble_solid, block_with_bore, lowest_modes, read_matrices
 from bearingdyn.parts import Imported, NodeSet, at_radius
 
 ABSENT = "ccx is not on the path (apt-get install calculix-ccx)"

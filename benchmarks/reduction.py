@@ -23,9 +23,7 @@ import numpy as np
 import scipy
 
 from bearingdyn import cms
-from bearingdyn.fem.eigen import rigid_motion
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_meshers import box_mesh
+from bearingdyn.fem import assemble_solid, box_mesh, rigid_motion
 from bearingdyn.material import STEEL
 
 SIZES = (10, 30, 100)  # thousands of degrees of freedom
@@ -47,7 +45,7 @@ def block(thousands: int) -> cms.FullModel:
         reference = np.array([0.05, 0.05, place])
         dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
         faces[name] = cms.RigidInterface(dofs, rigid_motion(p[nodes], reference), reference)
-    return cms.FullModel(STEEL.density * solid.mass, solid.stiffness(STEEL), faces)
+    return cms.FullModel(M=STEEL.density * solid.mass, K=solid.stiffness(STEEL), interfaces=faces)
 
 
 def measure(thousands: int) -> dict[str, Any]:

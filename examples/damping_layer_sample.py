@@ -33,8 +33,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import motor
 
-from bearingdyn.fem.eigen import factorise
-from bearingdyn.fem.revolution import assemble as assemble_order
+from bearingdyn.fem import assemble_harmonic, factorise
 from bearingdyn.system import assemble
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -189,7 +188,7 @@ def bending_receptance(design: Design, frequency: np.ndarray) -> np.ndarray:
     lossy = 1 + 2j * ZETA_STEEL
     total = np.zeros((frequency.size, 2, 2), dtype=np.complex128)
     for order in ORDERS:
-        h = assemble_order(body.mesh, order)
+        h = assemble_harmonic(body.mesh, order)
         elastic = h.stiffness([steel.K, 0.0, steel.K], [steel.G, 0.0, steel.G])
         volume = h.stiffness([0.0, design.rubber.K, 0.0], [0.0, 0.0, 0.0])
         shear = h.stiffness([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])

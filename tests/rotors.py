@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.material import Elastic, Maxwell
 from bearingdyn.parts import Disc, Layer, RigidBody, Shaft
 

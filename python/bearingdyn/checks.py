@@ -41,14 +41,6 @@ def nonnegative(field: str, value: object, remedy: str = "it must be zero or pos
     return x
 
 
-def whole(field: str, value: object, least: int) -> int:
-    """The value as a whole number of at least `least`; ValueError if it is anything else."""
-    remedy = f"it must be a whole number of at least {least}"
-    x = number(field, value, remedy)
-    require(x >= least and x % 1 == 0, field, value, remedy)
-    return int(value)  # type: ignore[call-overload, no-any-return]
-
-
 def numbers(field: str, value: ArrayLike, remedy: str, least: float = -math.inf) -> Array:
     """One or more finite numbers ≥ `least` as an array (n,); ValueError if they are anything else."""
     try:
@@ -85,3 +77,17 @@ def name_list(field: str, value: object, what: str = "channels") -> list[str]:
     remedy = f"it must be a list of {what}, each a text"
     require(isinstance(wrong, str), field, value, remedy)
     return [str(name) for name in found]
+
+
+def whole(field: str, value: object, least: int, most: int | None = None, remedy: str = "") -> int:
+    """The value as a whole number in least … most; ValueError if it is anything else."""
+    limit = f"of at least {least}" if most is None else f"in {least}...{most}"
+    remedy = remedy or f"it must be a whole number {limit}"
+    x = number(field, value, remedy)
+    require(x % 1 == 0 and x >= least and (most is None or x <= most), field, value, remedy)
+    return int(value)  # type: ignore[call-overload, no-any-return]
+
+
+def one_of(field: str, value: object, choices: Sequence[object]) -> None:
+    """Raise ValueError unless the value is one of the choices."""
+    require(value in choices, field, value, f"it must be {' or '.join(repr(c) for c in choices)}")

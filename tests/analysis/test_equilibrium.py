@@ -11,7 +11,7 @@ from bearingdyn import core
 from bearingdyn.analysis import Equilibrium, equilibrium
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.material import Elastic, Maxwell
 from bearingdyn.parts import Layer, RigidBody, Shaft
 from bearingdyn.system import assemble

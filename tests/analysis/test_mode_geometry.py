@@ -18,9 +18,8 @@ from bearingdyn import plot
 from bearingdyn.analysis import equilibrium, mode_shapes, mode_surfaces, modes
 from bearingdyn.application import Application
 from bearingdyn.application.rigid import rigid_shapes
-from bearingdyn.fem.beam import Section
-from bearingdyn.fem.eigen import rigid_motion
-from bearingdyn.fem.solid_mesh import SolidMesh, second_order
+from bearingdyn.fem import Section, SolidMesh, rigid_motion
+from bearingdyn.fem.meshes.solid_mesh import second_order
 from bearingdyn.material import STEEL
 from bearingdyn.parts import (
     Disc,

@@ -13,7 +13,7 @@ mpl.use("Agg")
 from bearingdyn import plot
 from bearingdyn.analysis import campbell, equilibrium, frequency_response, mode_shapes, modes
 from bearingdyn.application import Application
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.parts import Feet, Housing, RigidBody, Shaft
 from rotors import friswell, motor, oscillator
 

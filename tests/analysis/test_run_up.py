@@ -15,7 +15,7 @@ from bearingdyn.analysis import transient
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.bearing.excitation import Pit, Waviness
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.material import Elastic
 from bearingdyn.parts import Disc, Shaft
 from bearingdyn.system import System, assemble

@@ -11,7 +11,7 @@ import pytest
 from bearingdyn.analysis import equilibrium, modes, radiated_power, transient, unbalance_response
 from bearingdyn.application import Application
 from bearingdyn.cms import Superelement, Surface
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.parts import Disc, Feet, Housing, RigidBody, Shaft
 from rotors import motor
 

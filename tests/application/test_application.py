@@ -7,7 +7,7 @@ import pytest
 
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.material import STEEL, Maxwell
 from bearingdyn.material.shift import WLF
 from bearingdyn.parts import FlexibleRing, Layer, RigidBody, Shaft
@@ -173,7 +173,14 @@ def test_a_point_without_rotation_takes_no_moment():
         def superelement(self) -> Superelement:
             zero = np.zeros((6, 6))
             point = np.hstack([np.eye(3), np.zeros((3, 3))])
-            return Superelement(np.eye(6), zero, zero, zero, {"centre": np.arange(6)}, {"top": point})
+            return Superelement(
+                M=np.eye(6),
+                C=zero,
+                G=zero,
+                K=zero,
+                interfaces={"centre": np.arange(6)},
+                outputs={"top": point},
+            )
 
     app = Application()
     app.add("block", Block())

@@ -12,7 +12,7 @@ from bearingdyn.analysis import equilibrium, frequency_response, modes, transien
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.cms import Superelement
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.material import STEEL, Maxwell
 from bearingdyn.material.shift import WLF, RhoT
 from bearingdyn.parts import Housing, Layer, RigidBody, Ring, Shaft, damping_sample

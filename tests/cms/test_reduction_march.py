@@ -59,9 +59,9 @@ def test_harmonic_load_brings_the_complex_stiffness_and_mass():
     w = 2 * math.pi * f
     material = Maxwell(1e6, [3e6], [1e-3], eta0=50.0, K=1e9, density=1e3)
     model = FullModel(
-        m * np.eye(6),
-        np.zeros((6, 6)),
-        {"a": RigidInterface(np.arange(6), np.eye(6), np.zeros(3))},
+        M=m * np.eye(6),
+        K=np.zeros((6, 6)),
+        interfaces={"a": RigidInterface(np.arange(6), np.eye(6), np.zeros(3))},
         viscoelastic=(Viscoelastic(material, H * np.eye(6)),),
         grounded=True,
     )

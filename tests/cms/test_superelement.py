@@ -19,8 +19,7 @@ from bearingdyn.cms import (
     modal_damping,
     reduce_free_body,
 )
-from bearingdyn.fem.beam import Section, assemble
-from bearingdyn.fem.eigen import lowest_modes, rigid_transfer
+from bearingdyn.fem import Section, assemble_beam, lowest_modes, rigid_transfer
 from bearingdyn.material import STEEL
 from bearingdyn.parts import Housing
 
@@ -47,7 +46,7 @@ def frequencies(K, M):
 
 def beam(n=40, L=0.4, d=0.03):
     z = np.linspace(0.0, L, n + 1)
-    M, K, G = assemble(z, [Section(L, d)] * n, STEEL)
+    M, G, K = assemble_beam(z, [Section(L, d)] * n, STEEL)
     faces = {
         name: RigidInterface(6 * i + np.arange(6), np.eye(6), np.array([0.0, 0.0, z[i]]))
         for name, i in (("a", 5), ("b", n - 5))
@@ -154,13 +153,12 @@ def test_modal_damping_gives_every_mode_its_ratio(zeta):
 def test_viscoelastic_stiffness_adds_the_deviatoric_part():
     H = np.diag([2.0, 1, 1, 1, 1, 1])
     s = Superelement(
-        np.eye(6),
-        np.zeros((6, 6)),
-        3.0 * np.eye(6),
-        np.zeros((6, 6)),
-        {"a": np.arange(6)},
-        {},
-        (Viscoelastic(Rubber(), H),),
+        M=np.eye(6),
+        C=np.zeros((6, 6)),
+        G=np.zeros((6, 6)),
+        K=3.0 * np.eye(6),
+        interfaces={"a": np.arange(6)},
+        viscoelastic=(Viscoelastic(Rubber(), H),),
     )
     # paper (20): K + 2 G* H
     assert s.stiffness(50.0)[0, 0] == pytest.approx(3.0 + 2 * (1e6 + 5e3j) * 2.0, rel=1e-15)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import scipy.linalg
 
-from bearingdyn.cms import Superelement
-from bearingdyn.fem.beam import Section, assemble, element_matrices
-from bearingdyn.fem.eigen import rigid_body_inertia, rigid_transfer
+from bearingdyn.cms import Superelement, basis_of
+from bearingdyn.fem import Section, assemble_beam, rigid_body_inertia, rigid_transfer
+from bearingdyn.fem.beam import element_matrices
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts import Disc, RigidBody, Shaft
 
@@ -45,7 +46,7 @@ def sprung(s: Superelement, springs):
 )
 def test_free_shaft_has_the_bending_modes_of_the_three_dimensional_bar(mode, exact_3d, tolerance):
     n = 100
-    M, K, _ = assemble(np.linspace(0.0, 0.2, n + 1), [Section(0.2, 0.02)] * n, STEEL)
+    M, _, K = assemble_beam(np.linspace(0.0, 0.2, n + 1), [Section(0.2, 0.02)] * n, STEEL)
     bending = [i for i in range(6 * (n + 1)) if i % 6 in (0, 4)]
     f = frequencies(K.toarray()[np.ix_(bending, bending)], M.toarray()[np.ix_(bending, bending)])[2:]
     assert f[mode] == pytest.approx(exact_3d, rel=tolerance)
@@ -57,7 +58,7 @@ def test_free_shaft_stretch_and_torsion_converge_with_the_fourth_power_of_the_le
     for axis, f_exact in exact.items():
         error = []
         for n in (5, 10):
-            M, K, _ = assemble(np.linspace(0.0, 0.2, n + 1), [Section(0.2, 0.02)] * n, STEEL)
+            M, _, K = assemble_beam(np.linspace(0.0, 0.2, n + 1), [Section(0.2, 0.02)] * n, STEEL)
             at = np.arange(axis, 6 * (n + 1), 6)
             f = frequencies(K.toarray()[np.ix_(at, at)], M.toarray()[np.ix_(at, at)])[1]
             error.append(abs(f / f_exact - 1.0))
@@ -68,7 +69,7 @@ def test_free_shaft_stretch_and_torsion_converge_with_the_fourth_power_of_the_le
 
 def test_cantilever_deflects_by_bending_and_shear():
     section, L, F = Section(0.3, 0.04, 0.02), 0.3, 1000.0
-    _, K, _ = assemble(np.array([0.0, 0.1, 0.3]), [section] * 2, STEEL)
+    _, _, K = assemble_beam(np.array([0.0, 0.1, 0.3]), [section] * 2, STEEL)
     tip = np.zeros(18)
     tip[12], tip[13], tip[14] = F, F, F
     u = np.zeros(18)
@@ -93,7 +94,7 @@ def test_shear_coefficient_has_the_solid_and_the_thin_limit(d_inner, expected):
 
 def test_element_carries_its_rigid_motions_mass_and_inertia():
     section, L = Section(0.05, 0.03, 0.01), 0.05
-    M, K, G = element_matrices(section, L, STEEL)
+    M, G, K = element_matrices(section, L, STEEL)
     R = rigid_transfer([[0, 0, -L / 2], [0, 0, L / 2]])
     m = STEEL.density * section.area * L
     It = m * ((0.03**2 + 0.01**2) / 16 + L**2 / 12)
@@ -304,3 +305,17 @@ def test_bearing_ring_as_a_rigid_body():
     np.testing.assert_allclose(np.diag(s.M), [m, m, m, It, It, Ip], rtol=1e-14)  # closed form
     assert s.G[3, 4] == pytest.approx(Ip, rel=1e-14)
     assert s.G[4, 3] == -s.G[3, 4]
+
+
+def test_the_default_elements_keep_the_promised_error() -> None:
+    """Against elements a fifth as long: below 1e-3 at f_max and 2e-4 at half of it, for a slender shaft."""
+    shaft = Shaft([Section(0.25, 0.012)], seats={"a": 0.0}, f_max=15e3)
+    fifth = 0.2 * float(np.diff(shaft.nodes()[0]).max())
+    coarse, fine = (
+        basis_of(s.full_model(), f_max=15e3, inertia=0).frequency
+        for s in (shaft, replace(shaft, element_length=fifth))
+    )
+    assert fine.size == coarse.size > 8
+    error = np.abs(coarse / fine - 1.0)
+    assert error.max() < 1e-3
+    assert error[fine < 7.5e3].max() < 2e-4

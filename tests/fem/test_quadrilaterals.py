@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bearingdyn.fem.revolution import assemble
-from bearingdyn.fem.revolution_mesh import Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.fem import Rectangle, RevolutionMesh, assemble_harmonic, revolution_mesh
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts import (
     Cylinder,
@@ -74,7 +73,7 @@ def test_patch_of_uniform_strain_is_in_equilibrium_on_distorted_elements(
         (2, r, -r, zero, 0.0, 2.0),
     ]
     for n, U, V, W, trace, ee in cases:
-        K = assemble(mesh, n).stiffness([bulk], [1.0])
+        K = assemble_harmonic(mesh, n).stiffness([bulk], [1.0])
         u = np.stack([U, V, W], axis=1).ravel()
         force = (K @ u).reshape(-1, 3)
         # 1e-11: round-off; the 3×3 rule integrates these fields exactly, on parabolic sides too
@@ -88,7 +87,7 @@ def test_dilatation_linear_in_r_and_z_is_kept_whole_by_the_pressure_of_distorted
 
     Pressures linear in ξ and η would lose part of it, and their convergence.
     """
-    h = assemble(DISTORTED, 0, (0, 2))
+    h = assemble_harmonic(DISTORTED, 0, (0, 2))
     K = h.stiffness([1.0], [0.0])
     r, z = DISTORTED.r, DISTORTED.z
     for U, W, exact in (
@@ -102,7 +101,7 @@ def test_dilatation_linear_in_r_and_z_is_kept_whole_by_the_pressure_of_distorted
 @pytest.mark.parametrize("mesh", [DISTORTED, curved(DISTORTED)], ids=["straight", "curved"])
 def test_rigid_motion_costs_nothing_on_distorted_elements(mesh: RevolutionMesh) -> None:
     for n, components in ((0, (0, 2)), (0, (1,)), (1, (0, 1, 2))):
-        h = assemble(mesh, n, components)
+        h = assemble_harmonic(mesh, n, components)
         R = h.rigid_shapes(np.arange(mesh.r.size), 0.7)
         K, M = h.stiffness([3.0], [1.0]), h.mass_matrix([2.0])
         # 1e-12: round-off of a sum over 1e3 entries
@@ -225,7 +224,7 @@ def test_a_point_is_found_in_a_curved_element() -> None:
     rng = np.random.default_rng(0)
     for _ in range(20):
         r, z = rng.uniform(0.5, 2.0), rng.uniform(0.0, 1.0)
-        h = assemble(mesh, 0, (0, 2))
+        h = assemble_harmonic(mesh, 0, (0, 2))
         u = np.stack([mesh.r, mesh.z], axis=1).reshape(-1, 1)  # each node's own place
         rows = h.point_rows(r, z, 0.0, u)
         # to Newton's last step
@@ -300,3 +299,19 @@ def test_rectangles_are_the_mesher_s_own_quadrilaterals() -> None:
     for mesh in (layer, revolution_mesh([Rectangle((0.0, 1.0), (0, 1)), Rectangle((1.0, 2.0), (0, 3))])):
         again = quadrilaterals(np.stack([mesh.r, mesh.z], -1), mesh.elements[:, NINE], mesh.region)
         np.testing.assert_array_equal(again.elements, mesh.elements)
+
+
+def test_the_centre_of_a_curved_cell_is_where_its_eight_nodes_put_it() -> None:
+    """The serendipity map at ξ = η = 0, by scikit-fem's functions."""
+    skfem = pytest.importorskip("skfem")
+    corners = np.array([[1.0, 0.0], [2.0, 0.1], [2.1, 1.0], [0.9, 1.1]])
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
+    middles += np.array([[0.02, -0.06], [0.09, 0.01], [0.03, 0.08], [0.05, -0.02]])
+    eight = np.vstack([corners, middles])
+    unit = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5]])
+    element = skfem.ElementQuadS2()
+    order = [int(np.argmin(np.abs(element.doflocs - place).sum(axis=1))) for place in unit]
+    N = np.array([element.lbasis(np.array([[0.5], [0.5]]), i)[0][0] for i in order])
+    mesh = quadrilaterals(eight, [np.arange(8)])
+    centre = mesh.elements[0, 4]
+    np.testing.assert_allclose([mesh.r[centre], mesh.z[centre]], N @ eight, rtol=1e-14)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from bearingdyn.fem.revolution import ALL, AXIAL, TORSION, assemble
-from bearingdyn.fem.revolution_mesh import Rectangle, revolution_mesh
+from bearingdyn.fem import ALL_COMPONENTS, AXIAL, TORSION, Rectangle, assemble_harmonic, revolution_mesh
 from bearingdyn.material import STEEL, Elastic, Maxwell
 from bearingdyn.parts import Cylinder, EndFace, Layer, Region, Revolved, Ring, damping_sample
 
@@ -31,7 +30,7 @@ def test_torsion_of_a_smooth_field_converges_at_fourth_order() -> None:
     errors = []
     for count in (2, 4, 8, 16):
         mesh = revolution_mesh([Rectangle((1.0, 2.0), (0.0, 1.0))], r_cuts=np.linspace(1, 2, count + 1))
-        h = assemble(mesh, 0, TORSION)
+        h = assemble_harmonic(mesh, 0, TORSION)
         K = h.stiffness([1.0], [1.0]).toarray()
         a, b = mesh.nodes_on((1, 1), (0, 1)), mesh.nodes_on((2, 2), (0, 1))
         u = np.zeros(h.n)
@@ -43,10 +42,10 @@ def test_torsion_of_a_smooth_field_converges_at_fourth_order() -> None:
     assert np.log2(np.array(errors[1:-1]) / errors[2:]) == pytest.approx(4.0, abs=0.2)
 
 
-@pytest.mark.parametrize("components", [AXIAL, TORSION, ALL])
+@pytest.mark.parametrize("components", [AXIAL, TORSION, ALL_COMPONENTS])
 def test_rigid_motion_costs_nothing_and_carries_the_inertia(components: tuple[int, ...]) -> None:
     mesh = revolution_mesh([Rectangle((0.0, 1.0), (0, 1)), Rectangle((1.0, 2.0), (0, 3), graded=True)])
-    h = assemble(mesh, 1 if components == ALL else 0, components)
+    h = assemble_harmonic(mesh, 1 if components == ALL_COMPONENTS else 0, components)
     everywhere = np.arange(mesh.r.size)
     R = h.rigid_shapes(everywhere, 0.7)
     R[np.setdiff1d(np.arange(h.n), h.free)] = 0.0
@@ -64,7 +63,7 @@ def test_rigid_motion_costs_nothing_and_carries_the_inertia(components: tuple[in
         assert m[0, 0] == pytest.approx(polar, rel=1e-13)
     else:
         assert m[0, 0] == pytest.approx(mass, rel=1e-13)
-    if components == ALL:
+    if components == ALL_COMPONENTS:
         assert m[0, 1] == pytest.approx(first, rel=1e-12)
         along = math.pi * (1 / 3 + 2.0 * 3 * 9) - 2 * 0.7 * (first + 0.7 * mass) + 0.49 * mass
         assert m[1, 1] == pytest.approx(polar / 2 + along, rel=1e-12)
@@ -85,7 +84,7 @@ def test_patch_of_uniform_strain_is_in_equilibrium(bulk: float) -> None:
         (2, r, -r, zero, 0.0, 2.0),  # ε_xx = −ε_yy = 1
     ]
     for n, U, V, W, trace, ee in cases:
-        h = assemble(mesh, n)
+        h = assemble_harmonic(mesh, n)
         K = h.stiffness([bulk, bulk], [1.0, 1.0])
         u = np.stack([U, V, W], axis=1).ravel()
         force = (K @ u).reshape(-1, 3)
@@ -153,7 +152,7 @@ def test_free_steel_ring_has_its_reference_modes() -> None:
     np.testing.assert_allclose(ring.modes(2, 2).frequency, [8857, 14525], rtol=2e-3)
     np.testing.assert_allclose(ring.modes(3, 2).frequency, [24248, 37807], rtol=2e-3)
     modes = ring.modes(2, 1)
-    h = assemble(ring.body.mesh, 2)
+    h = assemble_harmonic(ring.body.mesh, 2)
     u = modes.shapes[0].ravel()
     assert u @ (h.mass_matrix([STEEL.density]) @ u) == pytest.approx(1.0, rel=1e-9)  # unit modal mass
 

@@ -12,17 +12,23 @@ import scipy.sparse
 import scipy.sparse.linalg
 from scipy.optimize import brentq
 
-from bearingdyn.fem.eigen import (
+from bearingdyn.fem import (
+    FEMatrices,
+    SolidMesh,
+    assemble_solid,
+    block_with_bore,
+    box_mesh,
+    check_matrices,
     lowest_modes,
+    read_matrix_market,
+    read_npz,
     rigid_body_inertia,
     rigid_body_residual,
     rigid_motion,
     rigid_transfer,
+    write_npz,
 )
-from bearingdyn.fem.exchange import FEMatrices, check_matrices, read_matrix_market, read_npz, write_npz
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_mesh import SolidMesh, second_order
-from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh
+from bearingdyn.fem.meshes.solid_mesh import second_order
 from bearingdyn.material import STEEL
 from bearingdyn.parts import Feet, Housing
 
@@ -312,7 +318,7 @@ def test_feet_refuse(width, height, message):
 @pytest.fixture(scope="module")
 def model():
     solid = assemble_solid(box_mesh(*[np.linspace(0, 0.1, 3)] * 3))
-    return FEMatrices(solid.stiffness(STEEL), STEEL.density * solid.mass, solid.points)
+    return FEMatrices(M=STEEL.density * solid.mass, K=solid.stiffness(STEEL), points=solid.points)
 
 
 def test_matrices_survive_npz_and_matrix_market(model, tmp_path):

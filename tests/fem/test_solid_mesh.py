@@ -7,10 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_element import KINDS
-from bearingdyn.fem.solid_mesh import SolidMesh
-from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, crowded, o_ring_mesh, ring_mesh
+from bearingdyn.fem import (
+    SolidMesh,
+    assemble_solid,
+    block_with_bore,
+    box_mesh,
+    crowded,
+    o_ring_mesh,
+    ring_mesh,
+)
+from bearingdyn.fem.meshes.solid_element import KINDS
 from bearingdyn.material import STEEL
 
 pytest.importorskip("skfem")

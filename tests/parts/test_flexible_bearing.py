@@ -182,3 +182,17 @@ def test_orders_converge_where_they_pass_the_number_of_balls(capsys: pytest.Capt
     assert abs(peak[-1] / peak[5] - 1) < 2e-4
     # the distribution is there from order 4
     assert abs(peak[3] / peak[-1] - 1) < 5e-3
+
+
+@pytest.mark.parametrize("body", ["inner", "outer", "ball"])
+def test_a_wavy_bearing_turns_alike_in_a_stiff_ring_and_in_a_rigid_one(body: str) -> None:
+    """The inner race has turned by the shaft's angle, the balls by the cage's, and the outer race stands."""
+    wave = bd.Waviness(body, order=3 if body != "ball" else 2, amplitude=2e-6, phase=0.4)
+    wavy = replace(B6305, waviness=(wave,))
+    stiff = FlexibleBearing(wavy, replace(RING, material=STIFF))
+    q = B6305.displacement(LOAD)
+    forces = [wavy.force(q, angle) for angle in (0.0, 0.35)]
+    # the angle is felt, by far more than is allowed below
+    assert np.abs(forces[1] - forces[0])[:3].max() > 1e-3 * np.abs(LOAD).max()
+    for angle, force in zip((0.0, 0.35), forces, strict=True):
+        np.testing.assert_allclose(stiff.force(q, angle), force, rtol=0, atol=1e-6 * np.abs(LOAD).max())

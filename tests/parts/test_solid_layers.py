@@ -11,10 +11,16 @@ from scipy.special import ellipk
 
 from bearingdyn.analysis import modes
 from bearingdyn.application import Application
-from bearingdyn.fem.eigen import factorise, lowest_modes
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_mesh import SolidMesh, second_order
-from bearingdyn.fem.solid_meshers import box_mesh, o_ring_mesh, ring_mesh
+from bearingdyn.fem import (
+    SolidMesh,
+    assemble_solid,
+    box_mesh,
+    factorise,
+    lowest_modes,
+    o_ring_mesh,
+    ring_mesh,
+)
+from bearingdyn.fem.meshes.solid_mesh import second_order
 from bearingdyn.material import STEEL, Elastic, Maxwell
 from bearingdyn.parts import Layer, RigidBody, RigidSurface, Solid, damping_sample
 from verified.row import as_printed, unit_rubber

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
-from bearingdyn.cms import reduce, reduction_error
-from bearingdyn.fem.eigen import rigid_motion, rigid_transfer
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_mesh import SolidMesh
-from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, crowded, ring_mesh
+from bearingdyn.cms import basis_of, reduce, reduction_error
+from bearingdyn.fem import (
+    SolidMesh,
+    assemble_solid,
+    block_with_bore,
+    box_mesh,
+    crowded,
+    rigid_motion,
+    rigid_transfer,
+    ring_mesh,
+)
 from bearingdyn.material import STEEL, Maxwell
-from bearingdyn.parts import RigidSurface, Solid
+from bearingdyn.parts import Housing, RigidSurface, Solid
 
 pytest.importorskip("skfem")
 
@@ -211,3 +217,12 @@ def test_solid_refuses_what_is_found_later():
     with pytest.raises(ValueError, match="moduli must be given"):
         strip_of_rubber(materials={"body": STEEL, "rubber": Lossy(0.0)}).superelement()
     assert strip_of_rubber(materials={"body": STEEL, "rubber": Lossy(1e6)}).superelement().n >= 12
+
+
+def test_the_default_elements_of_a_housing_give_the_bore_its_stiffness() -> None:
+    """Radially, against twice as many elements: 0.14 % were measured, 0.5 % with half as many."""
+    housing = Housing(0.1, 0.1, 0.06, 0.05)
+    volume = (0.1 * 0.1 - 0.25 * math.pi * 0.05**2) * 0.06
+    finer = replace(housing, element_size=(volume / 800) ** (1 / 3))
+    default, fine = (basis_of(h.body.full_model(), n_modes=0, inertia=0).K[0, 0] for h in (housing, finer))
+    assert default == pytest.approx(fine, rel=3e-3)

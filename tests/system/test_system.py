@@ -12,7 +12,7 @@ import scipy.linalg
 from bearingdyn.analysis import equilibrium, frequency_response, modes, transient
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.material import Maxwell
 from bearingdyn.parts import Layer, RigidBody, Ring, Shaft
 from bearingdyn.system import System, assemble
@@ -356,7 +356,13 @@ class TestAssembly:
         class Massless:
             def superelement(self) -> Superelement:
                 zero = np.zeros((6, 6))
-                return Superelement(np.diag([1.0, 1, 1, 0, 1, 1]), zero, zero, zero, {"hub": np.arange(6)})
+                return Superelement(
+                    M=np.diag([1.0, 1, 1, 0, 1, 1]),
+                    C=zero,
+                    G=zero,
+                    K=zero,
+                    interfaces={"hub": np.arange(6)},
+                )
 
         app = Application()
         app.add("thing", Massless())

@@ -8,7 +8,7 @@ import numpy as np
 
 from bearingdyn.analysis import campbell, equilibrium, frequency_response, modes
 from bearingdyn.application import Application
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts import Disc, RigidBody, Shaft
 from bearingdyn.system import System

@@ -7,8 +7,7 @@ import dataclasses
 import numpy as np
 import scipy.linalg
 
-from bearingdyn.fem import assemble_solid, block_with_bore
-from bearingdyn.fem.eigen import lowest_modes
+from bearingdyn.fem import assemble_solid, block_with_bore, lowest_modes
 from bearingdyn.parts import Housing
 from verified.row import Row
 

@@ -10,8 +10,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse.linalg
 
-from bearingdyn.fem import assemble_solid, box_mesh, ring_mesh
-from bearingdyn.fem.eigen import lowest_modes
+from bearingdyn.fem import assemble_solid, box_mesh, lowest_modes, ring_mesh
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts import RigidSurface, Solid
 from verified.row import INDEPENDENT, MM, Row, as_printed, rows, unit_rubber

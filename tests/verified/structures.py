@@ -8,7 +8,7 @@ import numpy as np
 
 from bearingdyn.analysis import modes
 from bearingdyn.application import Application
-from bearingdyn.fem.beam import Section
+from bearingdyn.fem import Section
 from bearingdyn.material import STEEL, Elastic, Maxwell
 from bearingdyn.parts import Disc, Layer, Region, Revolved, RigidBody, Ring, Shaft, damping_sample
 from verified.row import INDEPENDENT, MM, RPM, Row, as_printed, rows, unit_rubber

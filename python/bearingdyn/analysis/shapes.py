@@ -12,7 +12,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.application import COMPONENTS, Application
 from bearingdyn.application.rigid import arm
 from bearingdyn.checks import name_list
-from bearingdyn.parts.outline import Outlined
+from bearingdyn.parts import Outlined
 from bearingdyn.system import System, assemble
 from bearingdyn.types import Array, Complex, Index
 

@@ -26,6 +26,7 @@ from bearingdyn.bearing.quasistatic import (
     without_spin,
 )
 from bearingdyn.bearing.running import Balls, Running
+from bearingdyn.bearing.series import RacewaySeries
 from bearingdyn.bearing.surface import WavinessSpectrum, dent, diameter_scatter, spall
 
 __all__ = [
@@ -49,6 +50,7 @@ __all__ = [
     "Passage",
     "Pit",
     "PointContact",
+    "RacewaySeries",
     "Running",
     "Seat",
     "TabulatedDamping",

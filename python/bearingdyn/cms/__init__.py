@@ -12,10 +12,12 @@ from bearingdyn.cms.dynamics import Dynamics, Transfer
 from bearingdyn.cms.estimate import ReductionError, reduction_error
 from bearingdyn.cms.full import FullModel, RigidInterface
 from bearingdyn.cms.history import March, march
+from bearingdyn.cms.options import F_MAX, check_damping, check_f_max, check_held, check_moduli, check_rounds
 from bearingdyn.cms.reduction import project, reduce, reduce_free_body
 from bearingdyn.cms.superelement import ComplexModulus, Raceway, Superelement, Surface, Viscoelastic
 
 __all__ = [
+    "F_MAX",
     "Basis",
     "ComplexModulus",
     "Dynamics",
@@ -29,6 +31,11 @@ __all__ = [
     "Transfer",
     "Viscoelastic",
     "basis_of",
+    "check_damping",
+    "check_f_max",
+    "check_held",
+    "check_moduli",
+    "check_rounds",
     "coupled_blocks",
     "craig_bampton",
     "inertia_shapes",

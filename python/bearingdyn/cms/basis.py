@@ -11,9 +11,11 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import whole
 from bearingdyn.cms.full import FullModel
+from bearingdyn.cms.options import check_f_max, check_moduli, check_rounds
 from bearingdyn.cms.superelement import ComplexModulus
-from bearingdyn.fem.eigen import factorise, lowest_modes
+from bearingdyn.fem import factorise, lowest_modes
 from bearingdyn.material import Maxwell
 from bearingdyn.types import Array, Index
 
@@ -24,9 +26,15 @@ DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, belo
 class Basis:
     """Shapes of a reduction, u = Psi q.
 
-    Psi: (n, r + m), the r constraint modes and then m fixed-interface modes of unit modal mass.
-    K: (r, r) stiffness of the constraint modes, N/m; it is the exact static stiffness seen at the interfaces.
-    frequency: (m,) frequencies of the fixed-interface modes, Hz.
+    Parameters
+    ----------
+    Psi
+        (n, r + m), the r constraint modes and then m fixed-interface modes of unit modal mass.
+    K
+        (r, r) stiffness of the constraint modes, N/m; it is the exact static stiffness seen at the
+        interfaces.
+    frequency
+        (m,) frequencies of the fixed-interface modes, Hz.
     """
 
     Psi: Array
@@ -107,11 +115,11 @@ def _free_to_move(held: Index, error: Exception) -> ValueError:
 
 def _check_truncation(f_max: float | None, n_modes: int | None) -> None:
     if (f_max is None) == (n_modes is None):
-        raise ValueError(f"f_max={f_max} and n_modes={n_modes}: give exactly one of the two")
-    if f_max is not None and not f_max >= 0.0:
-        raise ValueError(f"f_max is {f_max}; it must be a frequency in Hz, not negative")
-    if n_modes is not None and not n_modes >= 0:
-        raise ValueError(f"n_modes is {n_modes}; it must not be negative")
+        raise ValueError(f"f_max is {f_max} and n_modes is {n_modes}; give exactly one of the two")
+    if f_max is not None:
+        check_f_max(f_max, may_be_infinite=True)
+    if n_modes is not None:
+        whole("n_modes", n_modes, 0)
 
 
 def craig_bampton(
@@ -125,15 +133,28 @@ def craig_bampton(
 ) -> Basis:
     """Constraint modes of an interface and the fixed-interface modes, for dense or sparse symmetric M and K.
 
-    M, K: (n, n) mass, kg, and stiffness, N/m, of the free model.
-    dofs: (m,) interface coordinates; T: (m, r) makes them move as u[dofs] = T q (default: each by itself).
-    f_max: keep the fixed-interface modes up to this frequency, Hz; or n_modes: keep that many. Give one of
-        the two. Three to four times the highest frequency of interest keeps
-        frequencies to about 0.1 %, twice to about 1 %.
+    Parameters
+    ----------
+    M, K
+        (n, n) mass, kg, and stiffness, N/m, of the free model.
+    dofs
+        (m,) interface coordinates.
+    T
+        (m, r) makes them move as u[dofs] = T q (default: each by itself).
+    f_max
+        Keep the fixed-interface modes up to this frequency, Hz; or n_modes: keep that many. Give one of the
+        two. Three to four times the highest frequency of interest keeps frequencies to about 0.1 %, twice to
+        about 1 %.
 
-    Raises ValueError for shapes that do not fit, for both or neither of f_max and n_modes, and for an
-    interface that leaves the rest of the model free to move.
-    Reference: Craig & Bampton (1968); paper (21).
+    Raises
+    ------
+    ValueError
+        For shapes that do not fit, for both or neither of f_max and n_modes, and for an interface that leaves
+        the rest of the model free to move.
+
+    References
+    ----------
+    Craig & Bampton (1968); paper (21).
     """
     _check_truncation(f_max, n_modes)
     n = np.shape(K)[0]
@@ -159,20 +180,25 @@ def modulus_levels(
 ) -> list[list[float]]:
     """Real shear moduli, Pa, at which shapes are taken: a list over the viscoelastic materials per level.
 
-    moduli: the same levels for every material; (G,) is the paper's basis at one modulus.
     By default two levels for each material: its relaxed modulus, for the static state (or, if that is zero,
     |G*| at the slowest branch), and |G*| at ω = 1/τ of its fastest branch, the end of the band in which
     the branches describe it. Where these are more than a hundredfold apart, a third level, their geometric
     mean, keeps the stiffness between them within some 0.3 %; two would leave 5 % at a thousandfold.
 
-    Raises ValueError for a modulus that is not positive, or a material that names neither.
+    Parameters
+    ----------
+    moduli
+        The same levels for every material; (G,) is the paper's basis at one modulus.
+
+    Raises
+    ------
+    ValueError
+        For a modulus that is not positive, or a material that names neither.
     """
     if not materials:
         return [[]]
     if moduli is not None:
-        if not moduli or not all(0 < G < math.inf for G in moduli):
-            raise ValueError(f"moduli is {tuple(moduli)}; it needs one or more positive shear moduli, Pa")
-        return [[float(G)] * len(materials) for G in moduli]
+        return [[G] * len(materials) for G in check_moduli(moduli)]
     low, high = [], []
     for material in materials:
         tau = np.asarray(getattr(material, "tau", ()), dtype=np.float64)
@@ -214,10 +240,17 @@ def orthogonalise(shapes: Array, K: Any, M: Any) -> tuple[Array, Array]:
 def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Array, inner: Index, rounds: int) -> list[Array]:
     """Static answers (n, m) of the held model to the inertia of shapes (n, m), then to that of the answers.
 
-    solve: static motion (inner, m) under loads (inner, m), the interfaces held; K, M: (n, n). They take over
-    from the truncated modes at low frequency, each round by two more powers of the frequency over that of
-    the first truncated mode. Energies uᵀKu are brought to one.
-    Reference: quasi-static compensation, Shyu, Ma & Hulbert, Mech. Struct. Mach. 25 (1997) 379-401.
+    Parameters
+    ----------
+    solve
+        Static motion (inner, m) under loads (inner, m), the interfaces held.
+    K, M
+        (n, n). They stand in for the truncated modes: each round makes the error smaller by the square of the
+        frequency over that of the first truncated mode. Shapes are scaled to an energy uᵀKu of one.
+
+    References
+    ----------
+    Quasi-static compensation, Shyu, Ma & Hulbert, Mech. Struct. Mach. 25 (1997) 379-401.
     """
     found = []
     for _ in range(rounds):
@@ -242,8 +275,7 @@ def basis_of(
     _check_truncation(f_max, n_modes)
     if not model.interfaces:
         raise ValueError("interfaces is empty; a part needs at least one to be joined by")
-    if not inertia >= 0:
-        raise ValueError(f"inertia is {inertia}; it must be a number of rounds, 0 or more")
+    check_rounds(inertia)
     for name in (attach := tuple(attach)):
         if name not in model.outputs:
             raise ValueError(f"attach has {name!r}; the outputs are {sorted(model.outputs)}")

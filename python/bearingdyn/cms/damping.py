@@ -6,6 +6,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bearingdyn.cms.options import check_damping
 from bearingdyn.types import Array, Index
 
 
@@ -16,12 +17,17 @@ def modal_damping(M: ArrayLike, K: ArrayLike, zeta: float) -> Array:
     the frequency domain. M (n, n) must be positive definite. A mode counts as rigid when its ω² is below
     round-off of the largest.
 
-    Raises ValueError for zeta outside 0...1 or an M that is not positive definite.
-    Reference: Wilson & Penzien, Int. J. Num. Meth. Eng. 4 (1972) 5-10.
+    Raises
+    ------
+    ValueError
+        For zeta outside 0...1 or an M that is not positive definite.
+
+    References
+    ----------
+    Wilson & Penzien, Int. J. Num. Meth. Eng. 4 (1972) 5-10.
     """
     m, k = np.asarray(M, dtype=np.float64), np.asarray(K, dtype=np.float64)
-    if not 0.0 <= zeta < 1.0:
-        raise ValueError(f"zeta is {zeta}; a damping ratio lies in 0 <= zeta < 1")
+    check_damping(zeta, "zeta")
     if zeta == 0.0:
         return np.zeros_like(m)
     if not np.all(np.diag(m) > 0):

@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 
 from bearingdyn.cms.full import FullModel
-from bearingdyn.fem.eigen import Factors, order_of
+from bearingdyn.fem import Factors, order_of
 from bearingdyn.types import Array, Complex, Index
 
 DENSE_LIMIT = 500  # below this size LAPACK solves quicker than sparse factors
@@ -21,8 +21,14 @@ RESIDUAL = 1e-10  # of a solve, over its right-hand side, after one refinement
 class Transfer:
     """Interfaces moved by q, points loaded by f, at one frequency: p = D q - Aᵀ f and y = A q + Y f.
 
-    D: (r, r) dynamic stiffness of the interfaces, the forces p that hold them in motion; A: (points, r)
-    motion of the points; Y: (points, points) their receptance with the interfaces held still.
+    Parameters
+    ----------
+    D
+        (r, r) dynamic stiffness of the interfaces, the forces p that hold them in motion.
+    A
+        (points, r) motion of the points.
+    Y
+        (points, points) their receptance with the interfaces held still.
     """
 
     D: Complex
@@ -40,9 +46,14 @@ class Transfer:
 class Dynamics:
     """The frequency domain of a model: Z(ω) = K + Σ 2 G*(ω) H + iω C - ω² M, its matrices on one pattern.
 
-    points: rows (p, n) of the points loaded and observed.
-    damper: (B, c): the damping has B c Bᵀ besides, B (n, k) and c (k, k); low rank, so never formed.
     The order of elimination is found once.
+
+    Parameters
+    ----------
+    points
+        Rows (p, n) of the points loaded and observed.
+    damper
+        (B, c): the damping has B c Bᵀ besides, B (n, k) and c (k, k); low rank, so never formed.
     """
 
     def __init__(self, model: FullModel, points: Any, damper: tuple[Array, Array] | None = None) -> None:

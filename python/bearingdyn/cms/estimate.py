@@ -14,7 +14,7 @@ from bearingdyn.cms.basis import Basis, orthogonalise
 from bearingdyn.cms.dynamics import Dynamics, Transfer
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.reduction import project
-from bearingdyn.fem.eigen import rigid_transfer
+from bearingdyn.fem import rigid_transfer
 from bearingdyn.types import Array, Complex, Index
 
 CHANGE = 0.1  # of the estimated error by the last full solve: below it, no further one is made
@@ -24,10 +24,16 @@ CHANGE = 0.1  # of the estimated error by the last full solve: below it, no furt
 class ReductionError:
     """Error of a reduced model against the full one.
 
-    frequency: (f,), Hz.
-    by_load: (f, loads) ‖reduced − full‖/‖full‖ of the response to each unit load (or imposed motion).
-    exact: each value from a full solve; otherwise an estimate.
-    solved: frequencies, Hz, at which the full model was solved.
+    Parameters
+    ----------
+    frequency
+        (f,), Hz.
+    by_load
+        (f, loads) ‖reduced − full‖/‖full‖ of the response to each unit load (or imposed motion).
+    exact
+        Each value from a full solve; otherwise an estimate.
+    solved
+        Frequencies, Hz, at which the full model was solved.
     """
 
     frequency: Array
@@ -60,23 +66,36 @@ def reduction_error(
 ) -> ReductionError:
     """Relative error of a reduction at given frequencies.
 
-    frequency: (f,), Hz, above zero.
-    loads: None: unit motion is imposed on each interface coordinate in turn and the response is the
-        column of the interfaces' dynamic stiffness. Or names of interfaces and outputs: a unit force along
-        each of their coordinates, and the response is the motion of all interfaces and outputs.
-    fixed: interfaces held still under the loads.
-    damping, held: modal damping as in `reduce`; the full model is given the same dampers.
-    exact: solve the full model at each frequency. Otherwise it is solved at no more than `solves` of them:
-        the solutions enlarge the basis (a hierarchical estimate), and the model in the larger basis, which
-        is exact where it was solved, stands for the full one in between. Solves are added where the estimate
-        was changed most by the last ones, until it changes by less than a tenth.
-
     Rotations are measured by the arc they make at the body's radius of gyration. At a lightly damped
     resonance a shift of its frequency counts as error; it is one, for the response at that frequency.
 
-    Raises ValueError for frequencies that are not positive, and for unknown names.
-    Reference: hierarchical estimates, Bank & Smith, SIAM J. Numer. Anal. 30 (1993) 921-935; rational
-    interpolation of a transfer function, Grimme, thesis, Univ. of Illinois (1997).
+    Parameters
+    ----------
+    frequency
+        (f,), Hz, above zero.
+    loads
+        None: unit motion is imposed on each interface coordinate in turn and the response is the column of
+        the interfaces' dynamic stiffness. Or names of interfaces and outputs: a unit force along each of
+        their coordinates, and the response is the motion of all interfaces and outputs.
+    fixed
+        Interfaces held still under the loads.
+    damping, held
+        Modal damping as in `reduce`; the full model is given the same dampers.
+    exact
+        Solve the full model at each frequency. Otherwise it is solved at no more than `solves` of them: the
+        solutions enlarge the basis (a hierarchical estimate), and the model in the larger basis, which is
+        exact where it was solved, stands for the full one in between. Solves are added where the estimate was
+        changed most by the last ones, until it changes by less than a tenth.
+
+    Raises
+    ------
+    ValueError
+        For frequencies that are not positive, and for unknown names.
+
+    References
+    ----------
+    Hierarchical estimates, Bank & Smith, SIAM J. Numer. Anal. 30 (1993) 921-935; rational interpolation of a
+    transfer function, Grimme, thesis, Univ. of Illinois (1997).
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
     if f.ndim != 1 or f.size == 0 or not np.all(f > 0) or not np.isfinite(f).all():

@@ -16,9 +16,14 @@ from bearingdyn.types import Array, Index
 class RigidInterface:
     """A set of finite element coordinates that moves as one rigid body with six coordinates q: u[dofs] = T q.
 
-    dofs: (m,) indices into the model's coordinates.
-    T: (m, 6) for q = (x, y, z, θx, θy, θz) of the reference point.
-    position: (3,) reference point, m.
+    Parameters
+    ----------
+    dofs
+        (m,) indices into the model's coordinates.
+    T
+        (m, 6) for q = (x, y, z, θx, θy, θz) of the reference point.
+    position
+        (3,) reference point, m.
     """
 
     dofs: Index
@@ -36,41 +41,58 @@ class RigidInterface:
         object.__setattr__(self, "position", frozen("position", self.position, (3,)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FullModel:
     """A part's unreduced equations: M ẍ + (C + Ω G) ẋ + K x + Σ 2 G*(ω) H x = f (paper (14)).
 
-    M, K: (n, n) symmetric, dense or sparse (kept as csr); K is the stiffness of the elastic regions and the
-        bulk modulus times ∫BᵀmmᵀB dV of the viscoelastic ones, N/m. Rotations mix in rad, N m.
-    interfaces: name -> RigidInterface; no coordinate in two of them.
-    outputs: name -> rows (6, n) or (3, n), the motion of a named point; a load f there acts as rowsᵀ f.
-    viscoelastic: the materials whose deviatoric stiffness is kept apart, their H sparse (n, n).
-    C: (n, n) symmetric viscous damping, N s/m; None: none.
-    G: (n, n) skew, kg, as in Superelement; None: none.
-    E: (n, n) the part of K that belongs to elastic regions, of whose modes a damping ratio is meant; None:
-        all of K.
-    spin: (n, n) generator J of a turn about z for a body of revolution that turns with the shaft; None: it
-        does not turn.
-    grounded: K holds the body in space; otherwise it must leave it free.
+    Parameters
+    ----------
+    M
+        (n, n) symmetric mass, kg, dense or sparse, as all that follow; kept as csr. Rotations mix in rad, N
+        m.
+    C
+        (n, n) symmetric viscous damping, N s/m; None: none.
+    G
+        (n, n) skew-symmetric, kg, as in Superelement; None: none.
+    K
+        (n, n) symmetric stiffness, N/m: that of the elastic regions, and the bulk modulus times ∫BᵀmmᵀB dV of
+        the viscoelastic ones.
+    E
+        (n, n) the part of K that belongs to elastic regions; a damping ratio refers to its modes. None: all
+        of K.
+    interfaces
+        name -> RigidInterface; no coordinate in two of them.
+    outputs
+        name -> rows (6, n) or (3, n), the motion of a named point; a load f there acts as rowsᵀ f.
+    viscoelastic
+        The materials whose deviatoric stiffness is kept apart, their H sparse (n, n).
+    spin
+        (n, n) generator J of a turn about z for a body of revolution that turns with the shaft; None: it does
+        not turn.
+    grounded
+        K holds the body in space; otherwise it must leave it free.
 
-    Raises ValueError for a wrong shape, a matrix with non-finite entries or without its symmetry, interfaces
-    that share a coordinate, or a name used twice.
+    Raises
+    ------
+    ValueError
+        For a wrong shape, a matrix that has an entry that is not finite or lacks its symmetry, interfaces
+        that share a coordinate, or a name used twice.
     """
 
     M: Any
+    C: Any = None
+    G: Any = None
     K: Any
+    E: Any = None
     interfaces: Mapping[str, RigidInterface]
     outputs: Mapping[str, Any] = field(default_factory=dict)
     viscoelastic: tuple[Viscoelastic, ...] = ()
-    C: Any = None
-    G: Any = None
-    E: Any = None
     spin: Any = None
     grounded: bool = False
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) or hasattr(self.M, "tocsr") else 0
-        for name, sign in (("M", 1.0), ("K", 1.0), ("C", 1.0), ("G", -1.0), ("E", 1.0), ("spin", -1.0)):
+        for name, sign in (("M", 1), ("C", 1), ("G", -1), ("K", 1), ("E", 1), ("spin", -1)):
             if getattr(self, name) is not None:
                 A = frozen_sparse(name, getattr(self, name), n)
                 check_symmetry(name, A, sign)
@@ -100,13 +122,14 @@ class FullModel:
     @classmethod
     def of(cls, element: Superelement) -> FullModel:
         """A superelement seen as a full model of its own coordinates, at standstill (G and N left out)."""
+        faces = {name: RigidInterface(at, np.eye(6), np.zeros(3)) for name, at in element.interfaces.items()}
         return cls(
-            element.M,
-            element.K,
-            {name: RigidInterface(at, np.eye(6), np.zeros(3)) for name, at in element.interfaces.items()},
-            element.outputs,
-            element.viscoelastic,
+            M=element.M,
             C=element.C,
+            K=element.K,
+            interfaces=faces,
+            outputs=element.outputs,
+            viscoelastic=element.viscoelastic,
             grounded=True,
         )
 

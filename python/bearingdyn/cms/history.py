@@ -12,9 +12,10 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
+from bearingdyn.checks import positive
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.superelement import Superelement
-from bearingdyn.fem.eigen import factorise
+from bearingdyn.fem import factorise
 from bearingdyn.types import Array
 
 
@@ -30,7 +31,10 @@ def branch_weights(dt: float, modulus: float, tau: float) -> tuple[float, float,
     """Weights (decay, old, now) of a branch: S ← decay S + old ė + now ė⁺, for a rate linear over dt.
 
     They are the core's own, read off its answers to three rates. dt and tau in s, modulus in Pa.
-    Reference: paper (9), (10).
+
+    References
+    ----------
+    Paper (9), (10).
     """
     rates = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
     stress = core.maxwell_stress(rates, dt, 0.0, 0.0, np.array([modulus]), np.array([tau]))
@@ -50,18 +54,26 @@ def march(
 ) -> March:
     """Newmark's scheme from rest, with the core's history update of every branch (paper (14), (9)).
 
-    loads: interface or output -> (steps + 1, 6 or 3) forces, N, and moments, N m, at 0, dt, ...
-    fixed: interfaces held still. The body is not turning: G and N are left out.
-    record: interfaces and outputs whose motion is kept (default: all that can move).
     One sparse factorisation in all; each step costs a solve and a product with each matrix.
 
-    Raises ValueError for unknown names, loads of unequal length, a time step that is not positive, and a
-    viscoelastic material that is not a Maxwell model.
+    Parameters
+    ----------
+    loads
+        Interface or output -> (steps + 1, 6 or 3) forces, N, and moments, N m, at 0, dt, ...
+    fixed
+        Interfaces held still. The body is not turning: G and N are left out.
+    record
+        Interfaces and outputs whose motion is kept (default: all that can move).
+
+    Raises
+    ------
+    ValueError
+        For unknown names, loads of unequal length, a time step that is not positive, and a viscoelastic
+        material that is not a Maxwell model.
     """
     if isinstance(model, Superelement):
         model = FullModel.of(model)
-    if not (dt > 0 and math.isfinite(dt)):
-        raise ValueError(f"dt is {dt}; it must be a positive time step in s")
+    positive("dt", dt, "it must be a positive time step in s")
     for part in model.viscoelastic:
         if not all(hasattr(part.material, name) for name in ("G0", "G", "tau", "eta0")):
             raise ValueError(

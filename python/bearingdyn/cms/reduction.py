@@ -10,8 +10,9 @@ import numpy as np
 from bearingdyn.cms.basis import Basis, basis_of
 from bearingdyn.cms.damping import modal_damping
 from bearingdyn.cms.full import FullModel, RigidInterface
+from bearingdyn.cms.options import check_held
 from bearingdyn.cms.superelement import Superelement, Viscoelastic
-from bearingdyn.fem.eigen import rigid_body_residual, rigid_transfer
+from bearingdyn.fem import rigid_body_residual, rigid_transfer
 
 
 def reduce(
@@ -27,25 +28,36 @@ def reduce(
 ) -> Superelement:
     """Superelement of a full model: constraint modes of its interfaces and shapes that vanish on them.
 
-    f_max: keep the fixed-interface modes up to this frequency, Hz; or n_modes: keep that many. Give one.
-    moduli: shear moduli, Pa, at which the constraint modes of a viscoelastic part are taken
-        (modulus_levels). The first serves as reference: constraint modes, fixed-interface modes, diagonal
-        stiffness. Each further one adds the differences of its constraint modes, up to 6 (i - 1) shapes for
-        i interfaces.
-    inertia: rounds of inertia_shapes of the constraint modes at each modulus, 6 i shapes each. One is worth
-        far more than the same number of further modes; 0 is the basis of Craig and Bampton and of the paper.
-    attach: outputs where loads may act: their static shapes at each modulus join the basis, so that the
-        motion a load there causes is statically exact, which truncated modes leave to chance.
-    damping: ratio ζ of every elastic mode (modal_damping) of the body with only its elastic stiffness, free
-        or held at the interface `held`. Dampers then act on the motion relative to that interface, never on
+    Parameters
+    ----------
+    f_max
+        Keep the fixed-interface modes up to this frequency, Hz; or n_modes: keep that many. Give one.
+    moduli
+        Shear moduli, Pa, at which the constraint modes of a viscoelastic part are taken (modulus_levels). The
+        first serves as reference: constraint modes, fixed-interface modes, diagonal stiffness. Each further
+        one adds the differences of its constraint modes, up to 6 (i - 1) shapes for i interfaces.
+    inertia
+        Rounds of inertia_shapes of the constraint modes at each modulus, 6 i shapes each. One is worth far
+        more than the same number of further modes; 0 is the basis of Craig and Bampton and of the paper.
+    attach
+        Outputs where loads may act: their static shapes at each modulus join the basis, so that the motion a
+        load there causes is statically exact, which truncated modes leave to chance.
+    damping
+        Ratio ζ of every elastic mode (modal_damping) of the body with only its elastic stiffness, free or
+        held at the interface `held`. Dampers then act on the motion relative to that interface, never on
         rigid motion. It is added to the model's own C.
 
-    Raises ValueError for a stiffness that resists rigid motion (unless model.grounded), interfaces that leave
-    the body free to move, an unknown output, and values outside their range.
-    Reference: paper (21)-(25); Craig & Bampton (1968); attachment, Craig & Chang, AIAA Paper 77-405 (1977).
+    Raises
+    ------
+    ValueError
+        For a stiffness that resists rigid motion (unless model.grounded), interfaces that leave the body free
+        to move, an unknown output, and values outside their range.
+
+    References
+    ----------
+    Paper (21)-(25); Craig & Bampton (1968); attachment, Craig & Chang, AIAA Paper 77-405 (1977).
     """
-    if held is not None and held not in model.interfaces:
-        raise ValueError(f"held is {held!r}; the interfaces are {sorted(model.interfaces)}")
+    check_held(held, model.interfaces)
     basis = basis_of(model, f_max=f_max, n_modes=n_modes, moduli=moduli, inertia=inertia, attach=attach)
     return project(model, basis, damping=damping, held=held)
 
@@ -95,14 +107,14 @@ def project(model: FullModel, basis: Basis, *, damping: float = 0.0, held: str |
     return Superelement(
         M=M,
         C=C,
-        K=K,
         G=np.zeros_like(M) if model.G is None else basis.reduce(model.G, skew=True),
+        K=K,
+        N=N,
         interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(model.interfaces)},
         outputs={name: np.asarray(row @ basis.Psi) for name, row in model.outputs.items()},
         viscoelastic=tuple(
             Viscoelastic(part.material, P.T @ basis.reduce(part.H) @ P) for part in model.viscoelastic
         ),
-        N=N,
     )
 
 
@@ -121,15 +133,27 @@ def reduce_free_body(
 ) -> Superelement:
     """Superelement of an elastic body free in space, by Craig-Bampton reduction.
 
-    M, K, G: (n, n) dense or sparse; G skew, its force being Ω G ẋ.
-    interfaces: name -> rigid interface, no coordinate in two of them; outputs: name -> rows (6, n) or (3, n).
-    spin: (n, n) generator J of a turn about z for a body of revolution that turns with the shaft: its damping
+    Parameters
+    ----------
+    M, K, G
+        (n, n) dense or sparse; G skew, its force being Ω G ẋ.
+    interfaces
+        name -> rigid interface, no coordinate in two of them.
+    outputs
+        name -> rows (6, n) or (3, n).
+    spin
+        (n, n) generator J of a turn about z for a body of revolution that turns with the shaft: its damping
         then acts on ẋ - Ω J x, and the superelement has the circulatory matrix N = -C J.
-    damping: ratio ζ of every elastic mode (modal_damping), of the free body or of the body held at the
-        interface `held`. Dampers then act on the motion relative to that interface, never on rigid motion.
-    f_max, n_modes: as in craig_bampton.
+    damping
+        Ratio ζ of every elastic mode (modal_damping), of the free body or of the body held at the interface
+        `held`. Dampers then act on the motion relative to that interface, never on rigid motion.
+    f_max, n_modes
+        As in craig_bampton.
 
-    Raises ValueError for interfaces that overlap, or a stiffness that resists rigid motion.
+    Raises
+    ------
+    ValueError
+        For interfaces that overlap, or a stiffness that resists rigid motion.
     """
-    model = FullModel(M, K, interfaces, outputs or {}, G=G, spin=spin)
+    model = FullModel(M=M, G=G, K=K, interfaces=interfaces, outputs=outputs or {}, spin=spin)
     return reduce(model, f_max=f_max, n_modes=n_modes, inertia=0, damping=damping, held=held)

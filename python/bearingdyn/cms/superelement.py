@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -11,10 +10,13 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.bearing import RacewaySeries
+from bearingdyn.checks import positive
 from bearingdyn.types import Array, Complex, Index
 
-SYMMETRY = 1e-9  # largest accepted |A - Aᵀ| over the largest |A|: congruence stays far below it
+# Largest accepted |A_ij ∓ A_ji| over the largest |A|. The round-off of a congruence of 1e5 coordinates is
+# some 1e-11 of it, and matrices written with ten digits pass; a wrong sign or entry is not so small.
+SYMMETRY = 1e-9
 
 
 class ComplexModulus(Protocol):
@@ -47,20 +49,36 @@ def frozen_sparse(name: str, value: Any, n: int, columns: int | None = None) -> 
     return matrix
 
 
-def check_symmetry(name: str, A: Any, sign: float) -> None:
-    """Raises ValueError unless A = sign Aᵀ to round-off, for a dense or sparse A."""
-    scale, error = (float(abs(a).max()) if 0 not in a.shape else 0.0 for a in (A, A - sign * A.T))
-    if error > SYMMETRY * scale:
+def check_symmetry(name: str, A: Any, sign: int) -> None:
+    """Check that a dense or sparse A is symmetric (sign 1) or skew-symmetric (sign −1).
+
+    Raises
+    ------
+    ValueError
+        Naming the matrix and the two entries farthest from it.
+    """
+    if 0 in A.shape:
+        return
+    off, scale = abs(A - sign * A.T), float(abs(A).max())
+    if not float(off.max()) <= SYMMETRY * scale:
+        i, j = sorted(int(k) for k in np.unravel_index(off.argmax(), off.shape))
         kind = "symmetric" if sign > 0 else "skew-symmetric"
-        raise ValueError(f"{name} must be {kind}; it is off by {error:.3g} where entries reach {scale:.3g}")
+        raise ValueError(
+            f"{name}[{i}, {j}] is {A[i, j]:.6g} and {name}[{j}, {i}] is {A[j, i]:.6g}; {name} must be "
+            f"{kind}, to {SYMMETRY:g} of its largest entry, {scale:.6g}"
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Viscoelastic:
     """One viscoelastic material inside a superelement, or inside a full model.
 
-    material: anything with ``complex_modulus(omega)``; the time domain needs a Maxwell model.
-    H: (n, n) ∫BᵀT2B dV, m, dense if reduced and sparse (csr) if not; the deviatoric stiffness is 2·G*(ω)·H
+    Parameters
+    ----------
+    material
+        Anything with ``complex_modulus(omega)``; the time domain needs a Maxwell model.
+    H
+        (n, n) ∫BᵀT2B dV, m, dense if reduced and sparse (csr) if not; the deviatoric stiffness is 2·G*(ω)·H
         (paper (16), (23)).
     """
 
@@ -75,17 +93,22 @@ class Viscoelastic:
         sparse = scipy.sparse.issparse(self.H)
         n = self.H.shape[0] if sparse else np.shape(self.H)[0] if np.ndim(self.H) else 0
         H = frozen_sparse("H", self.H, n) if sparse else frozen("H", self.H, (n, n))
-        check_symmetry("H", H, 1.0)
+        check_symmetry("H", H, 1)
         object.__setattr__(self, "H", H)
 
 
 @dataclass(frozen=True, eq=False)
 class Raceway:
-    """A race of a flexible ring: its groove-centre displacement as Fourier coefficients in the azimuth.
+    """The raceway of a flexible ring: the motion of its groove centre as Fourier coefficients in azimuth.
 
-    series: which coefficients; arm: radius, m, at which tilts become axial motion.
-    rows: (len(series), n), the coefficients by the superelement's coordinates; a load of balls g acts as
-        rowsᵀ g.
+    Parameters
+    ----------
+    series
+        The coefficients.
+    arm
+        Radius, m, at which tilts become axial motion.
+    rows
+        (len(series), n) coefficients from the superelement's coordinates; a load of balls g acts as rowsᵀ g.
     """
 
     series: RacewaySeries
@@ -95,56 +118,76 @@ class Raceway:
     def __post_init__(self) -> None:
         n = np.shape(self.rows)[-1] if np.ndim(self.rows) else 0
         object.__setattr__(self, "rows", frozen("rows", self.rows, (len(self.series), n)))
-        if not 0 < self.arm < math.inf:
-            raise ValueError(f"arm is {self.arm}; it must be a positive radius in m")
+        positive("arm", self.arm, "it must be a positive radius in m")
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A surface of a part: ∫ v_n² dA = q̇ᵀ W q̇ of the normal velocity. area: m²; W: (n, n) symmetric, m²."""
+    """A surface of a part that radiates sound: ∫ v_n² dA = q̇ᵀ W q̇ of its normal velocity v_n.
+
+    Parameters
+    ----------
+    area
+        m².
+    W
+        (n, n) symmetric, m².
+    """
 
     area: float
     W: Array
 
     def __post_init__(self) -> None:
-        if not 0 < self.area < math.inf:
-            raise ValueError(f"area is {self.area}; a surface has a positive area in m²")
+        positive("area", self.area, "it must be a positive area in m²")
         n = np.shape(self.W)[0] if np.ndim(self.W) else 0
         W = frozen("W", self.W, (n, n))
-        check_symmetry("W", W, 1.0)
+        check_symmetry("W", W, 1)
         object.__setattr__(self, "W", W)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Superelement:
     """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
-    M, C, K: (n, n) symmetric mass (kg), viscous damping (N s/m) and stiffness (N/m). K holds the elastic
-        regions and the volumetric part of viscoelastic ones, not their deviatoric part.
-    G: (n, n) skew, kg: the gyroscopic force on the left-hand side is Ω G ẋ, with G[θx, θy] = +Ip and
-        G[θy, θx] = -Ip.
-    interfaces: name -> (6,) indices of the coordinates x, y, z, θx, θy, θz of a rigid joint.
-    outputs: name -> rows (6, n) or (3, n), the motion of a named point (interfaces are outputs too); a load f
+    Parameters
+    ----------
+    M, C
+        (n, n) symmetric mass, kg, and viscous damping, N s/m.
+    G
+        (n, n) skew-symmetric, kg: the gyroscopic force on the left-hand side is Ω G ẋ, with G[θx, θy] = +Ip
+        and G[θy, θx] = -Ip.
+    K
+        (n, n) symmetric stiffness, N/m, of the elastic regions, and the volumetric part of that of the
+        viscoelastic ones without the deviatoric part.
+    N
+        (n, n) skew-symmetric, N s/m: the circulatory force Ω N x on the left-hand side, which the damping C
+        of material that turns with the shaft brings with it; None: zero.
+    interfaces
+        name -> (6,) indices of the coordinates x, y, z, θx, θy, θz of a rigid joint.
+    outputs
+        name -> rows (6, n) or (3, n), the motion of a named point (interfaces are outputs too); a load f
         there acts as rowsᵀ f.
-    viscoelastic: the materials whose deviatoric stiffness is kept apart.
+    viscoelastic
+        The materials whose deviatoric stiffness is kept apart.
+    raceways
+        name -> Raceway, where a bearing's balls may run on a flexible ring.
+    surfaces
+        name -> Surface, from which sound is radiated.
 
-    N: (n, n) skew, N s/m: the circulatory force Ω N x on the left-hand side, there when the damping C belongs
-        to material that turns with the shaft; zero by default.
-    raceways: name -> Raceway, where a bearing's balls may run on a flexible ring.
-    surfaces: name -> Surface, from which sound is radiated.
-
-    Raises ValueError for a wrong shape, a matrix with non-finite entries or without its symmetry, an index
-    out of range or used twice, or a name used twice.
+    Raises
+    ------
+    ValueError
+        For a wrong shape, a matrix that has an entry that is not finite or lacks its symmetry, an index out
+        of range or used twice, or a name used twice.
     """
 
     M: Array
     C: Array
-    K: Array
     G: Array
+    K: Array
+    N: Array | None = None
     interfaces: Mapping[str, Index]
     outputs: Mapping[str, Array] = field(default_factory=dict)
     viscoelastic: tuple[Viscoelastic, ...] = ()
-    N: Array | None = None
     raceways: Mapping[str, Raceway] = field(default_factory=dict)
     surfaces: Mapping[str, Surface] = field(default_factory=dict)
 
@@ -154,7 +197,7 @@ class Superelement:
             raise ValueError(f"M has shape {np.shape(self.M)}; it must be (n, n) with n of at least 1")
         if self.N is None:
             object.__setattr__(self, "N", np.zeros((n, n)))
-        for name, sign in (("M", 1.0), ("C", 1.0), ("K", 1.0), ("G", -1.0), ("N", -1.0)):
+        for name, sign in (("M", 1), ("C", 1), ("G", -1), ("K", 1), ("N", -1)):
             A = frozen(name, getattr(self, name), (n, n))
             check_symmetry(name, A, sign)
             object.__setattr__(self, name, A)
@@ -220,7 +263,10 @@ class Superelement:
     def rows(self, name: str) -> Array:
         """Rows (6, n) or (3, n) giving the motion of an interface or output point.
 
-        Raises ValueError when the superelement has no such name.
+        Raises
+        ------
+        ValueError
+            When the superelement has no such name.
         """
         if name in self.interfaces:
             return np.eye(self.n)[self.interfaces[name]]

@@ -1,7 +1,14 @@
-"""Finite elements: beams, solids, bodies of revolution, and matrices of other programs."""
+"""Finite elements: beams, solids, bodies of revolution, their meshes, and matrices of other programs.
 
-from bearingdyn.fem.beam import Section
-from bearingdyn.fem.exchange import (
+``meshes`` holds meshes and their makers, ``mesh_files`` and ``matrix_files`` read other programs' files;
+``beam``, ``solid`` and ``revolution`` make the matrices, and ``rigid``, ``factors`` and ``eigen`` serve
+all three.
+"""
+
+from bearingdyn.fem.beam import Section, assemble_beam, bending_wavelength
+from bearingdyn.fem.eigen import lowest_modes
+from bearingdyn.fem.factors import Factors, factorise, order_of
+from bearingdyn.fem.matrix_files import (
     MM_TONNE,
     FEMatrices,
     Units,
@@ -12,30 +19,66 @@ from bearingdyn.fem.exchange import (
     read_npz,
     write_npz,
 )
-from bearingdyn.fem.mesh_file import read_mesh
+from bearingdyn.fem.mesh_files import read_mesh
+from bearingdyn.fem.meshes import (
+    SAME,
+    Rectangle,
+    RevolutionMesh,
+    SolidMesh,
+    SurfaceSamples,
+    block_with_bore,
+    box_mesh,
+    crowded,
+    face_shapes,
+    o_ring_mesh,
+    quadrilaterals,
+    revolution_mesh,
+    ring_mesh,
+)
+from bearingdyn.fem.revolution import ALL_COMPONENTS, AXIAL, TORSION, Harmonic, assemble_harmonic
+from bearingdyn.fem.rigid import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
 from bearingdyn.fem.solid import SolidMatrices, assemble_solid
-from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
-from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, crowded, o_ring_mesh, ring_mesh
 
 __all__ = [
+    "ALL_COMPONENTS",
+    "AXIAL",
     "MM_TONNE",
+    "SAME",
+    "TORSION",
     "FEMatrices",
+    "Factors",
+    "Harmonic",
+    "Rectangle",
+    "RevolutionMesh",
     "Section",
     "SolidMatrices",
     "SolidMesh",
     "SurfaceSamples",
     "Units",
+    "assemble_beam",
+    "assemble_harmonic",
     "assemble_solid",
+    "bending_wavelength",
     "block_with_bore",
     "box_mesh",
     "check_matrices",
     "crowded",
+    "face_shapes",
+    "factorise",
+    "lowest_modes",
     "o_ring_mesh",
+    "order_of",
+    "quadrilaterals",
     "read_matrices",
     "read_matrix_market",
     "read_mesh",
     "read_nodes",
     "read_npz",
+    "revolution_mesh",
+    "rigid_body_inertia",
+    "rigid_body_residual",
+    "rigid_motion",
+    "rigid_transfer",
     "ring_mesh",
     "write_npz",
 ]

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from bearingdyn.checks import positive
 from bearingdyn.magnitude import LONGEST_SHAFT, THICKEST_SHAFT, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.types import Array
@@ -23,10 +24,18 @@ from bearingdyn.types import Array
 class Section:
     """A length of shaft of constant circular section.
 
-    length: m. d_outer, d_inner: outer and bore diameter, m; 0 <= d_inner < d_outer.
+    Parameters
+    ----------
+    length
+        m.
+    d_outer, d_inner
+        Outer and bore diameter, m; 0 <= d_inner < d_outer.
 
-    Raises ValueError for a length or diameter that is not positive, a bore that leaves no wall, a length
-    above 100 m or a diameter above 5 m: it is then in mm.
+    Raises
+    ------
+    ValueError
+        For a length or diameter that is not positive, a bore that leaves no wall, a length above 100 m or a
+        diameter above 5 m: it is then in mm.
     """
 
     length: float
@@ -34,10 +43,8 @@ class Section:
     d_inner: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.length > 0 and math.isfinite(self.length)):
-            raise ValueError(f"Section length is {self.length}; it must be a positive length in m")
-        if not (self.d_outer > 0 and math.isfinite(self.d_outer)):
-            raise ValueError(f"Section d_outer is {self.d_outer}; it must be a positive diameter in m")
+        positive("Section length", self.length, "it must be a positive length in m")
+        positive("Section d_outer", self.d_outer, "it must be a positive diameter in m")
         if not 0 <= self.d_inner < self.d_outer:
             raise ValueError(
                 f"Section d_inner is {self.d_inner}; it must lie from 0 to below d_outer = {self.d_outer} m"
@@ -58,7 +65,9 @@ class Section:
     def shear_coefficient(self, nu: float) -> float:
         """Shear coefficient k; 6(1+ν)²/(7+12ν+4ν²) when solid.
 
-        Reference: Hutchinson, J. Applied Mechanics 68 (2001) 87-92, solid and hollow circular section.
+        References
+        ----------
+        Hutchinson, J. Applied Mechanics 68 (2001) 87-92, solid and hollow circular section.
         """
         a2, b2 = self.d_outer**2, self.d_inner**2
         s, p = a2 * a2 + b2 * b2, a2 * b2
@@ -82,12 +91,25 @@ def bending_wavelength(section: Section, material: Elastic, frequency: float) ->
 
 
 def element_matrices(section: Section, length: float, material: Elastic) -> tuple[Array, Array, Array]:
-    """Mass, stiffness and gyroscopic matrix, each (12, 12), of an element between two nodes.
+    """Mass, gyroscopic and stiffness matrix, each (12, 12), of an element between two nodes.
 
-    length: of the element, m. The gyroscopic force is Ω G ẋ on the left-hand side, G[θx, θy] = +Ip for a
-    disc. Bending: consistent, with the interpolation that solves the static Timoshenko equations. Stretch and
-    torsion: the mean of the consistent and the lumped mass, whose frequency error falls with the fourth power
-    of the length (Goudreau & Taylor, Comput. Meth. Appl. Mech. Eng. 2 (1973) 69-97).
+    The gyroscopic force is Ω G ẋ on the left-hand side; for a disc G[θx, θy] = +Ip. The matrices of bending
+    are consistent, with the interpolation that solves the static Timoshenko equations. Stretch and torsion
+    have the mean of the consistent and the lumped mass, whose frequency error falls with the fourth power of
+    the length.
+
+    Parameters
+    ----------
+    section
+        The section's own length does not enter.
+    length
+        Length of the element, m.
+    material
+        Elastic material.
+
+    References
+    ----------
+    Goudreau & Taylor, Comput. Meth. Appl. Mech. Eng. 2 (1973) 69-97.
     """
     E, G, rho, L = material.E, material.G, material.density, length
     A, second = section.area, section.second_moment
@@ -122,24 +144,31 @@ def element_matrices(section: Section, length: float, material: Elastic) -> tupl
     gyro[np.ix_(yz, xz)], gyro[np.ix_(xz, yz)] = g, -g.T
 
     bar = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    mass = np.array([[5.0, 1.0], [1.0, 5.0]]) / 12.0
-    for at, stiffness, inertia in (
+    spread = np.array([[5.0, 1.0], [1.0, 5.0]]) / 12.0
+    for at, stiffness, mass in (
         (np.array([2, 8]), E * A / L, rho * A * L),
         (np.array([5, 11]), 2.0 * G * second / L, 2.0 * rho * second * L),
     ):
-        K[np.ix_(at, at)], M[np.ix_(at, at)] = stiffness * bar, inertia * mass
-    return M, K, gyro
+        K[np.ix_(at, at)], M[np.ix_(at, at)] = stiffness * bar, mass * spread
+    return M, gyro, K
 
 
-def assemble(
+def assemble_beam(
     z: Array, sections: Sequence[Section], material: Elastic
 ) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix, scipy.sparse.csr_matrix]:
-    """Mass, stiffness and gyroscopic matrix of a shaft, sparse, (6 n, 6 n).
+    """Mass, gyroscopic and stiffness matrix of a shaft, sparse, (6 n, 6 n).
 
-    z: (n,) rising node positions, m; sections: the n - 1 sections between them, whose own lengths do not
-        enter.
+    Parameters
+    ----------
+    z
+        (n,) rising node positions, m.
+    sections
+        The n - 1 sections between them, whose own lengths do not enter.
 
-    Raises ValueError when z does not rise or the counts do not fit.
+    Raises
+    ------
+    ValueError
+        When z does not rise or the counts do not fit.
     """
     h = np.diff(z)
     if not np.all(h > 0):

@@ -18,22 +18,36 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from bearingdyn.fem.revolution_mesh import RevolutionMesh, shape_functions
+from bearingdyn.checks import whole
+from bearingdyn.fem.meshes.revolution_mesh import RevolutionMesh, shape_functions
 from bearingdyn.types import Array, Index
 
 AXIAL = (0, 2)  # components U, W of order 0
 TORSION = (1,)  # component V of order 0
-ALL = (0, 1, 2)
+ALL_COMPONENTS = (0, 1, 2)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Harmonic:
     """Matrices of one Fourier order (and, in order 0, one of its two uncoupled families).
 
-    Coordinate c of node k is number len(components)·k + c. Matrices of all regions share one sparsity pattern
-    (indices, indptr of a csc matrix) and are given by their data, (regions, nonzeros):
-    mass: per unit density, m³; volumetric: per unit bulk modulus, m; deviatoric: per 2G, m.
-    free: coordinates that remain; on the axis r = 0 regularity removes some, and in order 1 ties V to −U.
+    Coordinate c of node k is number len(components)·k + c. The matrices of all regions share one sparsity
+    pattern.
+
+    Parameters
+    ----------
+    mesh
+        Mesh of the section.
+    order
+        Fourier order n.
+    components
+        Those of U, V, W (0, 1, 2) that are carried.
+    indices, indptr
+        Sparsity pattern of a csc matrix.
+    mass, volumetric, deviatoric
+        (regions, nonzeros) data per unit density, m³, per unit bulk modulus, m, and per 2G, m.
+    free
+        Coordinates that remain; on the axis r = 0 regularity removes some, and in order 1 ties V to −U.
     """
 
     mesh: RevolutionMesh
@@ -94,7 +108,10 @@ class Harmonic:
     def point_rows(self, r: float, z: float, phi: float, u: Array, sine: bool = False) -> Array:
         """Displacement x, y, z (3, m) at the point (r, z, φ) of shapes u (n, m); sine: the turned family.
 
-        Raises ValueError for a point outside the section.
+        Raises
+        ------
+        ValueError
+            For a point outside the section.
         """
         e, xi, eta = self.mesh.locate(r, z)
         N, _, _ = shape_functions(np.array([xi]), np.array([eta]))
@@ -213,14 +230,18 @@ def _kept_on_axis(mesh: RevolutionMesh, order: int, components: tuple[int, ...])
     return np.flatnonzero(keep.ravel()), axis
 
 
-def assemble(mesh: RevolutionMesh, order: int, components: tuple[int, ...] = ALL) -> Harmonic:
+def assemble_harmonic(
+    mesh: RevolutionMesh, order: int, components: tuple[int, ...] = ALL_COMPONENTS
+) -> Harmonic:
     """Matrices of Fourier order n = order >= 0 for the components (0: U, 1: V, 2: W).
 
-    Raises ValueError for a negative order, or components that couple with ones left out.
+    Raises
+    ------
+    ValueError
+        For a negative order, or components that couple with ones left out.
     """
-    if order < 0 or int(order) != order:
-        raise ValueError(f"order is {order}; a Fourier order is 0, 1, 2, ...")
-    if components != ALL and (order > 0 or components not in (AXIAL, TORSION)):
+    whole("order", order, 0, remedy="it must be a Fourier order: 0, 1, 2, ...")
+    if components != ALL_COMPONENTS and (order > 0 or components not in (AXIAL, TORSION)):
         raise ValueError(
             f"components is {components}; orders above 0 need (0, 1, 2), order 0 takes (0, 2) or (1,) too"
         )
@@ -237,4 +258,14 @@ def assemble(mesh: RevolutionMesh, order: int, components: tuple[int, ...] = ALL
             A[e, 3 * k + 1] = 0
             A[e, :, 3 * k + 1] = 0
     indices, indptr, data = _scatter(mesh, c, regions, blocks)
-    return Harmonic(mesh, order, components, indices, indptr, data[0], data[1], data[2], free)
+    return Harmonic(
+        mesh=mesh,
+        order=order,
+        components=components,
+        indices=indices,
+        indptr=indptr,
+        mass=data[0],
+        volumetric=data[1],
+        deviatoric=data[2],
+        free=free,
+    )

@@ -14,20 +14,28 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.solid_element import HEX20, HEX27, TET10, SolidElement, points, shapes
-from bearingdyn.fem.solid_mesh import SolidMesh
+from bearingdyn.fem.meshes.solid_element import HEX20, HEX27, TET10, SolidElement, points, shapes
+from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 from bearingdyn.material import Elastic
 from bearingdyn.types import Array
 
 CHUNK = 1024  # elements whose matrices are in memory at a time, 54 MB a matrix of 27-node bricks
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SolidMatrices:
     """Unit matrices of a solid; coordinate 3 i + a is the displacement of node i along axis a.
 
-    points: (n, 3) node positions, m. mass: (3n, 3n) ∫NᵀN dV, m³, to be multiplied by the density.
-    volumetric: (3n, 3n) ∫BᵀmmᵀB dV, m, by the bulk modulus. deviatoric: (3n, 3n) ∫BᵀT2B dV, m, by 2G.
+    Parameters
+    ----------
+    points
+        (n, 3) node positions, m.
+    mass
+        (3n, 3n) ∫NᵀN dV, m³, to be multiplied by the density.
+    volumetric
+        (3n, 3n) ∫BᵀmmᵀB dV, m, by the bulk modulus.
+    deviatoric
+        (3n, 3n) ∫BᵀT2B dV, m, by 2G.
     """
 
     points: Array
@@ -45,15 +53,19 @@ def assemble_solid(
 ) -> SolidMatrices:
     """Matrices of a mesh, or of some of its elements, isoparametric.
 
-    elements: indices of the region to assemble (default all); the nodes are numbered as for the whole mesh.
-    incompressible: take from div u only what the element can keep as ν → ½: in 27-node bricks its part
-        linear in each element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987,
-        ch. 4), in 20-node bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra
-        its mean (P2/P0: free of locking, but too soft, and of first order). A bonded ring of ν = 0.499 with
-        4×8×24 elements is within 0.2 % with 27-node bricks and 3 % with 20-node ones; a bonded strip with
-        two tetrahedra through its thickness is 7 % too soft, with six 3 %.
-
     Integration: 3×3×3 points in bricks, exact for straight-sided ones; order 4 in tetrahedra.
+
+    Parameters
+    ----------
+    elements
+        Indices of the region to assemble (default all); the nodes are numbered as for the whole mesh.
+    incompressible
+        Take from div u only what the element can keep as ν → ½: in 27-node bricks its part linear in each
+        element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987, ch. 4), in 20-node
+        bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra its mean (P2/P0: free
+        of locking, but too soft, and of first order). A bonded ring of ν = 0.499 with 4×8×24 elements is
+        within 0.2 % with 27-node bricks and 3 % with 20-node ones; a bonded strip with two tetrahedra through
+        its thickness is 7 % too soft, with six 3 %.
     """
     at = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
     kind, n = mesh.kind, len(mesh.points)

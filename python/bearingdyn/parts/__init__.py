@@ -1,27 +1,17 @@
 """Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
 
-from bearingdyn.fem.beam import Section
-from bearingdyn.fem.quadrilaterals import quadrilaterals
+from bearingdyn.fem import Section, quadrilaterals
+from bearingdyn.parts.faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
 from bearingdyn.parts.flexible_bearing import FlexibleBearing
 from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.housing import Feet, Housing
 from bearingdyn.parts.imported import Imported, NodeSet, at_radius
 from bearingdyn.parts.layer import Layer
-from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.outline import Outline, Outlined
+from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring, damping_sample
-from bearingdyn.parts.section import (
-    Cylinder,
-    EndFace,
-    Groove,
-    Line,
-    MeshNodes,
-    Patch,
-    Region,
-    ViscoelasticSolid,
-    Where,
-)
 from bearingdyn.parts.shaft import Disc, Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
 
@@ -40,6 +30,7 @@ __all__ = [
     "MeshNodes",
     "NodeSet",
     "Outline",
+    "Outlined",
     "Patch",
     "Region",
     "Revolved",

@@ -9,11 +9,9 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from bearingdyn.bearing.series import RacewaySeries
-from bearingdyn.fem.eigen import rigid_transfer
-from bearingdyn.fem.revolution import ALL, AXIAL, TORSION, Harmonic
-from bearingdyn.fem.revolution_mesh import RevolutionMesh
-from bearingdyn.parts.section import Face, Groove, Surface, find_face, groove_weights
+from bearingdyn.bearing import RacewaySeries
+from bearingdyn.fem import ALL_COMPONENTS, AXIAL, TORSION, Harmonic, RevolutionMesh, rigid_transfer
+from bearingdyn.parts.faces import Face, Groove, MeshFace, find_face, groove_weights
 from bearingdyn.types import Array, Index
 
 Components = tuple[int, ...]
@@ -24,11 +22,11 @@ Components = tuple[int, ...]
 RIGID_SHAPES: dict[tuple[int, Components], tuple[tuple[tuple[int, ...], tuple[float, ...]], ...]] = {
     (0, AXIAL): (((2,), (1.0,)),),
     (0, TORSION): (((5,), (1.0,)),),
-    (1, ALL): (((0, 4), (1.0, 1.0)), ((1, 3), (1.0, -1.0))),
+    (1, ALL_COMPONENTS): (((0, 4), (1.0, 1.0)), ((1, 3), (1.0, -1.0))),
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Track:
     """A groove on a mesh: nodes (k,), weights (2, k, 2) of U and W, its series, arm and plane z, m."""
 
@@ -45,7 +43,7 @@ class Boundaries:
     """Rigid faces and grooves by name. Their coordinates come in this order: six for each face, then the
     raceway coefficients of each groove, in the order of its series."""
 
-    faces: Mapping[str, Face]
+    faces: Mapping[str, MeshFace]
     tracks: Mapping[str, Track]
 
     def nodes(self) -> Iterator[tuple[str, Index]]:
@@ -73,7 +71,7 @@ class Boundaries:
         """
         highest = max([1, *(t.order for t in self.tracks.values())])
         twist = [(0, TORSION, 1)] if self.faces else []
-        return [(0, AXIAL, 1), *twist, *((n, ALL, 2) for n in range(1, highest + 1))]
+        return [(0, AXIAL, 1), *twist, *((n, ALL_COMPONENTS, 2) for n in range(1, highest + 1))]
 
     def held(self, h: Harmonic) -> tuple[Index, Array]:
         """Coordinates on rigid faces, without those removed on the axis, and their shapes, a column each.
@@ -129,7 +127,7 @@ class Boundaries:
 
 
 def find_boundaries(
-    mesh: RevolutionMesh, interfaces: Mapping[str, Surface], grooves: Mapping[str, Groove]
+    mesh: RevolutionMesh, interfaces: Mapping[str, Face], grooves: Mapping[str, Groove]
 ) -> Boundaries:
     """Faces and grooves on a mesh. Raises ValueError, naming it, where the body has no such face."""
     faces = {name: find_face(mesh, f"interfaces[{name!r}]", s) for name, s in interfaces.items()}
@@ -139,5 +137,7 @@ def find_boundaries(
         z = face.reference if groove.z is None else groove.z
         nodes, weights = groove_weights(mesh, face, groove.arm, z)
         series = RacewaySeries.up_to(groove.order)
-        tracks[name] = Track(nodes, weights, series, groove.order, groove.arm, z)
+        tracks[name] = Track(
+            nodes=nodes, weights=weights, series=series, order=groove.order, arm=groove.arm, z=z
+        )
     return Boundaries(faces, tracks)

@@ -35,7 +35,10 @@ class FlexibleBearing:
 
     As BallBearing: q (6,) is the motion of the inner ring, m and rad, here against the housing.
 
-    Raises ValueError for a ring made for another arm, or one that no rigid interface holds.
+    Raises
+    ------
+    ValueError
+        For a ring made for another arm, or one that no rigid interface holds.
     """
 
     bearing: BallBearing
@@ -124,7 +127,12 @@ class FlexibleBearing:
     def displacement(self, load: ArrayLike, angle: float = 0.0) -> Array:
         """Static equilibrium q (6,) of the inner ring under a load (6,), θz held, the housing fixed.
 
-        Raises ValueError on a wrong shape, ArithmeticError if no equilibrium is found.
+        Raises
+        ------
+        ValueError
+            For a load of another shape.
+        ArithmeticError
+            If no equilibrium is found.
         """
         f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
         S, B = self.raceway_stiffness, self._relative

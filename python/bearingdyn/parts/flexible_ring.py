@@ -9,13 +9,15 @@ from typing import Literal
 
 import numpy as np
 
+from bearingdyn.checks import one_of, positive
 from bearingdyn.cms import Superelement
-from bearingdyn.fem.revolution_mesh import Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.faces import Cylinder, Face, Groove, Line, Where
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
-from bearingdyn.parts.section import Cylinder, Groove, Line, Patch, Region, Surface, Where
 
 
 @dataclass(frozen=True)
@@ -23,25 +25,45 @@ class FlexibleRing:
     """An elastic outer ring, not turning, whose "raceway" carries the balls of one bearing.
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
-    Without, the ring's own outside is "outer", held round by a rigid bore; or it is the raceway "outside",
-    as flexible as the raceway inside, and then only what carries that holds the ring.
+    Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with
+    outside="flexible", it is the raceway "outside", as flexible as the raceway inside, and the ring is held
+    only by what carries that raceway.
 
-    r_inner: bore at the shoulders, or at the bottom of the groove if no groove_radius is given; r_outer,
-        width: m. The plane of the balls is at mid-width.
-    arm: radius, m, at which tilts become axial motion: that of the bearing to come, BallBearing.arm.
-    order: highest Fourier order in the azimuth; one more than the number of balls holds all they bend
-        alike. Bending falls off as order⁻⁴. The dent around each ball falls off as 1/order only: its sum
-        grows slowly without end, and Hertz's contact has it already, so that far higher orders do no good.
-    groove: axial width of the face that carries the balls, m; None: half of the ring's.
-    groove_radius: radius of the groove's section, m (fo·Dw): the section then has the groove cut into it;
-        None: a plain rectangle.
-    layer: rubber, its r_inner equal to r_outer here; its material, moduli and refinement are taken.
-    outside: "rigid" or "flexible", where there is no layer.
-    damping: ratio ζ of the ring's free elastic modes. refinement: mesh density.
-    f_max: modes up to this frequency, Hz, join the static shapes; 0: none. In rubber static shapes alone are
-        some 6 % off at 5 kHz; with three times the highest frequency of interest 0.2 % are left.
+    Parameters
+    ----------
+    r_inner
+        Bore at the shoulders, or at the bottom of the groove if no groove_radius is given.
+    r_outer, width
+        m. The plane of the balls is at mid-width.
+    arm
+        Radius, m, at which tilts become axial motion: the arm of the bearing that will run here
+        (BallBearing.arm).
+    order
+        Highest Fourier order in the azimuth. Orders up to one more than the number of balls hold all the
+        bending that the balls cause, which falls off as order⁻⁴. Far higher orders do no good: they add the
+        dent around each ball, which falls off as 1/order only and which Hertz's contact has already.
+    groove
+        Axial width of the face that carries the balls, m; None: half of the ring's.
+    groove_radius
+        Radius of the groove's section, m (fo·Dw): the section then has the groove cut into it; None: a plain
+        rectangle.
+    layer
+        Rubber, its r_inner equal to r_outer here; its material, moduli and refinement are taken.
+    outside
+        "rigid" or "flexible", where there is no layer.
+    damping
+        Ratio ζ of the ring's free elastic modes.
+    refinement
+        Mesh density.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none, the default of bodies of
+        revolution. In rubber static shapes alone are some 6 % off at 5 kHz; with three times the highest
+        frequency of interest 0.2 % are left.
 
-    Raises ValueError for dimensions out of order, a groove that does not fit, or a layer that does not touch.
+    Raises
+    ------
+    ValueError
+        For dimensions out of order, a groove that does not fit, or a layer that does not touch.
     """
 
     r_inner: float
@@ -59,12 +81,10 @@ class FlexibleRing:
     refinement: float = 1.0
 
     def __post_init__(self) -> None:
-        if not self.r_inner > 0:
-            raise ValueError(f"r_inner is {self.r_inner}; a ring needs a positive inner radius, m")
+        positive("r_inner", self.r_inner, "it must be a positive radius in m")
         if not self.r_inner < self.r_outer < math.inf:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
-        if not 0 < self.width < math.inf:
-            raise ValueError(f"width is {self.width}; it must be positive, m")
+        positive("width", self.width, "it must be a positive length in m")
         if self.groove is not None and not 0 < self.groove <= self.width:
             raise ValueError(f"groove is {self.groove}; it must lie in 0...width = {self.width} m")
         if self.groove_radius is not None:
@@ -76,8 +96,7 @@ class FlexibleRing:
                 )
             if not self.depth < self.r_outer - self.r_inner:
                 raise ValueError(f"the groove is {self.depth:g} m deep and cuts the ring; make it narrower")
-        if self.outside not in ("rigid", "flexible"):
-            raise ValueError(f'outside is {self.outside!r}; it must be "rigid" or "flexible"')
+        one_of("outside", self.outside, ("rigid", "flexible"))
         if self.layer is not None:
             if not math.isclose(self.layer.r_inner, self.r_outer, rel_tol=1e-9):
                 raise ValueError(
@@ -105,7 +124,7 @@ class FlexibleRing:
         """The ring, and its rubber, as a body of revolution."""
         half, track = 0.5 * self.width, 0.5 * self.track
         regions = [Region((self.r_inner, self.r_outer), (-half, half), self.material)]
-        face: Surface = Cylinder(self.r_inner, (-track, track))
+        face: Face = Cylinder(self.r_inner, (-track, track))
         outer = self.r_outer
         if self.layer is not None:
             outer, reach = self.layer.r_outer, 0.5 * self.layer.width
@@ -117,7 +136,7 @@ class FlexibleRing:
             )
             section = self._grooved([q.rectangle for q in regions], track)
         grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0)}
-        interfaces: dict[str, Surface] = {}
+        interfaces: dict[str, Face] = {}
         if self.layer is None and self.outside == "flexible":
             grooves["outside"] = Groove(Line((outer, -half), (outer, half)), outer, self.order, z=0.0)
         else:

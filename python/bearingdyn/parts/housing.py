@@ -9,8 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from bearingdyn.cms import Superelement
-from bearingdyn.fem.solid_meshers import block_with_bore
+from bearingdyn.checks import nonnegative, positive
+from bearingdyn.cms import F_MAX, Superelement, check_damping, check_f_max
+from bearingdyn.fem import block_with_bore
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
@@ -21,42 +22,68 @@ ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinate
 
 @dataclass(frozen=True)
 class Feet:
-    """What a housing stands on: two strips along z, each of this width (x), m.
+    """What a housing stands on: two strips along z.
 
-    With height 0 the strips are the left and right edges of the block's own base. With a height, m, they are
-    the undersides of two flanges of that height, added to the sides of the block at its base.
+    Parameters
+    ----------
+    width
+        Extent of each strip along x, m.
+    height
+        0: the strips are the left and right edges of the block's own base. Otherwise the height, m, of two
+        flanges added to the sides of the block at its base; the strips are their undersides.
+
+    Raises
+    ------
+    ValueError
+        For a width that is not positive or a height below zero.
     """
 
     width: float
     height: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.width > 0 and math.isfinite(self.width)):
-            raise ValueError(f"Feet width is {self.width}; it must be a positive width in m")
-        if not (self.height >= 0 and math.isfinite(self.height)):
-            raise ValueError(f"Feet height is {self.height}; it must be 0 or a height in m")
+        positive("Feet width", self.width, "it must be a positive width in m")
+        nonnegative("Feet height", self.height, "it must be 0 or a height in m")
 
 
 @dataclass(frozen=True)
 class Housing:
-    """A rectangular block with a round bore through it along z, of 3-D finite elements.
+    """A rectangular block with a round bore through it along z, of three-dimensional finite elements.
 
-    width along x, height along y, length along z, m; a small length makes a plate-like pedestal.
-    bore_diameter, m; bore_height: height of the bore's axis above the base, m (default: mid-height).
-    feet: what is held at the base: the whole base (None) or two strips (Feet).
-    damping: ratio ζ of every mode of the housing held at its feet.
-    f_max: fixed-interface modes are kept up to this, Hz.
-    points: name -> (x, y, z), m, from the bore's axis at mid-length: further outputs, at the nearest node.
-    element_size: longest wanted side of an element, m (default: some 300 elements).
+    Two rigid interfaces: "bore", whose reference lies on the axis at mid-length, and "feet", whose reference
+    lies below it on the base. Outputs: "top", the middle of the top face, and the points; rows (3, n).
+    Surfaces: "top", "front" (at +z), "back", and "outside", all but the bore and the base.
 
-    Interfaces: "bore" (reference on the axis at mid-length) and "feet" (reference below it, on the base),
-    both rigid. Outputs: "top", the middle of the top face, and the points; rows (3, n). Surfaces: "top",
-    "front" (at +z), "back", and "outside", all but the bore and the base.
+    Parameters
+    ----------
+    width, height, length
+        Extent along x, y and z, m; a small length makes a plate-like pedestal.
+    bore_diameter
+        Diameter of the bore, m.
+    bore_height
+        Height of the bore's axis above the base, m; None: mid-height.
+    material
+        Elastic material of the block.
+    damping
+        Ratio ζ of every mode of the housing held at its feet.
+    feet
+        What is held at the base: None, the whole of it, or two strips (Feet).
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none; by default 20 kHz.
+    points
+        name -> (x, y, z), m, from the bore's axis at mid-length: further outputs, at the nearest node.
+    element_size
+        Longest wanted side of an element, m; None: some 300 elements, more where the shape needs them.
 
-    Raises ValueError for a bore that leaves no wall, a point outside, values not positive and finite, or
-    a length above 10 m: it is then in mm.
+    Raises
+    ------
+    ValueError
+        For a bore that leaves no wall, a point outside, values that are not positive and finite, or a length
+        above 10 m: it is then in mm.
 
-    Reference: paper section 4, which gives no dimensions.
+    References
+    ----------
+    Paper section 4, which gives no dimensions.
     """
 
     width: float
@@ -67,20 +94,15 @@ class Housing:
     material: Elastic = STEEL
     damping: float = 0.0
     feet: Feet | None = None
-    f_max: float = 20e3
+    f_max: float = F_MAX
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     element_size: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("width", "height", "length", "bore_diameter", "f_max"):
-            value = getattr(self, name)
-            if not (value > 0 and math.isfinite(value)):
-                unit = "frequency in Hz" if name == "f_max" else "length in m"
-                raise ValueError(f"{name} is {value}; it must be a positive {unit}")
-            if name != "f_max":
-                check_length(name, value)
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
+        for name in ("width", "height", "length", "bore_diameter"):
+            check_length(name, positive(name, getattr(self, name), "it must be a positive length in m"))
+        check_f_max(self.f_max)
+        check_damping(self.damping)
         d, axis = self.bore_diameter, self.axis
         if not math.isfinite(axis):
             raise ValueError(f"bore_height is {self.bore_height}; it must be a height in m")

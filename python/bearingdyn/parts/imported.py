@@ -11,8 +11,17 @@ import scipy.sparse
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from bearingdyn.cms import FullModel, RigidInterface, Superelement, reduce
-from bearingdyn.fem.exchange import FEMatrices
+from bearingdyn.cms import (
+    F_MAX,
+    FullModel,
+    RigidInterface,
+    Superelement,
+    check_damping,
+    check_f_max,
+    check_held,
+    reduce,
+)
+from bearingdyn.fem import FEMatrices
 from bearingdyn.types import Array
 
 
@@ -20,9 +29,13 @@ from bearingdyn.types import Array
 class NodeSet:
     """Nodes that move as one rigid body.
 
-    nodes: their numbers in the file (rows of its points, from 0, where it names none), or a function of all
+    Parameters
+    ----------
+    nodes
+        Their numbers in the file (rows of its points, from 0, where it names none), or a function of all
         positions (k, 3), m, that says which (k,) belong to it.
-    reference: (x, y, z), m, of the six coordinates; default: the mean of the nodes' positions.
+    reference
+        (x, y, z), m, of the six coordinates; default: the mean of the nodes' positions.
     """
 
     nodes: Sequence[int] | Callable[[Array], NDArray[np.bool_]]
@@ -33,16 +46,27 @@ class NodeSet:
 class Imported:
     """An elastic body of another program's matrices, reduced like any other part.
 
-    matrices: from fem.read_matrices, with points. Matrices reduced already (Craig-Bampton: nodes of six
+    Parameters
+    ----------
+    matrices
+        From fem.read_matrices, with points. Matrices reduced already (Craig-Bampton: nodes of six
         coordinates, then modal ones, `internal` of them) are taken too: each such node is an interface.
-    interfaces: name -> the nodes that move as one rigid body.
-    outputs: name -> number of a node, or a position (x, y, z), m, whose nearest node is meant; rows (3, n),
-        or (6, n) at a node of six coordinates.
-    damping: ratio ζ of every elastic mode, of the free body or of the body held at the interface `held`.
-    f_max: fixed-interface modes are kept up to this, Hz; math.inf keeps all of a reduced model.
+    interfaces
+        name -> the nodes that move as one rigid body.
+    outputs
+        name -> number of a node, or a position (x, y, z), m, whose nearest node is meant; rows (3, n), or (6,
+        n) at a node of six coordinates.
+    damping
+        Ratio ζ of every elastic mode, of the free body or of the body held at the interface `held`.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none; by default 20 kHz;
+        math.inf: all, for matrices that are reduced already.
 
-    Raises ValueError for an interface without nodes, with nodes on one line, or with nodes the matrices do
-    not have; for a part of the mesh that no interface holds; and for values outside their range.
+    Raises
+    ------
+    ValueError
+        For an interface without nodes, with nodes on one line, or with nodes the matrices do not have; for a
+        part of the mesh that no interface holds; and for values outside their range.
     """
 
     matrices: FEMatrices
@@ -50,17 +74,14 @@ class Imported:
     outputs: Mapping[str, int | tuple[float, float, float]] = field(default_factory=dict)
     damping: float = 0.0
     held: str | None = None
-    f_max: float = 20e3
+    f_max: float = F_MAX
 
     def __post_init__(self) -> None:
         if self.matrices.points is None:
             raise ValueError("matrices has no points; pass the nodes' positions when they are read")
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
-        if not self.f_max > 0:
-            raise ValueError(f"f_max is {self.f_max}; it must be a positive frequency in Hz")
-        if self.held is not None and self.held not in self.interfaces:
-            raise ValueError(f"held is {self.held!r}; the interfaces are {sorted(self.interfaces)}")
+        check_damping(self.damping)
+        check_f_max(self.f_max, may_be_infinite=True)
+        check_held(self.held, self.interfaces)
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
         faces = self._faces()
@@ -79,7 +100,7 @@ class Imported:
     def full_model(self) -> FullModel:
         """The unreduced equations: sparse matrices, rigid interfaces, output rows."""
         rows = {name: self._rows(name) for name in self.outputs}
-        return FullModel(self.matrices.M, self.matrices.K, self._faces(), rows)
+        return FullModel(M=self.matrices.M, K=self.matrices.K, interfaces=self._faces(), outputs=rows)
 
     def superelement(self) -> Superelement:
         """The body reduced onto its interfaces and the fixed-interface modes up to f_max."""
@@ -169,7 +190,14 @@ def at_radius(
 ) -> Callable[[Array], NDArray[np.bool_]]:
     """Choice of the nodes on a cylinder about z, for NodeSet.
 
-    radius: m. axial: z from, to, m. tolerance: m, as fine as the file's digits.
+    Parameters
+    ----------
+    radius
+        m.
+    axial
+        z from, to, m.
+    tolerance
+        m, as fine as the file's digits.
     """
 
     def choose(p: Array) -> NDArray[np.bool_]:

@@ -9,12 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.cms import Superelement
+from bearingdyn.checks import positive
+from bearingdyn.cms import Superelement, check_moduli
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import Elastic
+from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.regions import Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
-from bearingdyn.parts.section import Cylinder, Region, ViscoelasticSolid
 from bearingdyn.types import Array, Complex
 
 
@@ -22,20 +24,33 @@ from bearingdyn.types import Array, Complex
 class Layer:
     """A rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
 
-    r_inner, r_outer, width: m. The reference point of both interfaces lies on the axis at mid-width.
-    material: Maxwell, or another viscoelastic or elastic one.
-    moduli: real shear moduli, Pa, at which `superelement` takes its shapes; None: two, the relaxed
-        modulus, which the static state has, and |G*| at the fastest relaxation time, the top of the band
-        the material describes (and their geometric mean, if they are more than a hundredfold apart). The
-        radial shape depends on G/K, and one modulus is not enough: for a 26/28×16 mm layer with K = 2 GPa,
-        shapes at 1 MPa are 26 % too stiff at 10 MPa.
-    refinement: mesh density; the default gives stiffnesses within some 0.02 % for ratios G/K down to 1e-4.
+    Parameters
+    ----------
+    r_inner, r_outer, width
+        m. The reference point of both interfaces lies on the axis at mid-width.
+    material
+        Maxwell, or another viscoelastic or elastic one.
+    moduli
+        Real shear moduli, Pa, at which `superelement` takes its shapes. None chooses two: the relaxed
+        modulus, which the static state has, and |G*| at the fastest relaxation time, the top of the band that
+        the material describes; and their geometric mean if they are more than a hundredfold apart. The radial
+        shape depends on G/K, and one modulus is not enough: for a 26/28×16 mm layer with K = 2 GPa, shapes at
+        1 MPa are 26 % too stiff at 10 MPa.
+    refinement
+        Mesh density; the default gives stiffnesses within some 0.02 % for ratios G/K down to 1e-4.
 
-    Raises ValueError for dimensions that are not positive and finite, r_outer not above r_inner, or
-    more than 10 m: they are then in mm.
+    Raises
+    ------
+    ValueError
+        For dimensions that are not positive and finite, r_outer not above r_inner, or more than 10 m: they
+        are then in mm.
 
-    Reference: paper section 3.3.
+    References
+    ----------
+    Paper section 3.3.
 
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
     >>> layer = bd.Layer(r_inner=0.026, r_outer=0.030, width=0.016, material=rubber)
@@ -52,16 +67,14 @@ class Layer:
     refinement: float = 1.0
 
     def __post_init__(self) -> None:
-        if not 0 < self.r_inner < math.inf:
-            raise ValueError(f"r_inner is {self.r_inner}; a layer needs a positive inner radius, m")
+        positive("r_inner", self.r_inner, "it must be a positive radius in m")
         if not self.r_inner < self.r_outer < math.inf:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
-        if not 0 < self.width < math.inf:
-            raise ValueError(f"width is {self.width}; it must be positive, m")
+        positive("width", self.width, "it must be a positive length in m")
         for name in ("r_outer", "width"):
             check_length(name, getattr(self, name))
         if self.moduli is not None:
-            object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
+            object.__setattr__(self, "moduli", check_moduli(self.moduli))
         _ = self.body
 
     @property
@@ -83,9 +96,15 @@ class Layer:
     def stiffness(self, omega: float = 0.0) -> Complex:
         """Quasi-static stiffness (12, 12), inner interface then outer, N/m, N, N m: solved anew at G*(ω).
 
-        omega: rad/s.
+        Parameters
+        ----------
+        omega
+            rad/s.
 
-        Raises ValueError where the material has no shear stiffness, as G0 = 0 at ω = 0.
+        Raises
+        ------
+        ValueError
+            Where the material has no shear stiffness, as G0 = 0 at ω = 0.
         """
         return self.body.stiffness(omega)
 
@@ -100,9 +119,12 @@ class Layer:
     def nominal_strain(self, relative: ArrayLike) -> Array:
         """Nominal strain max |t + θ × ρ| / (r_outer − r_inner) under a relative motion of the interfaces.
 
-        relative: (..., 6) motion (t, θ) of one interface against the other, m and rad. ρ runs over both
-        edges of the layer's middle surface (within 0.1 % in azimuth). Returns (...,). The strain at the
-        bonded corners is higher.
+        Parameters
+        ----------
+        relative
+            (..., 6) motion (t, θ) of one interface against the other, m and rad. ρ runs over both edges of
+            the layer's middle surface (within 0.1 % in azimuth). Returns (...,). The strain at the bonded
+            corners is higher.
         """
         q = np.asarray(relative, dtype=np.float64)
         if q.shape[-1:] != (6,):

@@ -16,8 +16,14 @@ AZIMUTHS = 48  # around a body of revolution
 class Outline:
     """The surface of a part in its own frame.
 
-    points: (p, 3), m. faces: (f, 3 or 4), their corners among the points.
-    rows: (3 p, n): x, y, z of every point from the coordinates of the part's superelement.
+    Parameters
+    ----------
+    points
+        (p, 3), m.
+    faces
+        (f, 3 or 4), their corners among the points.
+    rows
+        (3 p, n): x, y, z of every point from the coordinates of the part's superelement.
     """
 
     points: Array
@@ -27,7 +33,7 @@ class Outline:
 
 @runtime_checkable
 class Outlined(Protocol):
-    """A part that knows its geometry."""
+    """A part whose surface can be drawn."""
 
     def outline(self) -> Outline:
         """Its surface."""
@@ -41,8 +47,11 @@ def azimuths() -> Array:
 def revolved(r: Array, z: Array, lines: Index) -> tuple[Array, Index, Index]:
     """Lines (s, 2) of a section turned about z: points, quadrilaterals, and the section's points (k,) used.
 
-    r, z: points of the section, m. The points (k · AZIMUTHS, 3) come circle by circle. Lines without length
-    or on the axis have no face.
+    Parameters
+    ----------
+    r, z
+        Points of the section, m. The points (k · AZIMUTHS, 3) come circle by circle. Lines without length or
+        on the axis have no face.
     """
     length = np.hypot(np.diff(r[lines]), np.diff(z[lines]))[:, 0]
     used, lines = np.unique(lines[(r[lines] > 0.0).any(axis=1) & (length > 0.0)], return_inverse=True)
@@ -74,7 +83,12 @@ def box(sides: Array) -> tuple[Array, Index]:
 def carried(motion: Array, arms: Array) -> Array:
     """Rows (3 p, n) of points carried by rigid bodies: u = t + θ × arm.
 
-    motion: (6, n) of one body, or (p, 6, n) of one for each point; arms: (p, 3), m.
+    Parameters
+    ----------
+    motion
+        (6, n) of one body, or (p, 6, n) of one for each point.
+    arms
+        (p, 3), m.
     """
     turn = np.cross(motion[..., 3:, :], arms[:, :, None], axis=-2)
     return np.asarray((motion[..., :3, :] + turn).reshape(3 * len(arms), -1))

@@ -10,25 +10,37 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import whole
 from bearingdyn.cms import (
     Basis,
     FullModel,
     Raceway,
     Superelement,
     Viscoelastic,
+    check_damping,
+    check_f_max,
+    check_moduli,
+    check_rounds,
     modal_damping,
     modulus_levels,
 )
-from bearingdyn.fem.eigen import lowest_modes
-from bearingdyn.fem.revolution import AXIAL, TORSION, Harmonic, assemble
-from bearingdyn.fem.revolution_mesh import RevolutionMesh, revolution_mesh
+from bearingdyn.fem import (
+    AXIAL,
+    TORSION,
+    Harmonic,
+    RevolutionMesh,
+    assemble_harmonic,
+    lowest_modes,
+    revolution_mesh,
+)
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
+from bearingdyn.parts.faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.outline import Outline, azimuths, revolved
+from bearingdyn.parts.regions import Patch, Region, shape_moduli
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
-from bearingdyn.parts.section import Cylinder, EndFace, Groove, Patch, Region, Surface, shape_moduli
 from bearingdyn.types import Array, Complex, Index
 
 
@@ -36,9 +48,15 @@ from bearingdyn.types import Array, Complex, Index
 class RevolvedModes:
     """Undamped modes of one Fourier order.
 
-    order: n; frequency: (m,), Hz, rising; shapes: (m, nodes, 3), the amplitudes U, V, W of unit modal mass
-    at the mesh's nodes: u_r = U cos nφ, u_θ = V sin nφ (V itself for n = 0), u_z = W cos nφ. For n >= 1
-    each mode is double.
+    Parameters
+    ----------
+    order
+        n.
+    frequency
+        (m,), Hz, rising.
+    shapes
+        (m, nodes, 3), the amplitudes U, V, W of unit modal mass at the mesh's nodes: u_r = U cos nφ, u_θ = V
+        sin nφ (V itself for n = 0), u_z = W cos nφ. For n >= 1 each mode is double.
     """
 
     order: int
@@ -50,32 +68,49 @@ class RevolvedModes:
 class Revolved:
     """A body of revolution about z, not turning, of one or more regions bonded where they touch.
 
-    regions: rings of rectangular section; or, with a mesh in `section`, a Patch for each of its regions.
-    interfaces: name -> Cylinder, EndFace, Line, Where or MeshNodes, each moving as a rigid body with six
-        coordinates (x, y, z, θx, θy, θz) about the point of the axis in the middle of the face.
-    outputs: name -> point (r, z, φ), m, m, rad; its rows (3, n) give x, y, z, in the orders that are
-        carried: 0 and 1, and those of the grooves.
-    damping: ratio ζ of the free elastic modes of the elastic regions (the rubber then being only mass).
-    f_max: modes with the interfaces held, up to this frequency, Hz, join the static shapes; 0: none. They
-        are taken at the lowest of the moduli.
-    moduli: real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: the
-        relaxed modulus and |G*| at the fastest relaxation time of each material, and their geometric mean
-        if they are more than a hundredfold apart. Each modulus after the
-        first adds up to five shapes for two interfaces, and one for each coefficient of a groove.
-    refinement: mesh density; 1 gives layer stiffnesses within some 0.02 %. A mesh in `section` is taken as
-        it is.
-    grooves: name -> Groove, a face that carries balls by its Fourier orders. The rest of the surface is free.
-    section: a mesh of the section, as `quadrilaterals` makes it; None: the regions are meshed.
-    inertia: rounds of cms.inertia_shapes of the static shapes at each modulus; 1 serves a layer or a sample
-        better than many fixed-interface modes.
+    Parameters
+    ----------
+    regions
+        Rings of rectangular section; or, with a mesh in `section`, a Patch for each of its regions.
+    interfaces
+        name -> Cylinder, EndFace, Line, Where or MeshNodes, each moving as a rigid body with six coordinates
+        (x, y, z, θx, θy, θz) about the point of the axis in the middle of the face.
+    outputs
+        name -> point (r, z, φ), m, m, rad; its rows (3, n) give x, y, z, in the orders that are carried: 0
+        and 1, and those of the grooves.
+    damping
+        Ratio ζ of the free elastic modes of the elastic regions, to which the rubber adds its mass alone.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none, the default of bodies of
+        revolution. They are taken at the lowest of the moduli.
+    moduli
+        Real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: the relaxed
+        modulus and |G*| at the fastest relaxation time of each material, and their geometric mean if they are
+        more than a hundredfold apart. Each modulus after the first adds up to five shapes for two interfaces,
+        and one for each coefficient of a groove.
+    refinement
+        Mesh density; 1 gives layer stiffnesses within some 0.02 %. A mesh in `section` is taken as it is.
+    grooves
+        name -> Groove, a face that carries balls by its Fourier orders. The rest of the surface is free.
+    section
+        A mesh of the section, as `quadrilaterals` makes it; None: the regions are meshed.
+    inertia
+        How many rounds of cms.inertia_shapes follow the static shapes of each modulus. One round serves a
+        layer or a sample better than many fixed-interface modes.
 
-    Raises ValueError for regions that overlap, faces that are not part of the body or share a node, a
-    point outside the section, a mesh whose regions do not fit, and values outside their range.
-    Reference: paper section 3.3; harmonics, Zienkiewicz & Taylor, The Finite Element Method, vol. 2, ch. 9.
+    Raises
+    ------
+    ValueError
+        For regions that overlap, faces that are not part of the body or share a node, a point outside the
+        section, a mesh whose regions do not fit, and values outside their range.
+
+    References
+    ----------
+    Paper section 3.3; harmonics, Zienkiewicz & Taylor, The Finite Element Method, vol. 2, ch. 9.
     """
 
     regions: tuple[Region | Patch, ...]
-    interfaces: Mapping[str, Surface] = field(default_factory=dict)
+    interfaces: Mapping[str, Face] = field(default_factory=dict)
     outputs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     damping: float = 0.0
     f_max: float = 0.0
@@ -87,18 +122,13 @@ class Revolved:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "regions", tuple(self.regions))
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
-        if not 0 <= self.f_max < math.inf:
-            raise ValueError(
-                f"f_max is {self.f_max}; it must be a frequency in Hz, not negative, 0 for no modes"
-            )
+        check_damping(self.damping)
+        check_f_max(self.f_max)
+        check_rounds(self.inertia)
         if self.moduli is not None:
-            object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
-            if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
-                raise ValueError(f"moduli is {self.moduli}; it needs one or more positive shear moduli, Pa")
+            object.__setattr__(self, "moduli", check_moduli(self.moduli))
         self._check_regions()
-        _ = self.mesh  # regions that overlap, and faces that are none, are refused here
+        _ = self.mesh  # refuses regions that overlap and faces that do not exist
         owner: dict[int, str] = {}
         for name, nodes in self._boundaries.nodes():
             for node in nodes.tolist():
@@ -163,7 +193,7 @@ class Revolved:
     def _harmonic(self, order: int, components: tuple[int, ...]) -> Harmonic:
         key = (order, components)
         if key not in self._harmonics:
-            self._harmonics[key] = assemble(self.mesh, order, components)
+            self._harmonics[key] = assemble_harmonic(self.mesh, order, components)
         return self._harmonics[key]
 
     @property
@@ -176,14 +206,23 @@ class Revolved:
 
     def _shape_maker(self) -> ShapeMaker:
         return ShapeMaker(
-            self._boundaries, self._bulk, self._density, self.f_max, self.mesh.size, self.inertia
+            boundaries=self._boundaries,
+            bulk=self._bulk,
+            density=self._density,
+            f_max=self.f_max,
+            size=self.mesh.size,
+            inertia_rounds=self.inertia,
         )
 
     def stiffness(self, omega: float = 0.0) -> Complex:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
 
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
-        Raises ValueError where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
+
+        Raises
+        ------
+        ValueError
+            Where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
         """
         if not self.interfaces:
             raise ValueError("interfaces is empty; a stiffness needs at least one")
@@ -246,7 +285,10 @@ class Revolved:
     def full_model(self) -> FullModel:
         """The unreduced equations of orders 0 and 1 (those that rigid interfaces excite), sparse.
 
-        Raises ValueError for a body with grooves: a full model is joined by rigid interfaces only.
+        Raises
+        ------
+        ValueError
+            For a body with grooves: a full model is joined by rigid interfaces only.
         """
         if self.grooves:
             raise ValueError(
@@ -277,7 +319,10 @@ class Revolved:
         the higher, for 1:100 within 0.3 % between them; for
         1:30:1000 within 0.2 % (radial, 26/28×16 mm layer, K = 2 GPa).
 
-        Raises ValueError without an interface, or if moduli cannot be chosen for a material.
+        Raises
+        ------
+        ValueError
+            Without an interface, or if moduli cannot be chosen for a material.
         """
         if not self.interfaces and not self.grooves:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
@@ -312,8 +357,8 @@ class Revolved:
         return Superelement(
             M=M,
             C=modal_damping(M, P @ E @ P, self.damping),
-            K=P @ K @ P,
             G=np.zeros((n, n)),
+            K=P @ K @ P,
             interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(self.interfaces)},
             outputs=rows,
             viscoelastic=tuple(Viscoelastic(m, P @ h @ P) for m, h in zip(rubbers, H, strict=True)),
@@ -326,7 +371,10 @@ class Revolved:
     def outline(self) -> Outline:
         """Its surface, revolved.
 
-        Raises ValueError if moduli cannot be chosen for a material.
+        Raises
+        ------
+        ValueError
+            If moduli cannot be chosen for a material.
         """
         sides = self.mesh.outline_sides
         halves = np.vstack([sides[:, :2], sides[:, 1:]])
@@ -348,13 +396,19 @@ class Revolved:
     ) -> RevolvedModes:
         """Lowest `count` undamped modes of Fourier order n = `order`, rigid motions (0 Hz) included.
 
-        modulus: real shear modulus, Pa, of the viscoelastic regions; needed if there are any.
-        fixed: interfaces held still. The others are free surfaces here, not rigid.
+        Parameters
+        ----------
+        modulus
+            Real shear modulus, Pa, of the viscoelastic regions; needed if there are any.
+        fixed
+            Interfaces held still. The others are free surfaces here, not rigid.
 
-        Raises ValueError for a missing or non-positive modulus, an unknown interface, or a count below 1.
+        Raises
+        ------
+        ValueError
+            For a missing or non-positive modulus, an unknown interface, or a count below 1.
         """
-        if not count >= 1:
-            raise ValueError(f"count is {count}; ask for one mode or more")
+        whole("count", count, 1)
         shear: list[float] = []
         for q in self.regions:
             G = q.material.G if isinstance(q.material, Elastic) else modulus

@@ -9,9 +9,10 @@ import numpy as np
 import scipy
 
 from bearingdyn.cms import Basis, FullModel, RigidInterface, Viscoelastic
-from bearingdyn.fem.revolution import Harmonic
+from bearingdyn.fem import Harmonic
 from bearingdyn.material import Elastic
-from bearingdyn.parts.section import Face, Patch, Region
+from bearingdyn.parts.faces import MeshFace
+from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.types import Array
 
 Copies = Sequence[tuple[Sequence[int], Sequence[float]]]  # coordinates and signs of each copy of a family
@@ -20,12 +21,15 @@ Copies = Sequence[tuple[Sequence[int], Sequence[float]]]  # coordinates and sign
 def full_model(
     families: Sequence[tuple[Harmonic, Copies]],
     regions: Sequence[Region | Patch],
-    faces: Mapping[str, Face],
+    faces: Mapping[str, MeshFace],
     outputs: Mapping[str, tuple[float, float, float]],
 ) -> FullModel:
     """Matrices of all copies of all families on one diagonal, without coordinates removed on the axis.
 
-    outputs: name -> (r, z, φ).
+    Parameters
+    ----------
+    outputs
+        name -> (r, z, φ).
     """
     rubbers: list[Any] = []
     for q in regions:
@@ -68,17 +72,17 @@ def full_model(
             start += h.free.size
     stack = scipy.sparse.block_diag
     return FullModel(
-        stack(M),
-        stack(K),
-        {
+        M=stack(M),
+        K=stack(K),
+        E=stack(E),
+        interfaces={
             name: RigidInterface(
                 np.concatenate(dofs[name]), np.vstack(T[name]), np.array([0.0, 0.0, face.reference])
             )
             for name, face in faces.items()
         },
-        {name: scipy.sparse.hstack(parts) for name, parts in rows.items()},
-        tuple(Viscoelastic(m, stack(parts)) for m, parts in zip(rubbers, H, strict=True)),
-        E=stack(E),
+        outputs={name: scipy.sparse.hstack(parts) for name, parts in rows.items()},
+        viscoelastic=tuple(Viscoelastic(m, stack(parts)) for m, parts in zip(rubbers, H, strict=True)),
     )
 
 
@@ -89,8 +93,12 @@ def full_basis(
 ) -> Basis:
     """The shapes of the families in the coordinates of `full_model`.
 
-    families: each with its shapes (n, columns) and the number of them that are constraint shapes.
-    level: shear modulus of each viscoelastic material, Pa, of the reference state.
+    Parameters
+    ----------
+    families
+        Each with its shapes (n, columns) and the number of them that are constraint shapes.
+    level
+        Shear modulus of each viscoelastic material, Pa, of the reference state.
     """
     count = len(model.interfaces)
     constraint = np.zeros((model.n, 6 * count))

@@ -11,20 +11,27 @@ import numpy as np
 import scipy
 
 from bearingdyn.cms import inertia_shapes, orthogonalise
-from bearingdyn.fem.eigen import factorise, lowest_modes
-from bearingdyn.fem.revolution import Harmonic
+from bearingdyn.fem import Harmonic, factorise, lowest_modes
 from bearingdyn.parts.boundaries import Boundaries
 from bearingdyn.types import Array
 
 ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it is rigid motion
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ShapeMaker:
     """What the shapes depend on besides the moduli.
 
-    bulk, density: of each region, Pa and kg/m³. f_max: limit of the modes, Hz. size: of the section, m.
-    inertia: rounds of inertia shapes.
+    Parameters
+    ----------
+    bulk, density
+        Of each region, Pa and kg/m³.
+    f_max
+        Limit of the modes, Hz.
+    size
+        Of the section, m.
+    inertia_rounds
+        How often the inertia of the shapes is answered.
     """
 
     boundaries: Boundaries
@@ -32,7 +39,7 @@ class ShapeMaker:
     density: Sequence[float]
     f_max: float
     size: float
-    inertia: int = 0
+    inertia_rounds: int = 0
 
     def constraint_shapes(
         self, h: Harmonic, shear: Sequence[complex], grooves: bool = True
@@ -89,7 +96,7 @@ class ShapeMaker:
         moving[: self.boundaries.held(h)[1].shape[1] // max(len(self.boundaries.faces), 1)] = False
         unit = 1.0 / np.sqrt(np.diag(k)[moving])
         extra = [(self.constraint_shapes(h, level)[0] - static)[:, moving] * unit for level in levels[1:]]
-        if self.inertia:
+        if self.inertia_rounds:
             for level in levels:
                 extra += self._inertia_shapes(h, h.stiffness(self.bulk, level), M, level)
         if self.f_max > 0:
@@ -111,7 +118,7 @@ class ShapeMaker:
             u[inner] = lu.solve(load)
             return self._beyond(h, u, static)[inner]
 
-        return inertia_shapes(answer, K, M, static, inner, self.inertia)
+        return inertia_shapes(answer, K, M, static, inner, self.inertia_rounds)
 
     def _beyond(self, h: Harmonic, shapes: Array, static: Array) -> Array:
         """Shapes (n, m) at rest on the interfaces, less the constraint shapes that move the grooves alike."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bearingdyn.checks import positive
 from bearingdyn.cms import Superelement
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
@@ -17,13 +18,25 @@ from bearingdyn.parts.outline import Outline, box, carried, cylinder
 class RigidBody:
     """A rigid body with one interface, "centre", at its centre of mass.
 
-    mass: kg. inertia: (Ix, Iy, Iz), kg m², about the centre; the axes x, y, z are principal.
-    rotating: the body turns with the shaft about z; its polar inertia is then Iz, and Ix must equal Iy, for
-        the inertia of an unequal body would vary with the angle.
-    measures: (r_inner, r_outer, width), m, of the ring it is drawn as; None: the box of its inertia.
+    Parameters
+    ----------
+    mass
+        kg.
+    inertia
+        (Ix, Iy, Iz), kg m², about the centre; the axes x, y, z are principal.
+    rotating
+        The body turns with the shaft about z; its polar inertia is then Iz, and Ix must equal Iy, for the
+        inertia of an unequal body would vary with the angle.
+    measures
+        (r_inner, r_outer, width), m, of the ring it is drawn as; None: the box of its inertia.
 
-    Raises ValueError for values that are not positive or that no body can have.
+    Raises
+    ------
+    ValueError
+        For values that are not positive or that no body can have.
 
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> ring = bd.RigidBody.ring(r_inner=0.0, r_outer=0.1, width=0.02)  # a steel disc
     >>> round(ring.mass, 3), round(ring.inertia[2], 5)  # kg, m r²/2 in kg m²
@@ -36,14 +49,12 @@ class RigidBody:
     measures: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
-        if not (self.mass > 0 and math.isfinite(self.mass)):
-            raise ValueError(f"mass is {self.mass}; it must be a positive mass in kg")
+        positive("mass", self.mass, "it must be a positive mass in kg")
         inertia = tuple(float(i) for i in self.inertia)
         if len(inertia) != 3:
             raise ValueError(f"inertia is {self.inertia!r}; it must hold three moments (Ix, Iy, Iz) in kg m²")
         for name, value in zip(("Ix", "Iy", "Iz"), inertia, strict=True):
-            if not (value > 0 and math.isfinite(value)):
-                raise ValueError(f"inertia {name} is {value}; it must be a positive moment in kg m²")
+            positive(f"inertia {name}", value, "it must be a positive moment in kg m²")
         if not 2.0 * max(inertia) <= sum(inertia) * (1.0 + 1e-9):
             raise ValueError(f"inertia is {inertia}; no moment may exceed the sum of the other two")
         if self.rotating and not math.isclose(inertia[0], inertia[1], rel_tol=1e-9):
@@ -62,14 +73,15 @@ class RigidBody:
     ) -> RigidBody:
         """A ring (a disc when r_inner is 0) about z, for example that of a bearing; radii and width in m.
 
-        Raises ValueError unless 0 <= r_inner < r_outer <= 10 m and 0 < width <= 10 m.
+        Raises
+        ------
+        ValueError
+            Unless 0 <= r_inner < r_outer <= 10 m and 0 < width <= 10 m.
         """
-        if not (r_outer > 0 and math.isfinite(r_outer)):
-            raise ValueError(f"r_outer is {r_outer}; it must be a positive radius in m")
+        positive("r_outer", r_outer, "it must be a positive radius in m")
         if not 0 <= r_inner < r_outer:
             raise ValueError(f"r_inner is {r_inner}; it must be at least 0 and below r_outer = {r_outer} m")
-        if not (width > 0 and math.isfinite(width)):
-            raise ValueError(f"width is {width}; it must be a positive width in m")
+        positive("width", width, "it must be a positive width in m")
         check_length("r_outer", r_outer)
         check_length("width", width)
         mass = material.density * math.pi * (r_outer**2 - r_inner**2) * width
@@ -86,8 +98,8 @@ class RigidBody:
         return Superelement(
             M=np.diag([self.mass] * 3 + list(self.inertia)),
             C=np.zeros((6, 6)),
-            K=np.zeros((6, 6)),
             G=G,
+            K=np.zeros((6, 6)),
             interfaces={"centre": np.arange(6)},
         )
 

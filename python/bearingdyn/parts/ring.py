@@ -6,25 +6,38 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
+from bearingdyn.checks import positive
 from bearingdyn.cms import Superelement
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.regions import Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
-from bearingdyn.parts.section import Cylinder, Region, ViscoelasticSolid
 
 
 @dataclass(frozen=True)
 class Ring:
-    """An elastic ring of rectangular section, not turning; interfaces "inner" and "outer", its faces.
+    """An elastic ring of rectangular section, not turning; its faces "inner" and "outer" are rigid.
 
-    r_inner, r_outer, width: m; the reference point of both faces lies on the axis at mid-width.
-    damping: ratio ζ of its free elastic modes. f_max: fixed-interface modes up to this
-        frequency, Hz; 0: none.
-    refinement: mesh density.
+    Parameters
+    ----------
+    r_inner, r_outer, width
+        m. The reference point of both faces lies on the axis at mid-width.
+    material
+        Elastic material.
+    damping
+        Ratio ζ of its free elastic modes.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none, the default of bodies of
+        revolution.
+    refinement
+        Mesh density; 1 is the default.
 
-    Raises ValueError for dimensions that are not positive, r_outer not above r_inner, or more than
-    10 m: they are then in mm.
+    Raises
+    ------
+    ValueError
+        For dimensions that are not positive, r_outer not above r_inner, or more than 10 m (given in mm).
     """
 
     r_inner: float
@@ -36,12 +49,10 @@ class Ring:
     refinement: float = 1.0
 
     def __post_init__(self) -> None:
-        if not self.r_inner > 0:
-            raise ValueError(f"r_inner is {self.r_inner}; a ring needs a positive inner radius, m")
+        positive("r_inner", self.r_inner, "it must be a positive radius in m")
         if not self.r_outer > self.r_inner:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
-        if not self.width > 0:
-            raise ValueError(f"width is {self.width}; it must be positive, m")
+        positive("width", self.width, "it must be a positive length in m")
         for name in ("r_outer", "width"):
             check_length(name, getattr(self, name))
         _ = self.body
@@ -81,11 +92,23 @@ def damping_sample(
 ) -> Revolved:
     """Two concentric metal rings with a layer bonded between them, the paper's sample (figure 3); SI units.
 
-    radii: bore, inner bond, outer bond, outside. Interfaces "inner" (the bore) and "outer" (the outside)
-    are rigid. Raises ValueError for radii that do not rise.
+    Parameters
+    ----------
+    radii
+        Bore, inner bond, outer bond, outside. Interfaces "inner" (the bore) and "outer" (the outside) are
+        rigid.
 
-    Reference: paper section 3.4.
+    Raises
+    ------
+    ValueError
+        For radii that do not rise.
 
+    References
+    ----------
+    Paper section 3.4.
+
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> sample = bd.damping_sample(bd.Elastic(2.98e6, 0.49, 1200.0))  # G = 1 MPa
     >>> [round(float(f)) for f in sample.modes(0, 4).frequency[2:]]  # axial, torsion, Hz

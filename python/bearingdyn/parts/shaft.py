@@ -10,8 +10,19 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy
 
-from bearingdyn.cms import Basis, FullModel, RigidInterface, Superelement, basis_of, project
-from bearingdyn.fem.beam import Section, assemble, bending_wavelength
+from bearingdyn.checks import nonnegative, number, positive
+from bearingdyn.cms import (
+    F_MAX,
+    Basis,
+    FullModel,
+    RigidInterface,
+    Superelement,
+    basis_of,
+    check_damping,
+    check_f_max,
+    project,
+)
+from bearingdyn.fem import Section, assemble_beam, bending_wavelength
 from bearingdyn.magnitude import LONGEST_SHAFT, check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
@@ -22,9 +33,21 @@ ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at
 
 @dataclass(frozen=True)
 class Disc:
-    """A rigid disc on a shaft, at z, m: mass, kg, diametral and polar moment of inertia Id and Ip, kg m².
+    """A rigid disc on a shaft.
 
-    Raises ValueError for a mass or moment that is not positive, or that no disc can have.
+    Parameters
+    ----------
+    z
+        Position along the shaft, m.
+    mass
+        kg.
+    Id, Ip
+        Diametral and polar moment of inertia, kg m².
+
+    Raises
+    ------
+    ValueError
+        For a mass or moment that is not positive, or that no disc can have.
     """
 
     z: float
@@ -33,13 +56,10 @@ class Disc:
     Ip: float
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.z):
-            raise ValueError(f"Disc z is {self.z}; it must be a position in m")
-        if not (self.mass > 0 and math.isfinite(self.mass)):
-            raise ValueError(f"Disc mass is {self.mass}; it must be a positive mass in kg")
-        for name, value in (("Id", self.Id), ("Ip", self.Ip)):
-            if not (value >= 0 and math.isfinite(value)):
-                raise ValueError(f"Disc {name} is {value}; it must be a moment in kg m², not negative")
+        number("Disc z", self.z, "it must be a position in m")
+        positive("Disc mass", self.mass, "it must be a positive mass in kg")
+        nonnegative("Disc Id", self.Id, "it must be a moment in kg m², not negative")
+        nonnegative("Disc Ip", self.Ip, "it must be a moment in kg m², not negative")
         if not self.Ip <= 2.0 * self.Id * (1.0 + 1e-9):
             raise ValueError(f"Disc Ip is {self.Ip}; no disc has Ip above 2 Id = {2.0 * self.Id} kg m²")
 
@@ -49,7 +69,10 @@ class Disc:
     ) -> Disc:
         """A cylinder centred at z with the shaft's diameter d_inner left out; lengths in m.
 
-        Raises ValueError for measures that make no cylinder.
+        Raises
+        ------
+        ValueError
+            For measures that make no cylinder.
         """
         body = Section(width, d_outer, d_inner)
         mass = material.density * body.area * width
@@ -61,20 +84,40 @@ class Disc:
 class Shaft:
     """A flexible shaft along z, from z = 0 upward, turning about z.
 
-    sections: stacked one on the other. material: of all sections.
-    seats: name -> z, m: rigid six-coordinate interfaces, to be joined or to carry a bearing's ring.
-    points: name -> z, m: outputs, rows (6, n), where loads may act and motion is read.
-    discs: rigid discs. damping: ratio ζ of every free elastic mode, turning with the shaft.
-    f_max: fixed-interface modes are kept up to this frequency, Hz: three to four times the highest of
-        interest keeps frequencies to about 0.1 %.
-    element_length: longest beam element, m; by default 1/30 of the shortest bending wave at f_max.
+    Parameters
+    ----------
+    sections
+        Stacked one on the other.
+    material
+        Of all sections.
+    seats
+        name -> z, m: rigid six-coordinate interfaces, to be joined or to carry a bearing's ring.
+    points
+        name -> z, m: outputs, rows (6, n), where loads may act and motion is read.
+    discs
+        Rigid discs.
+    damping
+        Ratio ζ of every free elastic mode, turning with the shaft.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; by default 20 kHz. It must be above
+        0, for the elements are chosen by it. Three to four times the highest frequency of interest keeps
+        frequencies to about 0.1 %.
+    element_length
+        Longest beam element, m; by default 1/30 of the shortest bending wave at f_max.
 
-    Raises ValueError for a position off the shaft, a name used twice, two seats in one place, values that
-    are not positive and finite, or more than 100 m in all.
+    Raises
+    ------
+    ValueError
+        For a position off the shaft, a name used twice, two seats in one place, values that are not positive
+        and finite, or more than 100 m in all.
 
-    Reference: J. S. Przemieniecki, Theory of Matrix Structural Analysis (Timoshenko element); H. D. Nelson,
-    J. Mech. Design 102 (1980) 793 (gyroscopic terms).
+    References
+    ----------
+    J. S. Przemieniecki, Theory of Matrix Structural Analysis (Timoshenko element); H. D. Nelson, J. Mech.
+    Design 102 (1980) 793 (gyroscopic terms).
 
+    Examples
+    --------
     >>> import bearingdyn as bd
     >>> seats = {"left": 0.02, "right": 0.28}
     >>> element = bd.Shaft([bd.Section(0.3, 0.03)], seats, points={"middle": 0.15}).superelement()
@@ -88,7 +131,7 @@ class Shaft:
     discs: Sequence[Disc] = ()
     material: Elastic = STEEL
     damping: float = 0.0
-    f_max: float = 20e3
+    f_max: float = F_MAX
     element_length: float | None = None
 
     def __post_init__(self) -> None:
@@ -115,10 +158,8 @@ class Shaft:
         for (a, za), (b, zb) in itertools.pairwise(by_place):
             if not zb - za > 1e-6 * L:
                 raise ValueError(f"seats {a!r} and {b!r} are both at z = {za} m; move one, or keep one")
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
-        if not (self.f_max > 0 and math.isfinite(self.f_max)):
-            raise ValueError(f"f_max is {self.f_max}; it must be a positive frequency in Hz")
+        check_damping(self.damping)
+        check_f_max(self.f_max, may_be_zero=False)
         if self.element_length is not None and not self.element_length > 1e-4 * L:
             raise ValueError(f"element_length is {self.element_length}; it must exceed {1e-4 * L:.3g} m")
 
@@ -148,7 +189,7 @@ class Shaft:
     def full_model(self) -> FullModel:
         """The unreduced equations: sparse matrices, six coordinates at each of `nodes`."""
         z, sections = self.nodes()
-        M, K, G = assemble(z, sections, self.material)
+        M, G, K = assemble_beam(z, sections, self.material)
         n = 6 * len(z)
 
         def coordinates(place: float) -> Index:
@@ -170,7 +211,7 @@ class Shaft:
             for name, place in self.seats.items()
         }
         points = {name: selection(place) for name, place in self.points.items()}
-        return FullModel(M, K, seats, points, G=G, spin=spin_generator(len(z)))
+        return FullModel(M=M, G=G, K=K, interfaces=seats, outputs=points, spin=spin_generator(len(z)))
 
     def superelement(self) -> Superelement:
         """The shaft reduced onto its seats and the fixed-interface modes up to f_max."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -13,6 +12,7 @@ import scipy.linalg
 import scipy.sparse
 
 from bearingdyn.cms import (
+    F_MAX,
     Basis,
     FullModel,
     RigidInterface,
@@ -20,30 +20,37 @@ from bearingdyn.cms import (
     Surface,
     Viscoelastic,
     basis_of,
+    check_damping,
+    check_f_max,
+    check_held,
+    check_moduli,
+    check_rounds,
     project,
 )
-from bearingdyn.fem.eigen import factorise, rigid_motion
-from bearingdyn.fem.solid import assemble_solid
-from bearingdyn.fem.solid_element import face_shapes
-from bearingdyn.fem.solid_mesh import SolidMesh, SurfaceSamples
+from bearingdyn.fem import SolidMesh, SurfaceSamples, assemble_solid, face_shapes, factorise, rigid_motion
 from bearingdyn.magnitude import LARGEST_SOLID, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.section import ViscoelasticSolid
+from bearingdyn.parts.regions import ViscoelasticSolid
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
 Material = Elastic | ViscoelasticSolid
 
-LOCKING = 0.45  # Poisson's ratio from which on an elastic region, too, has the cure against locking
+LOCKING = 0.45  # Poisson's ratio from which an elastic region is assembled as incompressible, lest it lock
 
 
 @dataclass(frozen=True)
 class RigidSurface:
     """Surfaces of a mesh that move together as one rigid body with six coordinates.
 
-    surface: one name or several. reference: the point (x, y, z), m, whose motion the coordinates are;
-    "centroid": of the area; "axis": the point of the z axis at the centroid's height.
+    Parameters
+    ----------
+    surface
+        One name or several.
+    reference
+        The point (x, y, z), m, whose motion the coordinates are; "centroid": of the area; "axis": the point
+        of the z axis at the centroid's height.
     """
 
     surface: str | tuple[str, ...]
@@ -82,36 +89,54 @@ class RigidSurface:
 class Solid:
     """A three-dimensional body of one or more materials, not turning, with rigid interfaces.
 
-    mesh: SolidMesh, as read_mesh, box_mesh, ring_mesh or block_with_bore return it.
-    materials: of each region by name, or one for all; Elastic, or viscoelastic in shear as Maxwell.
-    interfaces: name -> name of a surface, or RigidSurface. Feet are an interface too, which the application
-        grounds. Interfaces share no node.
-    f_max: fixed-interface modes up to this frequency, Hz, join the static shapes; 0: none. They are taken at
-        the lowest of the moduli.
-    outputs: name -> (x, y, z), m: the nearest node; or name of a surface: its motion averaged over the area.
-        Rows (3, n) give x, y, z.
-    damping: ratio ζ of the elastic modes of the elastic regions, of the free body, or held at the interface
+    Viscoelastic regions, and elastic ones with ν of 0.45 or more, are assembled as incompressible, so that
+    they do not lock: see fem.assemble_solid. In rubber use 27-node bricks, which are some five times as
+    accurate as 20-node ones; `mesh.with_centres()` makes them.
+
+    Parameters
+    ----------
+    mesh
+        SolidMesh, as read_mesh, box_mesh, ring_mesh or block_with_bore return it.
+    materials
+        Of each region by name, or one for all; Elastic, or viscoelastic in shear as Maxwell.
+    interfaces
+        name -> name of a surface, or RigidSurface. Feet are an interface too; the application grounds them.
+        No two interfaces may share a node.
+    f_max
+        Modes with the interfaces held are kept up to this frequency, Hz; 0: none; by default 20 kHz. They are
+        taken at the lowest of the moduli.
+    outputs
+        name -> (x, y, z), m: the nearest node; or name of a surface: its motion averaged over the area. Rows
+        (3, n) give x, y, z.
+    damping
+        Ratio ζ of the elastic modes of the elastic regions, of the free body, or held at the interface
         `held`.
-    moduli: real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: chosen
-        from each material's range (cms.modulus_levels).
-    attach: outputs at which loads act, whose static shapes then join the basis.
-    radiating: surfaces of the mesh that the superelement carries for the power they radiate.
-    inertia: rounds of cms.inertia_shapes of the static shapes at each modulus: one serves better than many
-        fixed-interface modes; with moduli=(G,), 0 is the paper's basis.
+    moduli
+        Real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: chosen from
+        each material's range (cms.modulus_levels).
+    attach
+        Outputs at which loads act, whose static shapes then join the basis.
+    radiating
+        Surfaces of the mesh that the superelement carries for the power they radiate.
+    inertia
+        How many rounds of cms.inertia_shapes follow the static shapes of each modulus. One round serves
+        better than many fixed-interface modes; 0 with moduli=(G,) is the paper's basis.
 
-    Viscoelastic regions, and elastic ones with ν of 0.45 or more, have the cure against locking that their
-    element allows: see fem.assemble_solid. Of 20-node bricks in rubber, `mesh.with_centres()` makes 27-node
-    ones, which are some five times as accurate there.
+    Raises
+    ------
+    ValueError
+        For names that are not the mesh's, a region without material, interfaces that share a node or lie on a
+        line, a point away from the body, and values outside their range.
 
-    Raises ValueError for names that are not the mesh's, a region without material, interfaces that share a
-    node or lie on a line, a point away from the body, and values outside their range.
-    Reference: paper (13), (14), (21)-(25).
+    References
+    ----------
+    Paper (13), (14), (21)-(25).
     """
 
     mesh: SolidMesh
     materials: Mapping[str, Material] | Material
     interfaces: Mapping[str, str | RigidSurface]
-    f_max: float
+    f_max: float = F_MAX
     outputs: Mapping[str, Point | str] = field(default_factory=dict)
     damping: float = 0.0
     held: str | None = None
@@ -121,22 +146,16 @@ class Solid:
     inertia: int = 1
 
     def __post_init__(self) -> None:
-        if not 0 <= self.f_max < math.inf:
-            raise ValueError(f"f_max is {self.f_max}; it must be a frequency in Hz, 0 for no modes")
-        if not self.inertia >= 0:
-            raise ValueError(f"inertia is {self.inertia}; it must be a number of rounds, 0 or more")
-        if not 0 <= self.damping < 1:
-            raise ValueError(f"damping is {self.damping}; a damping ratio lies in 0 <= ζ < 1")
+        check_f_max(self.f_max)
+        check_rounds(self.inertia)
+        check_damping(self.damping)
         if self.moduli is not None:
-            object.__setattr__(self, "moduli", tuple(float(G) for G in self.moduli))
-            if not self.moduli or not all(0 < G < math.inf for G in self.moduli):
-                raise ValueError(f"moduli is {self.moduli}; it needs one or more positive shear moduli, Pa")
+            object.__setattr__(self, "moduli", check_moduli(self.moduli))
         check_length("the body's extent", float(np.ptp(self.mesh.points, axis=0).max()), LARGEST_SOLID)
         self._check_materials()
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
-        if self.held is not None and self.held not in self.interfaces:
-            raise ValueError(f"held is {self.held!r}; the interfaces are {sorted(self.interfaces)}")
+        check_held(self.held, self.interfaces)
         owner: dict[int, str] = {}
         for name, face in self._faces.items():
             p = self.mesh.points[face[0]]
@@ -245,12 +264,12 @@ class Solid:
                 dofs, rigid_motion(self.mesh.points[nodes], reference), reference
             )
         return FullModel(
-            M,
-            E + bulk,
-            interfaces,
-            self._rows,
-            tuple(Viscoelastic(material, H) for material, H in rubbers),
+            M=M,
+            K=E + bulk,
             E=E if rubbers else None,
+            interfaces=interfaces,
+            outputs=self._rows,
+            viscoelastic=tuple(Viscoelastic(material, H) for material, H in rubbers),
         )
 
     def full_model(self) -> FullModel:
@@ -271,14 +290,20 @@ class Solid:
     def basis(self) -> Basis:
         """The shapes `superelement` takes, in the coordinates of `full_model`.
 
-        Raises ValueError if moduli cannot be chosen for a material.
+        Raises
+        ------
+        ValueError
+            If moduli cannot be chosen for a material.
         """
         return self._basis
 
     def superelement(self) -> Superelement:
         """The body reduced onto its interfaces: static shapes at each modulus, and modes up to f_max.
 
-        Raises ValueError if moduli cannot be chosen for a material.
+        Raises
+        ------
+        ValueError
+            If moduli cannot be chosen for a material.
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
         return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
@@ -313,7 +338,11 @@ class Solid:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
 
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
-        Raises ValueError where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
+
+        Raises
+        ------
+        ValueError
+            Where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
         """
         model = self._full_model
         shear = [complex(part.material.complex_modulus(omega)) for part in model.viscoelastic]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from bearingdyn.fem.exchange.abaqus import read_abaqus, read_nodes
-from bearingdyn.fem.exchange.archive import read_npz
-from bearingdyn.fem.exchange.calculix import read_calculix
-from bearingdyn.fem.exchange.matrices import FEMatrices, Points
-from bearingdyn.fem.exchange.matrix_market import is_matrix_market, read_matrix_market
-from bearingdyn.fem.exchange.nastran import read_op4
-from bearingdyn.fem.exchange.text import existing
+from bearingdyn.fem.matrix_files.abaqus import read_abaqus, read_nodes
+from bearingdyn.fem.matrix_files.calculix import read_calculix
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.matrix_market import is_matrix_market, read_matrix_market
+from bearingdyn.fem.matrix_files.nastran import read_op4
+from bearingdyn.fem.matrix_files.npz import read_npz
+from bearingdyn.fem.matrix_files.text_tables import existing
 
 
 def read_matrices(
@@ -20,16 +20,25 @@ def read_matrices(
     points: Points | str | Path | None = None,
     **check: Any,
 ) -> FEMatrices:
-    """Read and check the matrices of another program; the ending of the file says of which.
+    """Read and check the matrices of another program; the suffix of the file says which.
 
     .npz: NumPy archive, one file. .op4: Nastran, one file or two. .sti: CalculiX, with its .mas and .dof
     beside it. .mtx: MatrixMarket or Abaqus, as its first line says, two files.
-    points: positions of the nodes, as in check_matrices, or the path of an .inp with *NODE blocks.
-    check: expected_mass, kg, units, internal, labels and sound, as in check_matrices; for .op4 also the
+
+    Parameters
+    ----------
+    stiffness, mass
+        Paths of the files.
+    points
+        Positions of the nodes, as in check_matrices, or the path of an .inp with *NODE blocks.
+    check
+        expected_mass, kg, units, internal, labels and sound, as in check_matrices; for .op4 also the
         matrices' names, as in read_op4.
 
-    Raises ValueError for an ending it does not know, a second file that is missing, and where the format's
-    own reader does.
+    Raises
+    ------
+    ValueError
+        For an unknown suffix or a second file that is missing, and where the reader of the format does.
     """
     path = existing(stiffness)
     if isinstance(points, str | Path):

@@ -23,7 +23,11 @@ def columns(path: Path, delimiter: str | None, widths: tuple[int, ...], kind: st
     """The numbers of a text file, (lines, columns); lines that begin with * are left out.
 
     Fortran's exponents (1.0D+05) are read too.
-    Raises ValueError naming the file where it does not hold as many columns as one of widths.
+
+    Raises
+    ------
+    ValueError
+        Naming the file where it does not hold as many columns as one of widths.
     """
     try:
         try:

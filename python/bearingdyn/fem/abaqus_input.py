@@ -48,7 +48,10 @@ def fields(line: str) -> list[str]:
 def node(line: str) -> tuple[int, tuple[float, float, float]]:
     """Number and position of a line of *NODE; a coordinate that is blank or absent is zero.
 
-    Raises ValueError for a line that is none.
+    Raises
+    ------
+    ValueError
+        If the line does not hold a node.
     """
     number, *place = (f.strip() for f in line.split(","))
     try:

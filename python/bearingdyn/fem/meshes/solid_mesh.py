@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from bearingdyn.fem.solid_element import (
+from bearingdyn.fem.meshes.solid_element import (
     BRICK_EDGES,
     HEX20,
     HEX27,
@@ -30,12 +30,20 @@ from bearingdyn.types import Array, Index
 MIDDLE = 0.3  # a middle node may lie this far from the middle of its edge, in lengths of the edge
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceSamples:
     """A surface by its integration points: Σ weights·f is ∫ f dA.
 
-    positions: (q, 3), m. normals: (q, 3), outward, of unit length. weights: (q,), all positive, m².
-    interpolation: (q, n) sparse, a nodal field's values at the points.
+    Parameters
+    ----------
+    positions
+        (q, 3), m.
+    normals
+        (q, 3), outward, of unit length.
+    weights
+        (q,), all positive, m².
+    interpolation
+        (q, n) sparse, a nodal field's values at the points.
     """
 
     positions: Array
@@ -78,16 +86,26 @@ class SurfaceSamples:
 class SolidMesh:
     """20- or 27-node bricks, or 10-node tetrahedra, that hang together.
 
-    points: (n, 3) nodes, m.
-    elements: (m, 20, 27 or 10) nodes of each element, numbered as VTK and Abaqus do: corners, middles of
-        edges, and for 27 the middles of the faces x−, x+, y−, y+, z−, z+ and the centre.
-    regions: name -> elements, each element in one; none given: one region "body".
-    surfaces: name -> nodes.
-    numbers: (m,) what to call the elements in messages (default: from 0).
+    Parameters
+    ----------
+    points
+        (n, 3) nodes, m.
+    elements
+        (m, 20, 27 or 10) nodes of each element, numbered as VTK and Abaqus do: corners, middles of edges, and
+        for 27 the middles of the faces x−, x+, y−, y+, z−, z+ and the centre.
+    regions
+        name -> elements, each element in one; none given: one region "body".
+    surfaces
+        name -> nodes.
+    numbers
+        (m,) what to call the elements in messages (default: from 0).
 
-    Raises ValueError, naming the element or node, for an element turned inside out, numbered in the order of
-    a mirror image or with a middle node far from its edge, for nodes that no element has, bodies that do not
-    hang together, an element in no region or in two, and an empty surface.
+    Raises
+    ------
+    ValueError
+        Naming the element or node, for an element turned inside out, numbered in the order of a mirror image
+        or with a middle node far from its edge, for nodes that no element has, bodies that do not hang
+        together, an element in no region or in two, and an empty surface.
     """
 
     points: Array
@@ -238,7 +256,10 @@ class SolidMesh:
     def with_surface(self, name: str, where: Callable[[Array], Any]) -> SolidMesh:
         """The mesh with one more surface: the nodes of the boundary for whose points (k, 3) `where` is true.
 
-        Raises ValueError if there is none, or the name is taken.
+        Raises
+        ------
+        ValueError
+            If there is none, or the name is taken.
         """
         if name in self.surfaces:
             raise ValueError(f"the mesh has a surface {name!r} already; choose another name")
@@ -251,7 +272,10 @@ class SolidMesh:
     def with_region(self, name: str, where: Callable[[Array], Any]) -> SolidMesh:
         """The mesh with the elements for whose middles (m, 3) `where` is true made a region of that name.
 
-        Raises ValueError if there is none, or the name is taken.
+        Raises
+        ------
+        ValueError
+            If there is none, or the name is taken.
         """
         if name in self.regions:
             raise ValueError(f"the mesh has a region {name!r} already; choose another name")
@@ -274,7 +298,10 @@ class SolidMesh:
     def faces(self, name: str) -> Index:
         """Boundary faces of a surface: those with all their nodes on it.
 
-        Raises ValueError for an unknown name, or a surface that holds no face of the boundary.
+        Raises
+        ------
+        ValueError
+            For an unknown name, or a surface that holds no face of the boundary.
         """
         on = np.isin(self.boundary, self.surface(name)).all(axis=1)
         if not on.any():
@@ -286,7 +313,10 @@ class SolidMesh:
     def samples(self, name: str) -> SurfaceSamples:
         """The integration points of a surface, 9 on each quadrilateral and 6 on each triangle.
 
-        Raises ValueError as `faces` does.
+        Raises
+        ------
+        ValueError
+            As `faces` does.
         """
         faces = self.faces(name)
         X, w = face_points(self.kind)
@@ -332,8 +362,14 @@ class SolidMesh:
 def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Array, Index, Index]:
     """Middle nodes for straight-edged bricks (m, 8) or tetrahedra (m, 4).
 
-    Returns points (n', 3), the given ones first; elements (m, 20) or (m, 10); and the ends (n' − n, 2)
-    between which each new point lies.
+    Returns
+    -------
+    points : (n', 3) array
+        The given points, then the new ones.
+    elements : (m, 20) or (m, 10) array
+        Nodes of each element.
+    ends : (n' − n, 2) array
+        The two points between which each new one lies.
     """
     p, c = np.asarray(points, dtype=np.float64), np.asarray(corners, dtype=np.intp)
     edges = np.sort(c[:, np.array(BRICK_EDGES if c.shape[1] == 8 else TET_EDGES)].reshape(-1, 2), axis=1)

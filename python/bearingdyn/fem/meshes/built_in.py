@@ -10,8 +10,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.solid_element import HEX20, HEX27
-from bearingdyn.fem.solid_mesh import SolidMesh, merged, second_order
+from bearingdyn.checks import positive, whole
+from bearingdyn.fem.meshes.solid_element import HEX20, HEX27
+from bearingdyn.fem.meshes.solid_mesh import SolidMesh, merged, second_order
 from bearingdyn.types import Array, Index
 
 BRICKS = (HEX20.name, HEX27.name)
@@ -31,9 +32,19 @@ def crowded(a: float, b: float, count: int) -> Array:
 
 
 def box_mesh(x: ArrayLike, y: ArrayLike, z: ArrayLike, element: str = "hex20") -> SolidMesh:
-    """Bricks between grid lines x, y, z, m, each rising; surfaces "x-", "x+", "y-", "y+", "z-", "z+".
+    """Bricks between grid lines x, y, z; surfaces "x-", "x+", "y-", "y+", "z-", "z+".
 
-    element: "hex20" or "hex27". Raises ValueError for lines that do not rise.
+    Parameters
+    ----------
+    x, y, z
+        Grid lines, m, each rising.
+    element
+        "hex20" or "hex27".
+
+    Raises
+    ------
+    ValueError
+        For lines that do not rise, or an unknown element.
     """
     lines = [np.asarray(v, dtype=np.float64) for v in (x, y, z)]
     for name, v in zip("xyz", lines, strict=True):
@@ -72,20 +83,33 @@ def ring_mesh(
 ) -> SolidMesh:
     """A ring about z, or a segment of it, of concentric layers, each layer a region.
 
-    radii: bore, bonds, outside, m, rising. width: along z, m, the middle at z = 0.
-    angle: (from, to), rad; None: the whole ring. across: elements through each layer; along: over the width;
-    around: over the angle. Lines crowd to the ends of the width, and to both faces of each layer.
-    regions: names of the layers (default "layer 1", ...).
-    Surfaces: "inner", "outer", "z-", "z+", of a segment also "start" and "end".
+    Lines crowd towards the ends of the width, and towards both faces of each layer. Surfaces: "inner",
+    "outer", "z-", "z+"; of a segment also "start" and "end".
 
-    Raises ValueError for measures out of order, fewer than 6 elements around a whole ring, or a segment of a
-    turn or more.
+    Parameters
+    ----------
+    radii
+        Radii of the bore, the bonds and the outside, m, rising.
+    width
+        Extent along z, m, with its middle at z = 0.
+    angle
+        (from, to), rad; None: the whole ring.
+    across, along, around
+        Number of elements through each layer, over the width and over the angle.
+    regions
+        Names of the layers (default "layer 1", ...).
+    element
+        "hex20" or "hex27".
+
+    Raises
+    ------
+    ValueError
+        For measures out of order, fewer than 6 elements around a whole ring, or a segment of a turn or more.
     """
     count = len(radii) - 1
     if not (count >= 1 and radii[0] > 0 and all(b > a for a, b in itertools.pairwise(radii))):
         raise ValueError(f"radii is {tuple(radii)}; it must be two radii or more, rising from above 0, m")
-    if not (width > 0 and math.isfinite(width)):
-        raise ValueError(f"width is {width}; it must be positive, m")
+    positive("width", width, "it must be a positive length in m")
     names = tuple(regions) or tuple(f"layer {k + 1}" for k in range(count))
     steps = (across,) * count if isinstance(across, int) else tuple(across)
     if len(names) != count or len(steps) != count or len(set(names)) != count:
@@ -134,12 +158,28 @@ def o_ring_mesh(
 ) -> SolidMesh:
     """An O-ring about z, or a segment of it, at rest between a shaft and a bore.
 
-    radius: of the circle of the cord's centre, m. cord: its diameter, m. band: width, m, along z, of the two
-    strips by which it holds, the innermost and the outermost of its surface; 0.2 to 0.95 of the cord.
-    angle: (from, to), rad; None: the whole ring. across: elements across each band; around: over the angle.
     Surfaces: "inner" and "outer", the bands; of a segment also "start" and "end".
 
-    Raises ValueError for measures out of range.
+    Parameters
+    ----------
+    radius
+        Radius of the circle on which the cord's centre lies, m.
+    cord
+        Diameter of the cord, m.
+    band
+        Width along z, m, of the two strips by which the ring is held, the innermost and the outermost of its
+        surface; 0.2 to 0.95 of the cord.
+    angle
+        (from, to), rad; None: the whole ring.
+    across, around
+        Number of elements across each band and over the angle.
+    element
+        "hex20" or "hex27".
+
+    Raises
+    ------
+    ValueError
+        For measures out of range.
     """
     if not (cord > 0 and 0.5 * cord < radius < math.inf):
         raise ValueError(f"cord is {cord} and radius {radius}; they must be positive, radius above cord/2, m")
@@ -147,8 +187,7 @@ def o_ring_mesh(
         raise ValueError(
             f"band is {band}; it must lie in 0.2 to 0.95 of the cord, {0.2 * cord} to {0.95 * cord} m"
         )
-    if not across >= 2:
-        raise ValueError(f"across is {across}; it must be 2 or more")
+    whole("across", across, 2)
     start, end = _angles(angle, around)
     a, half, core = 0.5 * cord, math.asin(band / cord), 0.45
     # the section: a rectangle in the middle and four patches about it; lines crowd to the ends of the bands
@@ -186,8 +225,7 @@ def _angles(angle: tuple[float, float] | None, around: int) -> tuple[float, floa
     if not (start < end and (angle is None or end - start < 2.0 * math.pi - 1e-6)):
         raise ValueError(f"angle is {angle}; it must be (from, to) in rad, less than a turn; None: the whole")
     least = 6 if angle is None else 1
-    if not around >= least:
-        raise ValueError(f"around is {around}; it must be {least} or more")
+    whole("around", around, least)
     return start, end
 
 
@@ -234,13 +272,27 @@ def block_with_bore(
 ) -> SolidMesh:
     """Structured mesh of bricks of a block with a round bore through it along z.
 
-    width along x, height along y, length along z, m; the origin is on the bore's axis at mid-length.
-    bore_height: of the axis above the base. element_size: longest wanted side, m.
-    flange: (width, height) of two flanges on the sides at the base. strip: a grid line runs this far in from
-    either side, along the base. The bore is round: its nodes lie on the circle and its edges are quadratic.
-    Surfaces: "bore", "base", "top", "front" (at +z), "back"; "feet", the undersides of the flanges, the
-    strips, or the base; "outside", all but the bore and the base. The measures are taken to be consistent
-    (parts.Housing checks them).
+    The origin is on the bore's axis at mid-length. The nodes of the bore lie on its circle, and its edges are
+    quadratic. Surfaces: "bore", "base", "top", "front" (at +z), "back"; "feet": the undersides of the
+    flanges, the strips, or the base; "outside": all but the bore and the base. The measures must be
+    consistent; parts.Housing checks them.
+
+    Parameters
+    ----------
+    width, height, length
+        Extent along x, y and z, m.
+    bore_diameter
+        Diameter of the bore, m.
+    bore_height
+        Height of the bore's axis above the base, m.
+    element_size
+        Longest wanted side of an element, m.
+    flange
+        (width, height), m, of two flanges on the sides at the base; None: none.
+    strip
+        Width, m, of two strips along the base at either side, which grid lines bound; None: none.
+    element
+        "hex20" or "hex27".
     """
     r, half, base, top = 0.5 * bore_diameter, 0.5 * width, -bore_height, height - bore_height
     low = base if bore_height - top < element_size else -top  # a box about the bore, the pedestal below it

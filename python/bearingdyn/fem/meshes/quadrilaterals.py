@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.revolution_mesh import SAME, RevolutionMesh, shape_functions
+from bearingdyn.fem.meshes.revolution_mesh import SAME, RevolutionMesh, shape_functions
 from bearingdyn.types import Array, Index
 
 # Place of the corners, the middles of the sides 01, 12, 23, 30 and the centre in RevolutionMesh.elements.
@@ -19,14 +19,22 @@ TURNED = np.array([0, 3, 2, 1, 7, 6, 5, 4, 8])  # the same element numbered the 
 def quadrilaterals(points: ArrayLike, cells: ArrayLike, region: ArrayLike | None = None) -> RevolutionMesh:
     """Mesh of a section from arrays, such as meshio's ``mesh.points`` and ``mesh.cells_dict["quad9"]``.
 
-    points: (n, 2) r and z, m, or (n, 3) with a third column of zeros (gmsh's x and y are r and z).
-    cells: (m, 4), (m, 8) or (m, 9) nodes of each element: corners in turn, then the middles of the sides
-        from the first corner on, then the centre, as gmsh, VTK and Abaqus number them; middles and centre
-        that are missing are added, sides then straight. All may run clockwise.
-    region: (m,) integers 0, 1, ... naming the region of each element; None: one region.
+    Parameters
+    ----------
+    points
+        (n, 2) r and z, m, or (n, 3) with a third column of zeros (gmsh's x and y are r and z).
+    cells
+        (m, 4), (m, 8) or (m, 9) nodes of each element: corners in turn, then the middles of the sides from
+        the first corner on, then the centre, as gmsh, VTK and Abaqus number them; middles and centre that are
+        missing are added, sides then straight. All may run clockwise.
+    region
+        (m,) integers 0, 1, ... naming the region of each element; None: one region.
 
-    Raises ValueError for shapes that do not fit, an r below zero, an element that is inverted or of no area
-    (named, with its place), points that belong to no element, and pieces that are not joined.
+    Raises
+    ------
+    ValueError
+        For shapes that do not fit, an r below zero, an element that is inverted or of no area (named, with
+        its place), points that belong to no element, and pieces that are not joined.
     """
     xy = np.array(points, dtype=np.float64)
     if xy.ndim != 2 or xy.shape[1] not in (2, 3) or not np.isfinite(xy).all():

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from bearingdyn.fem.input_file import blocks, fields, node
-from bearingdyn.fem.raw_mesh import RawMesh
-from bearingdyn.fem.solid_element import HEX20, TET10
+from bearingdyn.fem.abaqus_input import blocks, fields, node
+from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
+from bearingdyn.fem.meshes.solid_element import HEX20, TET10
 
 SOLID = re.compile(r"C3D(\d+)")
 NODES = {20: 20, 10: 10, 8: 8, 4: 4}
@@ -46,8 +46,11 @@ def read_inp(path: Path) -> RawMesh:
     Regions are the element sets of *SOLID SECTION, or the sets that divide the body. Surfaces are node sets,
     *SURFACE definitions by faces or nodes, and sets of shell or plane elements.
 
-    Raises ValueError for other solid elements, a node numbered twice, parts moved into an assembly, a set
-    that names what there is not, and a line that is no data.
+    Raises
+    ------
+    ValueError
+        For other solid elements, a node numbered twice, parts moved into an assembly, a set that names
+        something undefined, and a line that cannot be read.
     """
     model = _Model()
     for keyword, options, lines in blocks(path):

@@ -19,10 +19,16 @@ SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
 class Rectangle:
     """Section of a ring: r and z are (from, to), m, with 0 <= r[0] < r[1] and z[0] < z[1].
 
-    graded: lines crowd towards its four sides. A soft layer bonded to something stiff has singular
-    stresses where its free edge meets the bond, and its stiffness converges slowly on an even mesh.
+    Parameters
+    ----------
+    graded
+        Lines crowd towards its four sides. A soft layer bonded to something stiff has singular stresses where
+        its free edge meets the bond, and its stiffness converges slowly on an even mesh.
 
-    Raises ValueError for limits out of order or not finite.
+    Raises
+    ------
+    ValueError
+        For limits out of order or not finite.
     """
 
     r: tuple[float, float]
@@ -52,14 +58,19 @@ def shape_functions(xi: Array, eta: Array) -> tuple[Array, Array, Array]:
     return tuple((f[:, :, None] * g[:, None, :]).reshape(-1, 9) for f, g in ((a, b), (da, b), (a, db)))  # type: ignore[return-value]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RevolutionMesh:
     """9-node quadrilaterals in (r, z), straight or curved.
 
-    r, z: (nodes,) coordinates, m.
-    elements: (m, 9) nodes, number 3 i + j being the i-th in ξ and the j-th in η; ξ runs along r and η along
-        z in a mesh of rectangles, and ξ to η turns as r to z in any.
-    region: (m,) index of the region each element lies in.
+    Parameters
+    ----------
+    r, z
+        (nodes,) coordinates, m.
+    elements
+        (m, 9) nodes, number 3 i + j being the i-th in ξ and the j-th in η; ξ runs along r and η along z in a
+        mesh of rectangles, and ξ to η turns as r to z in any.
+    region
+        (m,) index of the region each element lies in.
     """
 
     r: Array
@@ -103,7 +114,10 @@ class RevolutionMesh:
     def locate(self, r: float, z: float) -> tuple[int, float, float]:
         """Element that holds a point, and the point's local coordinates there, each in -1...1.
 
-        Raises ValueError when the point lies outside the section.
+        Raises
+        ------
+        ValueError
+            When the point lies outside the section.
         """
         R, Z = self.r[self.elements], self.z[self.elements]
         e = 1e-6 * self.size
@@ -158,7 +172,10 @@ def _grid(
 ) -> Array:
     """Grid lines along one axis, through all cuts, graded where a graded rectangle spans the interval.
 
-    thin: smallest width, across either axis, of the graded rectangles (or of all when none is graded), m.
+    Parameters
+    ----------
+    thin
+        Smallest width, across either axis, of the graded rectangles (or of all when none is graded), m.
     """
     pieces = []
     for a, b in pairwise(cuts):
@@ -198,12 +215,23 @@ def revolution_mesh(
     z_cuts: Iterable[float] = (),
     z_near: Iterable[float] = (),
 ) -> RevolutionMesh:
-    """Mesh a union of rectangles; grid lines run along all their sides, and along r_cuts and z_cuts, m.
+    """Mesh a union of rectangles with grid lines along all their sides.
 
-    refinement: 1 is the default density; steps shrink with it, and faster where the mesh is graded.
-    z_near: the line nearest to each of these is moved there; nothing is graded towards it.
+    Parameters
+    ----------
+    rectangles
+        They may touch but not overlap.
+    refinement
+        Mesh density; 1 is the default. Steps shrink with it, and faster where the mesh is graded.
+    r_cuts, z_cuts
+        Further grid lines, m.
+    z_near
+        Places, m, to each of which the nearest line is moved; nothing is graded towards them.
 
-    Raises ValueError for rectangles that overlap, or a refinement outside 0.25...8.
+    Raises
+    ------
+    ValueError
+        For rectangles that overlap, or a refinement outside 0.25...8.
     """
     if not rectangles:
         raise ValueError("rectangles is empty; a body needs at least one region")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,10 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.eigen import pivots, rigid_body_residual, rigid_transfer
-from bearingdyn.fem.exchange.units import SI, Units
+from bearingdyn.checks import positive
+from bearingdyn.fem.factors import pivots
+from bearingdyn.fem.matrix_files.units import SI, Units
+from bearingdyn.fem.rigid import rigid_body_residual, rigid_transfer
 from bearingdyn.types import Array, Index
 
 Points = ArrayLike | Mapping[int, ArrayLike]
@@ -25,20 +27,26 @@ SOUND = (200.0, 25e3)  # m/s, √(bulk modulus / density): stiff rubber 1300, st
 DIRECTIONS = ("x", "y", "z", "θx", "θy", "θz")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FEMatrices:
     """A finite element model read from elsewhere, in SI units.
 
-    K, M: (n, n) sparse stiffness, N/m, and mass, kg, made exactly symmetric.
-    points: (k, 3) node positions, m, when known.
-    nodes: (k,) their numbers, when the file names them; else a node is known by its row in points.
-    dofs: (n, 2) of each coordinate the row of its node and its direction 0...5 (x, y, z, θx, θy, θz); the row
-        is -1 for a coordinate of no node, such as a modal one. Without it coordinate 3 i + a is node i
-        along axis a.
+    Parameters
+    ----------
+    M, K
+        (n, n) sparse mass, kg, and stiffness, N/m, made exactly symmetric.
+    points
+        (k, 3) positions of the nodes, m, when known.
+    nodes
+        (k,) numbers of the nodes, when the file names them; otherwise a node is known by its row in points.
+    dofs
+        (n, 2) row of the node and direction 0...5 (x, y, z, θx, θy, θz) of each coordinate. The row is -1 for
+        a coordinate that belongs to no node, such as a modal one. None: coordinate 3 i + a is node i along
+        axis a.
     """
 
-    K: scipy.sparse.csr_matrix
     M: scipy.sparse.csr_matrix
+    K: scipy.sparse.csr_matrix
     points: Array | None = None
     nodes: Index | None = None
     dofs: Index | None = None
@@ -70,7 +78,10 @@ class FEMatrices:
     def rigid_motion(self, reference: ArrayLike) -> Array:
         """Motion (n, 6) of all coordinates as one rigid body about a reference point, m.
 
-        Raises ValueError where the positions of the nodes are not known.
+        Raises
+        ------
+        ValueError
+            Where the positions of the nodes are not known.
         """
         if self.points is None:
             raise ValueError("points is not known; pass the nodes' positions when the matrices are read")
@@ -91,25 +102,35 @@ def check_matrices(
     expected_mass: float | None = None,
     sound: tuple[float, float] = SOUND,
 ) -> FEMatrices:
-    """Check a stiffness and mass pair of a body free in space, make it sparse and bring it to SI units.
+    """Check the stiffness and mass of a body free in space, make them sparse and bring them to SI units.
 
-    K, M: (n, n) dense or sparse, symmetric; a triangle alone is refused. In files' units.
-    points: (k, 3) positions of the nodes, or node number -> position, in the file's unit of length. Given
-        them, K must not resist rigid motion (relative force below 1e-6), M must carry one mass in all three
+    K is factorised once for its pivots: some 8 s and 1.5 GB at 35 000 coordinates. Rotations with neither
+    stiffness nor mass, which solids have in files of six coordinates a node, are left out.
+
+    Parameters
+    ----------
+    K, M
+        (n, n) dense or sparse, symmetric, in the file's units; one triangle alone is refused.
+    points
+        (k, 3) positions of the nodes, or node number -> position, in the file's unit of length. With points,
+        K must not resist rigid motion (relative force below 1e-6), M must carry the same mass in all three
         directions, and density and speed of sound must be those of a solid.
-    labels: (n, 2) node number and direction 1...6 of each coordinate; they are put in rising order. Without
-        them there are three coordinates to a point, x, y, z, or six.
-    internal: number of coordinates at the end that belong to no node (modal ones of a reduced model).
-    units: what the file is written in.
-    expected_mass: kg, to 5 %; None: not checked.
-    sound: accepted range of √(bulk modulus/density), m/s, the mean over the body; widen it for foams.
+    labels
+        (n, 2) node number and direction 1...6 of each coordinate; they are put in rising order. None: there
+        are three coordinates to a point, x, y, z, or six.
+    internal
+        Number of coordinates at the end that belong to no node (modal ones of a reduced model).
+    units
+        Units of the file.
+    expected_mass
+        Mass, kg, that M must have to 5 %; None: not checked.
+    sound
+        Accepted range of √(bulk modulus/density), m/s, the mean over the body; widen it for foams.
 
-    K is factorised once for its pivots: some 8 s and 1.5 GB at 35 000 coordinates.
-
-    Rotations with neither stiffness nor mass, as solids have them in files of six coordinates a node, are
-    left out.
-
-    Raises ValueError naming the matrix, what is wrong with it and the remedy.
+    Raises
+    ------
+    ValueError
+        Naming the matrix, what is wrong with it and the remedy.
     """
     k, m = _sparse("K", K), _sparse("M", M)
     if k.shape != m.shape:
@@ -190,7 +211,7 @@ def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, int
     tail = np.stack([np.full(internal, -1), np.zeros(internal)], axis=1).astype(np.intp)
     if labels is None:
         if points is None:
-            return FEMatrices(k, m)
+            return FEMatrices(M=m, K=k)
         p, numbers = _positions(points, None)
         per = next((d for d in (3, 6) if d * len(p) == at_nodes), 0)
         if not per:
@@ -199,7 +220,7 @@ def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, int
                 f"({at_nodes / 3:g}, 3) or ({at_nodes / 6:g}, 3)"
             )
         place = np.stack(np.divmod(np.arange(at_nodes), per), axis=1).astype(np.intp)
-        return FEMatrices(k, m, p, numbers, np.vstack([place, tail]))
+        return FEMatrices(M=m, K=k, points=p, nodes=numbers, dofs=np.vstack([place, tail]))
     given = np.asarray(labels, dtype=np.intp)
     if given.shape != (at_nodes, 2):
         raise ValueError(f"labels has shape {given.shape}; it must be ({at_nodes}, 2): node and direction")
@@ -216,7 +237,7 @@ def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, int
     order = np.concatenate([order, np.arange(at_nodes, n)])
     positions = None if points is None else _positions(points, numbers)[0]
     dofs = np.vstack([np.stack([row.ravel(), ordered[:, 1] - 1], axis=1), tail]).astype(np.intp)
-    return FEMatrices(k[order][:, order], m[order][:, order], positions, numbers, dofs)
+    return FEMatrices(M=m[order][:, order], K=k[order][:, order], points=positions, nodes=numbers, dofs=dofs)
 
 
 def _check_coordinates(model: FEMatrices) -> None:
@@ -248,8 +269,7 @@ def _without_empty_rotations(model: FEMatrices) -> FEMatrices:
     kept = np.flatnonzero(model.K.diagonal() > 0)
     if kept.size == model.n:
         return model
-    K, M = model.K[kept][:, kept], model.M[kept][:, kept]
-    return FEMatrices(K, M, model.points, model.nodes, model.places[kept])
+    return replace(model, M=model.M[kept][:, kept], K=model.K[kept][:, kept], dofs=model.places[kept])
 
 
 def _scaled(model: FEMatrices, units: Units) -> FEMatrices:
@@ -260,7 +280,7 @@ def _scaled(model: FEMatrices, units: Units) -> FEMatrices:
     M = scipy.sparse.csr_matrix(units.mass * (D @ model.M @ D))
     K = scipy.sparse.csr_matrix(units.mass / units.time**2 * (D @ model.K @ D))
     points = None if model.points is None else units.length * model.points
-    return FEMatrices(K, M, points, model.nodes, model.dofs)
+    return replace(model, M=M, K=K, points=points)
 
 
 def _check_mass_matrix(model: FEMatrices) -> None:
@@ -301,8 +321,7 @@ def _check_mass(model: FEMatrices, expected: float | None) -> None:
         raise ValueError(f"M has the masses {mass.tolist()} kg along x, y, z; they must be equal")
     if expected is None:
         return
-    if not expected > 0:
-        raise ValueError(f"expected_mass is {expected}; it must be positive, kg")
+    positive("expected_mass", expected, "it must be a positive mass in kg")
     ratio = float(mass[0]) / expected
     if not abs(ratio - 1.0) <= EXPECTED:
         thousand = abs(abs(np.log10(ratio)) - 3.0) < 0.1

@@ -7,9 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from bearingdyn.fem.mesh_file import read_mesh
-from bearingdyn.fem.solid_mesh import SolidMesh, second_order
-from bearingdyn.fem.solid_meshers import block_with_bore, box_mesh, ring_mesh
+from bearingdyn.fem import SolidMesh, block_with_bore, box_mesh, read_mesh, ring_mesh
+from bearingdyn.fem.meshes.solid_mesh import second_order
 from bearingdyn.material import STEEL
 from bearingdyn.parts import Housing, RigidSurface, Solid
 

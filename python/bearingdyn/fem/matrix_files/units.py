@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+
+from bearingdyn.checks import positive
 
 
 @dataclass(frozen=True)
 class Units:
     """A coherent system: one unit of length in m, of mass in kg, of time in s; force is mass·length/time².
 
-    Raises ValueError for a unit that is not positive and finite.
+    Raises
+    ------
+    ValueError
+        For a unit that is not positive and finite.
     """
 
     length: float = 1.0
@@ -19,9 +23,7 @@ class Units:
 
     def __post_init__(self) -> None:
         for name in ("length", "mass", "time"):
-            value = getattr(self, name)
-            if not 0 < value < math.inf:
-                raise ValueError(f"Units {name} is {value}; it must be positive: how much SI one unit is")
+            positive(f"Units {name}", getattr(self, name), "it must be positive: how much SI one unit is")
 
 
 SI = Units()

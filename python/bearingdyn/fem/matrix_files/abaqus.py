@@ -12,24 +12,34 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
-from bearingdyn.fem.exchange.matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.exchange.text import columns, existing, symmetric_from, whole
-from bearingdyn.fem.input_file import blocks, node
+from bearingdyn.fem.abaqus_input import blocks, node
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
 from bearingdyn.types import Array, Index
 
 
 def read_abaqus(
     stiffness: str | Path, mass: str | Path, points: Points | None = None, **check: Any
 ) -> FEMatrices:
-    """Read the two files (.mtx) that *MATRIX OUTPUT, STIFFNESS, MASS writes, in either format of text.
+    """Read the two files (.mtx) that *MATRIX OUTPUT, STIFFNESS, MASS writes, in either of its text formats.
 
-    points: as in check_matrices, or the input file itself through read_nodes; its nodes may be more than
-        those of the matrices. Files in COORDINATE format name no nodes: points are then in the order of
-        the rows.
-    The rest: as in check_matrices. Abaqus has no units: pass units=MM_TONNE for mm, t, s.
+    Abaqus has no units: pass units=MM_TONNE for mm, t, s.
 
-    Raises ValueError for a file that is not there or not of that format, for an internal variable of Abaqus
-    (a node number below 1), or where check_matrices does.
+    Parameters
+    ----------
+    stiffness, mass
+        Paths of the files.
+    points
+        Positions of the nodes as in check_matrices, such as read_nodes gives; there may be more nodes than
+        the matrices have. Files in COORDINATE format name no nodes: points are then in the order of the rows.
+    check
+        Further arguments of check_matrices.
+
+    Raises
+    ------
+    ValueError
+        For a file that does not exist or is not of that format, for an internal variable of Abaqus (a node
+        number below 1), or where check_matrices does.
     """
     files = [existing(stiffness), existing(mass)]
     K, M = (_entries(path) for path in files)
@@ -77,7 +87,10 @@ def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
 
     *INCLUDE is followed.
 
-    Raises ValueError for a file that is not there, without nodes, or with a line that is no node.
+    Raises
+    ------
+    ValueError
+        For a file that is not there, without nodes, or with a line that is no node.
     """
     p = existing(path)
     try:

@@ -1,18 +1,13 @@
-"""Meshes of solids from files: gmsh, Abaqus, CalculiX and VTK."""
+"""Meshes in the files of gmsh (.msh) and VTK (.vtk, .vtu), read with meshio."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bearingdyn.fem.abaqus_mesh import read_inp
-from bearingdyn.fem.raw_mesh import RawMesh, finished
-from bearingdyn.fem.solid_mesh import SolidMesh
-from bearingdyn.magnitude import LARGEST_BODY
+from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
 from bearingdyn.types import Index
 
 SOLID = {"hexahedron": 8, "hexahedron20": 20, "hexahedron27": 27, "tetra": 4, "tetra10": 10}
@@ -21,67 +16,24 @@ IGNORED = ("vertex", "line", "line3")
 TAGS = ("gmsh:physical", "CellEntityIds", "region")  # arrays of numbers of groups, when none is asked for
 
 
-def read_mesh(
-    path: str | os.PathLike[str],
-    *,
-    scale: float = 1.0,
-    regions: Sequence[str] | None = None,
-    region_data: str | None = None,
-    upgrade: bool = False,
-    merge: float | None = None,
-    drop_unconnected: bool = False,
-    largest: float = LARGEST_BODY,
-) -> SolidMesh:
-    """A mesh of 20- or 27-node bricks or 10-node tetrahedra from a file, by its suffix.
+def read_with_meshio(file: Path, region_data: str | None) -> RawMesh:
+    """The mesh of a .msh, .vtk or .vtu file; region_data as in `read_mesh`.
 
-    .msh: gmsh 2.2 and 4.1; physical volumes are regions, physical surfaces are surfaces.
-    .inp: Abaqus and CalculiX; regions are the sets of *SOLID SECTION, or those that divide the body;
-        surfaces are node sets, *SURFACE, and sets of shell or plane elements.
-    .vtk, .vtu: a cell array of numbers (region_data; by default one named "gmsh:physical",
-        "CellEntityIds" or "region") makes regions of solid cells and surfaces of face cells, named by the
-        number; a point array of 0 and 1 makes a surface of that name.
-    .msh, .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
-
-    scale: length of the file's unit, m; 1e-3 for a file in mm.
-    regions: names of the sets that are regions, for files whose sets overlap; (): one region.
-    upgrade: accept 8-node bricks and 4-node tetrahedra, and give them middle nodes on straight edges.
-    merge: make nodes closer than this, m, one. drop_unconnected: leave out nodes that no element has.
-    largest: a body longer than this, m, is taken to be in the wrong unit.
-
-    Raises ValueError, naming the file and the element or node, for what SolidMesh refuses, elements of
-    another kind, a body longer than `largest`, and a file that cannot be read.
+    Raises
+    ------
+    ImportError
+        Without meshio, and ValueError for a file that it cannot read.
     """
-    file = Path(path)
-    if not file.is_file():
-        raise ValueError(f"{file} is not a file; give the path of a mesh (.msh, .inp, .vtk, .vtu)")
-    suffix = file.suffix.lower()
-    if suffix not in (".msh", ".inp", ".vtk", ".vtu"):
-        raise ValueError(f"{file.name} has the suffix {suffix!r}; meshes are .msh, .inp, .vtk or .vtu files")
-    try:
-        raw = read_inp(file) if suffix == ".inp" else _converted(_read_meshio(file, suffix), region_data)
-        return finished(
-            raw,
-            scale=scale,
-            regions=regions,
-            upgrade=upgrade,
-            merge=merge,
-            drop_unconnected=drop_unconnected,
-            largest=largest,
-        )
-    except ValueError as error:
-        raise ValueError(f"{file.name}: {error}") from error
-
-
-def _read_meshio(file: Path, suffix: str) -> Any:
     try:
         from meshio import gmsh, vtk, vtu
     except ImportError as error:
         raise ImportError(f"{file.name} needs meshio to be read: pip install bearingdyn[mesh]") from error
     readers: dict[str, Any] = {".msh": gmsh.read, ".vtk": vtk.read, ".vtu": vtu.read}
     try:
-        return readers[suffix](str(file))
+        mesh = readers[file.suffix.lower()](str(file))
     except Exception as error:  # meshio's readers raise whatever the fault in the file leads to
         raise ValueError(f"it cannot be read ({type(error).__name__}: {error})") from error
+    return _converted(mesh, region_data)
 
 
 def _converted(mesh: Any, region_data: str | None) -> RawMesh:

@@ -17,11 +17,11 @@ from bearingdyn.fem import (
     FEMatrices,
     Section,
     Units,
+    assemble_beam,
     assemble_solid,
-    beam,
     block_with_bore,
     check_matrices,
-    eigen,
+    factors,
     read_matrices,
     read_nodes,
     read_npz,
@@ -51,7 +51,7 @@ def block() -> FEMatrices:
         pull = np.concatenate([-along, along])
         K[np.ix_(at, at)] += STEEL.E * BAR / length * np.outer(pull, pull)
         M[np.ix_(at, at)] += STEEL.density * BAR * length / 6 * np.kron([[2, 1], [1, 2]], np.eye(3))
-    return FEMatrices(scipy.sparse.csr_matrix(K), scipy.sparse.csr_matrix(M), points)
+    return FEMatrices(M=scipy.sparse.csr_matrix(M), K=scipy.sparse.csr_matrix(K), points=points)
 
 
 @pytest.fixture(scope="module")
@@ -172,7 +172,7 @@ def test_without_pyyeti_the_error_says_what_to_install(tmp_path, monkeypatch):
 def test_a_beam_written_in_mm_keeps_its_rotations(tmp_path):
     # three Timoshenko elements of six coordinates a node; x in mm, θ in rad
     z = np.array([0.0, 0.1, 0.25, 0.4])
-    M, K, _ = beam.assemble(z, [Section(0.1, 0.03)] * 3, STEEL)
+    M, _, K = assemble_beam(z, [Section(0.1, 0.03)] * 3, STEEL)
     points = np.stack([0 * z, 0 * z, z], axis=1)
     D = scipy.sparse.diags(np.tile([1.0] * 3 + [1e3] * 3, 4))  # moments in N mm, arms in mm
     np.savez(tmp_path / "beam.npz", K=(1e-3 * D @ K @ D).toarray(), M=(1e-3 * D @ M @ D).toarray())
@@ -214,16 +214,16 @@ def test_an_indefinite_stiffness_is_named_with_its_place(block):
 
 def test_large_models_are_checked_as_small_ones_are(block, monkeypatch):
     """Above some size matrices are eliminated in another order, here already at 36 coordinates."""
-    monkeypatch.setattr(eigen, "DISSECT", 20)
+    monkeypatch.setattr(factors, "DISSECT", 20)
     assert_same(check_matrices(block.K, block.M, block.points), block)
     with pytest.raises(
         ValueError, match=r"K is indefinite: 1 negative pivots, one at node \d+, [xyz]; a stress"
     ):
         check_matrices(buckled(block), block.M, block.points)
-    assert (eigen.pivots(block.K + scipy.sparse.eye(block.n)) > 0).all()
+    assert (factors.pivots(block.K + scipy.sparse.eye(block.n)) > 0).all()
     # pivots by the rows of the matrix: each block of a block-diagonal one keeps its own signs
     signs = np.where(np.arange(block.n) % 3 == 0, -1.0, 2.0)
-    np.testing.assert_array_equal(eigen.pivots(scipy.sparse.diags(signs)), signs)
+    np.testing.assert_array_equal(factors.pivots(scipy.sparse.diags(signs)), signs)
 
 
 def test_an_indefinite_mass_is_named(block):
@@ -396,7 +396,7 @@ def test_a_model_reduced_elsewhere_is_taken_as_it_is():
 
 def test_an_output_at_a_node_of_six_coordinates_turns_too():
     z = np.array([0.0, 0.1, 0.2])
-    M, K, _ = beam.assemble(z, [Section(0.1, 0.03)] * 2, STEEL)
+    M, _, K = assemble_beam(z, [Section(0.1, 0.03)] * 2, STEEL)
     matrices = check_matrices(K, M, np.stack([0 * z, 0 * z, z], axis=1))
     s = Imported(matrices, {"end": NodeSet([0])}, {"tip": 2}).superelement()
     rigid = np.zeros((s.n, 6))

@@ -6,8 +6,8 @@ import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
 
-from bearingdyn.fem.eigen import Factors
-from bearingdyn.fem.ordering import elimination_order
+from bearingdyn.fem import Factors
+from bearingdyn.fem.elimination_order import elimination_order
 
 
 def grid(n: int) -> scipy.sparse.csc_matrix:

@@ -29,9 +29,18 @@ TET_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
 class SolidElement:
     """A kind of element.
 
-    corners: (c, 3) on the unit brick or simplex. edges: pairs of corners; their middles follow the corners.
-    faces: corners of each face, seen from outside anticlockwise. centres: middles of faces and of the
-    element follow. interpolation, face_interpolation: names of scikit-fem's elements.
+    Parameters
+    ----------
+    corners
+        (c, 3) on the unit brick or simplex.
+    edges
+        Pairs of corners; their middles follow the corners.
+    faces
+        Corners of each face, seen from outside anticlockwise.
+    centres
+        Middles of faces and of the element follow.
+    interpolation, face_interpolation
+        Names of scikit-fem's elements.
     """
 
     name: str

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.fem.exchange.matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.exchange.text import columns, existing, symmetric_from, whole
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
 
 
 def read_calculix(
@@ -22,12 +22,24 @@ def read_calculix(
 ) -> FEMatrices:
     """Read what CalculiX stores: name.sti, name.mas and name.dof.
 
-    stiffness: path of the .sti; mass: of the .mas (default: beside it). The .dof lies beside the .sti.
-    points and the rest: as in check_matrices; read_nodes gives the nodes of the .inp. Coordinates that
-    CalculiX removed (*BOUNDARY, dependent ones of *EQUATION and *RIGID BODY) are not in its files: for a
-    free body, which points ask for, store the model without them.
+    CalculiX leaves out the coordinates that it removed (*BOUNDARY, dependent ones of *EQUATION and *RIGID
+    BODY). A body with points must be free: store its model without these keywords.
 
-    Raises ValueError for files that are not there or do not fit, or where check_matrices does.
+    Parameters
+    ----------
+    stiffness
+        Path of the .sti; the .dof must lie beside it.
+    mass
+        Path of the .mas; None: beside the .sti.
+    points
+        Positions of the nodes as in check_matrices; read_nodes reads them from the .inp.
+    check
+        Further arguments of check_matrices.
+
+    Raises
+    ------
+    ValueError
+        For files that do not exist or do not fit each other, or where check_matrices does.
     """
     sti = existing(stiffness)
     mas = existing(sti.with_suffix(".mas") if mass is None else mass)

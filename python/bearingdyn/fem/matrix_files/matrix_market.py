@@ -7,8 +7,8 @@ from typing import Any
 
 import scipy.io
 
-from bearingdyn.fem.exchange.matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.exchange.text import existing
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.text_tables import existing
 
 
 def is_matrix_market(path: Path) -> bool:
@@ -22,8 +22,19 @@ def read_matrix_market(
 ) -> FEMatrices:
     """Read a stiffness and a mass matrix from two MatrixMarket files (.mtx).
 
-    points and the rest: as in check_matrices.
-    Raises ValueError for a file that is not there, not MatrixMarket, or fails check_matrices.
+    Parameters
+    ----------
+    stiffness, mass
+        Paths of the files.
+    points
+        Positions of the nodes, as in check_matrices.
+    check
+        Further arguments of check_matrices.
+
+    Raises
+    ------
+    ValueError
+        For a file that does not exist or is not MatrixMarket, or where check_matrices does.
     """
     files = [existing(stiffness), existing(mass)]
     return check_matrices(_read(files[0]), _read(files[1]), points, **check)

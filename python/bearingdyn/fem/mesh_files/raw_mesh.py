@@ -7,21 +7,32 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bearingdyn.fem.solid_element import KINDS
-from bearingdyn.fem.solid_mesh import SolidMesh, merged, second_order
+from bearingdyn.checks import positive
+from bearingdyn.fem.meshes.solid_element import KINDS
+from bearingdyn.fem.meshes.solid_mesh import SolidMesh, merged, second_order
 from bearingdyn.types import Array, Index
 
 CORNERS = {8: 20, 4: 10}  # nodes of a linear element, and of the quadratic one made of it
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RawMesh:
     """Nodes, solid elements of one kind or more, and sets, unchecked.
 
-    points: (n, 3) in the unit of the file. cells: arrays (m, k) of nodes, in VTK's order.
-    numbers: what the file calls the elements of all cells in turn.
-    regions: name -> elements, counted through the cells in turn; preferred: those that carry a material.
-    surfaces: name -> nodes.
+    Parameters
+    ----------
+    points
+        (n, 3) in the unit of the file.
+    cells
+        Arrays (m, k) of nodes, in VTK's order.
+    numbers
+        What the file calls the elements of all cells in turn.
+    regions
+        name -> elements, counted through the cells in turn.
+    preferred
+        Those that carry a material.
+    surfaces
+        name -> nodes.
     """
 
     points: Array
@@ -43,8 +54,7 @@ def finished(
     largest: float,
 ) -> SolidMesh:
     """The mesh in m, second-order and checked; the arguments are those of `read_mesh`."""
-    if not scale > 0:
-        raise ValueError(f"scale is {scale}; it must be the length of the file's unit in m, as 1e-3 for mm")
+    positive("scale", scale, "it must be the length of the file's unit in m, as 1e-3 for mm")
     points = scale * raw.points
     if not raw.cells:
         raise ValueError("the file holds no brick or tetrahedron")
@@ -67,8 +77,7 @@ def finished(
     named = _regions(raw, regions)
     surfaces = dict(raw.surfaces)
     if merge is not None:
-        if not merge > 0:
-            raise ValueError(f"merge is {merge}; it must be a distance in m below which nodes are one")
+        positive("merge", merge, "it must be a distance in m below which nodes are one")
         points, label = merged(points, merge)
         elements = label[elements]
         surfaces = {name: np.unique(label[at]) for name, at in surfaces.items()}

@@ -1,0 +1,54 @@
+"""What a reduction is asked for, checked once for every part: modes up to f_max, damping, moduli, rounds.
+
+One rule gives every part its default of f_max. A part joined at a few places of its surface keeps modes up to
+F_MAX: Shaft, Housing, Solid, Imported. A body of revolution keeps none, for its faces are held all round: the
+modes of a steel ring held so lie above F_MAX, and in rubber static shapes at several moduli do their work.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from bearingdyn.checks import require
+
+F_MAX = 20e3  # Hz, the end of what is heard
+
+
+def check_f_max(f_max: float, *, may_be_zero: bool = True, may_be_infinite: bool = False) -> None:
+    """Raise ValueError unless f_max is a frequency, Hz, of zero (no modes) or more; infinite means all modes.
+
+    A part whose mesh follows from f_max lets it be neither.
+    """
+    good = (f_max >= 0 if may_be_zero else f_max > 0) and (may_be_infinite or f_max < math.inf)
+    none, every = (
+        ", 0 for no modes" if may_be_zero else " above 0",
+        ", inf for all" if may_be_infinite else "",
+    )
+    require(good, "f_max", f_max, f"it must be a frequency in Hz{none}{every}")
+
+
+def check_damping(damping: float, field: str = "damping") -> None:
+    """Raise ValueError unless 0 <= damping < 1."""
+    require(0 <= damping < 1, field, damping, f"it must be a damping ratio, 0 <= {field} < 1")
+
+
+def check_held(held: str | None, interfaces: Iterable[str]) -> None:
+    """Raise ValueError unless held is None or names an interface."""
+    known = sorted(interfaces)
+    require(held is None or held in known, "held", held, f"the interfaces are {known}")
+
+
+def check_rounds(inertia: Any) -> None:
+    """Raise ValueError unless the number of rounds of inertia shapes is 0, 1, 2, ..."""
+    good = inertia >= 0 and inertia % 1 == 0
+    require(good, "inertia", inertia, "it must be a number of rounds: 0, 1, 2, ...")
+
+
+def check_moduli(moduli: Sequence[float]) -> tuple[float, ...]:
+    """The moduli as floats. Raises ValueError unless they are one or more positive shear moduli, Pa."""
+    values = tuple(float(G) for G in moduli)
+    good = bool(values) and all(0 < G < math.inf for G in values)
+    require(good, "moduli", values, "it must hold one or more positive shear moduli, Pa")
+    return values

@@ -1,0 +1,79 @@
+"""Meshes of solids from files: gmsh, Abaqus, CalculiX and VTK."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from bearingdyn.fem.mesh_files.abaqus import read_inp
+from bearingdyn.fem.mesh_files.gmsh_and_vtk import read_with_meshio
+from bearingdyn.fem.mesh_files.raw_mesh import finished
+from bearingdyn.fem.meshes.solid_mesh import SolidMesh
+from bearingdyn.magnitude import LARGEST_BODY
+
+
+def read_mesh(
+    path: str | os.PathLike[str],
+    *,
+    scale: float = 1.0,
+    regions: Sequence[str] | None = None,
+    region_data: str | None = None,
+    upgrade: bool = False,
+    merge: float | None = None,
+    drop_unconnected: bool = False,
+    largest: float = LARGEST_BODY,
+) -> SolidMesh:
+    """Read a mesh of 20- or 27-node bricks or 10-node tetrahedra; the suffix says the kind of file.
+
+    .msh: gmsh 2.2 and 4.1; physical volumes are regions, physical surfaces are surfaces.
+    .inp: Abaqus and CalculiX; regions are the sets of *SOLID SECTION, or those that divide the body; surfaces
+    are node sets, *SURFACE, and sets of shell or plane elements.
+    .vtk, .vtu: the numbers in region_data make regions of solid cells and surfaces of face cells, named by
+    the number; a point array of 0 and 1 makes a surface of its name.
+    .msh, .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
+
+    Parameters
+    ----------
+    path
+        Path of the file.
+    scale
+        Length of the file's unit, m; 1e-3 for a file in mm.
+    regions
+        Names of the sets that are regions, for files whose sets overlap; (): one region.
+    region_data
+        Name of the array of cell numbers; None: "gmsh:physical", "CellEntityIds" or "region".
+    upgrade
+        Accept 8-node bricks and 4-node tetrahedra, and give them middle nodes on straight edges.
+    merge
+        Distance, m, below which two nodes become one; None: none do.
+    drop_unconnected
+        Leave out nodes that no element has.
+    largest
+        Length, m, above which the body is taken to be in the wrong unit.
+
+    Raises
+    ------
+    ValueError
+        For what SolidMesh refuses, elements of another kind, a body longer than `largest`, and a file that
+        cannot be read. The message names the file and the element or node.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise ValueError(f"{file} is not a file; give the path of a mesh (.msh, .inp, .vtk, .vtu)")
+    suffix = file.suffix.lower()
+    if suffix not in (".msh", ".inp", ".vtk", ".vtu"):
+        raise ValueError(f"{file.name} has the suffix {suffix!r}; meshes are .msh, .inp, .vtk or .vtu files")
+    try:
+        raw = read_inp(file) if suffix == ".inp" else read_with_meshio(file, region_data)
+        return finished(
+            raw,
+            scale=scale,
+            regions=regions,
+            upgrade=upgrade,
+            merge=merge,
+            drop_unconnected=drop_unconnected,
+            largest=largest,
+        )
+    except ValueError as error:
+        raise ValueError(f"{file.name}: {error}") from error

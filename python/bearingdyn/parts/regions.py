@@ -1,0 +1,97 @@
+"""Regions of a body of revolution: what is of one material, and the moduli at which shapes are taken."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from bearingdyn.cms import modulus_levels
+from bearingdyn.fem import Rectangle
+from bearingdyn.magnitude import check_length
+from bearingdyn.material import Elastic
+
+
+class ViscoelasticSolid(Protocol):
+    """A material elastic in volume and viscoelastic in shear, such as Maxwell."""
+
+    @property
+    def K(self) -> float:
+        """Bulk modulus, Pa."""
+
+    @property
+    def density(self) -> float:
+        """Mass density, kg/m³."""
+
+    def complex_modulus(self, omega: Any) -> Any:
+        """G*(ω), Pa, for ω in rad/s."""
+
+
+def _check_material(material: object) -> None:
+    if not (isinstance(material, Elastic) or callable(getattr(material, "complex_modulus", None))):
+        raise ValueError(f"material is {material!r}; it must be Elastic or have complex_modulus(omega)")
+
+
+@dataclass(frozen=True)
+class Region:
+    """A ring of rectangular section and one material.
+
+    Parameters
+    ----------
+    r, z
+        (from, to), m.
+    material
+        Elastic, or viscoelastic in shear.
+    graded
+        Crowd the mesh towards its sides; None: do so if the material is viscoelastic.
+
+    Raises
+    ------
+    ValueError
+        For a section without area or above 10 m, or a material that is neither elastic nor has G*(ω).
+    """
+
+    r: tuple[float, float]
+    z: tuple[float, float]
+    material: Elastic | ViscoelasticSolid
+    graded: bool | None = None
+
+    def __post_init__(self) -> None:
+        Rectangle(self.r, self.z)
+        check_length("r[1]", self.r[1])
+        check_length("z[1] - z[0]", self.z[1] - self.z[0])
+        _check_material(self.material)
+
+    @property
+    def rectangle(self) -> Rectangle:
+        """The section for the mesher."""
+        graded = not isinstance(self.material, Elastic) if self.graded is None else self.graded
+        return Rectangle(self.r, self.z, graded)
+
+    @property
+    def mass(self) -> float:
+        """Mass, kg."""
+        return self.material.density * math.pi * (self.r[1] ** 2 - self.r[0] ** 2) * (self.z[1] - self.z[0])
+
+
+@dataclass(frozen=True)
+class Patch:
+    """The elements of a given mesh whose `region` is this patch's place in the list of regions."""
+
+    material: Elastic | ViscoelasticSolid
+
+    def __post_init__(self) -> None:
+        _check_material(self.material)
+
+
+def shape_moduli(regions: Sequence[Region | Patch], moduli: Sequence[float] | None) -> list[list[float]]:
+    """Real shear moduli, Pa, at which shapes are taken: a list over the regions per level."""
+    soft = [i for i, q in enumerate(regions) if not isinstance(q.material, Elastic)]
+    shear = [q.material.G if isinstance(q.material, Elastic) else 0.0 for q in regions]
+    materials = [q.material for q in regions if not isinstance(q.material, Elastic)]
+    levels = np.tile(shear, (len(given := modulus_levels(materials, moduli)), 1))
+    levels[:, soft] = given
+    return [level.tolist() for level in levels]
