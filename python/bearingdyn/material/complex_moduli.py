@@ -16,10 +16,10 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.magnitude import check_density
-from bearingdyn.material.fit import fit_maxwell
+from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.shift import Law, ShiftTable
-from bearingdyn.material.tts import MasterCurve
+from bearingdyn.material.shift_laws import Law, ShiftTable
+from bearingdyn.material.superposition import MasterCurve
 from bearingdyn.types import Array, Complex
 
 _PER_DECADE = 40  # points at which a modulus is handed to the fit

@@ -18,6 +18,10 @@ _SOFT, _HARD, _HARDEST = 10.0, 5e10, 1.2e12  # Pa; a soft gel, more than any pol
 _UNIT = "is the unit right (Pa, kPa, MPa, GPa)? Give units={'storage': ..., 'loss': ...}"
 
 
+class UnitError(ValueError):
+    """Moduli no solid has: their unit is wrong."""
+
+
 @dataclass(frozen=True, eq=False)
 class DMAData:
     """Storage and loss modulus at frequencies and temperatures, one value of each per point.
@@ -89,7 +93,7 @@ class DMAData:
                 raise ValueError(f"{self.source}: {name}[{i}] = {values[i]:g} {unit}: must be {need}")
         middle = float(np.median(np.abs(self.storage)))
         if middle > _HARDEST:
-            raise ValueError(
+            raise UnitError(
                 f"{self.source}: median storage modulus {middle:.3g} Pa: no solid is harder than diamond, "
                 f"{_HARDEST:g} Pa: {_UNIT}"
             )

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.shift import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrhenius
+from bearingdyn.material.shift_laws import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrhenius
 
 
 def elastic_constants(G: float, K: float) -> tuple[float, float]:

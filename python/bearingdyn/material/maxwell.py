@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.magnitude import check_bulk, check_density
 from bearingdyn.material.creep import creep_compliance
-from bearingdyn.material.report import FitReport, OutsideBand
-from bearingdyn.material.retune import Retunable
-from bearingdyn.material.shift import Law, RhoT, law_from_dict, law_to_dict
+from bearingdyn.material.fit_report import FitReport, OutsideBand
+from bearingdyn.material.retuning import Retunable
+from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict
 from bearingdyn.notice import warn
 from bearingdyn.types import Array, Complex
 

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.material.dma import DMAData, Mode, check_range, shear_modulus
-from bearingdyn.material.kk import Suspect, summary, suspects
-from bearingdyn.material.laws import LawName, fit_law, fit_law_to_data, require_isotherms
-from bearingdyn.material.shift import ZERO_CELSIUS, Law, RhoT
-from bearingdyn.material.superpose import Superposed, Superposition, first_shifts
+from bearingdyn.material.shift_laws import ZERO_CELSIUS, Law, RhoT
+from bearingdyn.material.superposition.free_shifts import Superposed, Superposition, first_shifts
+from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, suspects
+from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
 from bearingdyn.notice import warn
 from bearingdyn.types import Array
 

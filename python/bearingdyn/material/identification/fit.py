@@ -15,10 +15,13 @@ import numpy as np
 
 from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import shear_modulus
+from bearingdyn.material.fit_report import FitReport, OutsideBand
+from bearingdyn.material.identification.bounds import Limits
+from bearingdyn.material.identification.points import Points
+from bearingdyn.material.identification.polish import Polished, polish
+from bearingdyn.material.identification.projection import Projection
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.projection import Limits, Points, Polished, Projection, polish
-from bearingdyn.material.report import FitReport, OutsideBand
-from bearingdyn.material.tts import MasterCurve
+from bearingdyn.material.superposition import MasterCurve
 from bearingdyn.notice import warn
 from bearingdyn.types import Array
 

@@ -8,12 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bearingdyn.magnitude import SOFTEST
-from bearingdyn.material.dma import DMAData, Mode, check_range, first_unsorted, group_isotherms
-from bearingdyn.material.source import Source, read_source, source_of
-from bearingdyn.material.table import NO_LETTER, Table, read_table
+from bearingdyn.material.dma import DMAData, Mode, UnitError, check_range, first_unsorted, group_isotherms
+from bearingdyn.material.reading.errors import ReadingError
+from bearingdyn.material.reading.request import Request
+from bearingdyn.material.reading.source import read_source, source_of
+from bearingdyn.material.reading.table import NO_LETTER, Table, read_table
 from bearingdyn.notice import warn
+from bearingdyn.types import Index
 
 
 def read_dma(
@@ -75,68 +79,32 @@ def read_dma(
     >>> dma.storage.tolist(), dma.isotherm.tolist()
     ([4000000.0, 5000000.0, 2000000.0, 3000000.0], [0, 0, 1, 1])
     """
-    if temperature is not None and not -273.15 < temperature < 1e4:
-        raise ValueError(f"temperature is {temperature!r} °C; it must be a temperature in °C")
+    request = Request(mode, columns or {}, units or {}, temperature, drop_invalid)
     sources = read_source(Path(data)) if isinstance(data, str | Path) else [source_of(data)]
-    source, table = _first_table(sources, columns or {}, units or {}, drop_invalid, temperature, mode is None)
-    header = source.at(table.header_line)
-    if mode is None:
-        mode = table.mode
-        if mode is None and table.shear_named:
-            mode = "shear"
-            warn(
-                f"{header}: the header does not tell G from E: taken as shear, because the file speaks "
-                "of shear "
-                "(torque, plates); mode='tension' says otherwise",
-            )
-        if mode is None:
-            raise ValueError(f"{header}: {NO_LETTER}")
-    elif table.mode is not None and table.mode != mode:
-        raise ValueError(
-            f"{header}: the header says {table.mode}, mode is {mode!r}; give the right mode, or name the "
-            "right "
-            "columns"
+    table = read_table(sources, request)
+    mode = _mode(table, mode)
+    cold = int(np.argmin(table.temperature))
+    if not table.temperature[cold] > -273.15:
+        raise ReadingError(
+            f"{table.at(cold)}: temperature {table.temperature[cold]:g} °C: must lie above -273.15 °C"
         )
-    values = {name: table.values[name] for name in ("frequency", "temperature", "storage", "loss")}
-    if not np.all(values["temperature"] > -273.15):
-        i = int(np.argmin(values["temperature"]))
-        raise ValueError(
-            f"{source.at(table.lines[i])}: temperature {values['temperature'][i]:g} °C: must lie above "
-            "-273.15 °C"
-        )
-    if "isotherm" in table.values:
-        labels = np.unique(table.values["isotherm"], return_inverse=True)[1].reshape(-1).astype(np.int64)
-    else:
-        labels = group_isotherms(values["temperature"])
-    if sort:
-        order = np.lexsort((values["frequency"], labels))
-        values = {name: column[order] for name, column in values.items()}
-        labels = labels[order]
-    else:
-        i_back = first_unsorted(values["frequency"], labels)
-        if i_back is not None:
-            raise ValueError(
-                f"{source.at(table.lines[i_back])}: frequency {values['frequency'][i_back]:g} Hz runs "
-                "back within "
-                f"the isotherm at {values['temperature'][i_back]:.4g} °C: must rise throughout, or fall "
-                "throughout; "
-                "sort=True sorts the table; two sweeps at one temperature are told apart by a column "
-                "'isotherm'"
-            )
-    name = source.name if source.word == "row" else str(data)
+    labels = _isotherms(table)
+    order = _order(table, labels, sort)
+    name = table.source.name if table.source.word == "row" else str(data)
     try:
         dma = DMAData(
-            values["frequency"],
-            values["temperature"],
-            values["storage"],
-            values["loss"],
+            table.frequency[order],
+            table.temperature[order],
+            table.storage[order],
+            table.loss[order],
             mode,
             name,
-            labels,
+            labels[order],
             table.notes,
         )
     except ValueError as error:
-        raise ValueError(f"{source.at(table.lines[0])} to {table.lines[-1]}: {error}") from error
+        remedies = ("units",) if isinstance(error, UnitError) else ()
+        raise ReadingError(f"{table.at(0)} to {table.lines[-1]}: {error}", *remedies) from error
     check_range(dma)
     top = float(np.max(np.abs(dma.storage)))
     if 10.0 <= top < SOFTEST:  # below, check_range has warned
@@ -147,22 +115,46 @@ def read_dma(
     return dma
 
 
-def _first_table(
-    sources: list[Source],
-    columns: Mapping[str, str],
-    units: Mapping[str, str],
-    drop_invalid: bool,
-    temperature: float | None,
-    letters: bool,
-) -> tuple[Source, Table]:
-    """The first sheet that holds a table."""
-    for source in sources[:-1]:
-        try:
-            return source, read_table(source, columns, units, drop_invalid, temperature, letters)
-        except ValueError as error:
-            if "no column recognised as" not in str(error):
-                raise
-    return sources[-1], read_table(sources[-1], columns, units, drop_invalid, temperature, letters)
+def _mode(table: Table, mode: Mode | None) -> Mode:
+    """Shear or tension: as asked for, as the header says, or as the file's words suggest."""
+    if mode is not None:
+        if table.mode not in (None, mode):
+            raise ReadingError(
+                f"{table.header}: the header says {table.mode}, mode is {mode!r}; give the right mode, or "
+                "name the right columns"
+            )
+        return mode
+    if table.mode is not None:
+        return table.mode
+    if not table.speaks_of_shear:
+        raise ReadingError(f"{table.header}: {NO_LETTER}", "mode")
+    warn(
+        f"{table.header}: the header does not tell G from E: taken as shear, because the file speaks of "
+        "shear (torque, plates); mode='tension' says otherwise"
+    )
+    return "shear"
+
+
+def _isotherms(table: Table) -> NDArray[np.int64]:
+    """Number of each point's isotherm, (n,), by the table's own column if there is one."""
+    if table.isotherm is None:
+        return group_isotherms(table.temperature)
+    return np.unique(table.isotherm, return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
+def _order(table: Table, labels: NDArray[np.int64], sort: bool) -> Index:
+    """Order of the points, (n,): sorted, or as they stand, which has to be sorted within each isotherm."""
+    if sort:
+        return np.lexsort((table.frequency, labels))
+    back = first_unsorted(table.frequency, labels)
+    if back is not None:
+        raise ReadingError(
+            f"{table.at(back)}: frequency {table.frequency[back]:g} Hz runs back within the isotherm at "
+            f"{table.temperature[back]:.4g} °C: must rise throughout, or fall throughout; sort=True sorts "
+            "the table; two sweeps at one temperature are told apart by a column 'isotherm'",
+            "sort",
+        )
+    return np.arange(table.frequency.size)
 
 
 def sample_dma_path() -> Path:
