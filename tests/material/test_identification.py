@@ -409,5 +409,5 @@ def test_calculix_holds_one_frequency():
     modulus = complex(rubber.complex_modulus(200 * np.pi))
     assert E / (2 * (1 + nu)) == pytest.approx(modulus.real, rel=1e-9)
     assert float(text.strip().rpartition("=")[2]) == pytest.approx(modulus.imag / modulus.real, rel=1e-9)
-    with pytest.raises(ValueError, match=r"frequency is -1.0 Hz"):
+    with pytest.raises(ValueError, match=r"frequency is -1.0; .*, Hz"):
         to_calculix(rubber, -1.0)

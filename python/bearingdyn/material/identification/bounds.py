@@ -30,7 +30,7 @@ class Limits:
     ) -> Limits:
         """From bounds and fixed values by name: G0, G1 …, tau1 …, eta0; SI units.
 
-        ValueError naming a parameter that does not exist, a range that is none, or a value out of range.
+        ValueError naming a parameter that does not exist, an empty range, or a value out of range.
         """
         strengths = ["G0", *(f"G{i + 1}" for i in range(n)), "eta0"]
         times = [f"tau{i + 1}" for i in range(n)]

@@ -32,13 +32,14 @@ def read_dma(
 ) -> DMAData:
     """Read isothermal frequency sweeps from a table with a header.
 
-    Understood are plain tables (comma, semicolon, tab or blanks; decimal point or comma; UTF-8, UTF-16 or
-    Latin-1; # opens a comment), TA TRIOS (CSV and LIMS text), Anton Paar RheoCompass, GABO Eplexor XLS, and
-    XLSX. Columns are known by their names (frequency or angular frequency, temperature, storage and loss
-    modulus, or one of them with tan δ or the phase, or |G*| with either, and the nominal temperature or
-    number of the isotherm), units by the name's ending, a bracket or a row of units. Where one file holds
-    several tables (a step each), all are read. Points with an empty or non-finite value are left out with a
-    warning that counts them; negative moduli are kept, for :func:`master_curve` to leave out openly.
+    The reader understands plain tables (comma, semicolon, tab or blanks; decimal point or comma; UTF-8,
+    UTF-16 or Latin-1; # opens a comment), exports of TA TRIOS (CSV and LIMS text) and Anton Paar
+    RheoCompass, GABO Eplexor XLS, and XLSX. Columns are known by their names (frequency or angular
+    frequency, temperature, storage and loss modulus, or one of them with tan δ or the phase, or |G*| with
+    either, and the nominal temperature or number of the isotherm), units by the name's ending, a bracket or
+    a row of units. Where one file holds several tables (a step each), all are read. Points with an empty or
+    non-finite value are left out with a warning that counts them; negative moduli are kept, for
+    :func:`master_curve` to leave out openly.
 
     Parameters
     ----------
@@ -52,22 +53,26 @@ def read_dma(
         "phase", "isotherm"), where the header is not understood.
     units
         Units by quantity, where the file names none, e.g. {"storage": "MPa"}. A frequency without unit is
-        taken as Hz, an angular frequency as rad/s, a temperature of up to 150 as °C, and
-        that is said.
+        taken as Hz, an angular frequency as rad/s, a temperature of up to 150 as °C, each with a warning.
     temperature
-        Of all points, °C, where the table has no such column.
+        Temperature of all points, °C, where the table has no such column.
     sort
         Sort the points by isotherm and frequency instead of refusing an unsorted table.
     drop_invalid
         Leave out points whose frequency or modulus is not positive, too.
+
+    Returns
+    -------
+    DMAData
+        Frequency, Hz, temperature, °C, storage and loss modulus, Pa, (n,) each; `notes` say what was assumed.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        If the file is not such a table; the message names file, line, column, value and remedy. If a
-        spreadsheet needs a package that is not installed.
+        If the file is not such a table, or a spreadsheet needs a package that is not installed. The message
+        names file, line, column, value and remedy.
 
     Examples
     --------

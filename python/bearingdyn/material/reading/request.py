@@ -41,8 +41,8 @@ class Request:
 
     def __post_init__(self) -> None:
         T = self.temperature
-        if T is not None and not -273.15 < T < 1e4:
-            raise ValueError(f"temperature is {T!r} °C; it must be a temperature in °C")
+        known = T is None or -273.15 < T < 1e4
+        require(known, "temperature", T, "it must be a temperature in °C")
         for name, mapping in (("columns", self.columns), ("units", self.units)):
             unknown = sorted(set(mapping) - set(_KNOWN))
             require(
