@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import bearingdyn as bd
-from bearingdyn.material.laws import LawName
+from bearingdyn.material.superposition import LawName
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = ROOT.parent / "shared" / "data" / "epdm70"

@@ -8,8 +8,7 @@ import pytest
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.fem import Section
-from bearingdyn.material import STEEL, Maxwell
-from bearingdyn.material.shift import WLF
+from bearingdyn.material import STEEL, WLF, Maxwell
 from bearingdyn.parts import FlexibleRing, Layer, RigidBody, Shaft
 
 BODY = RigidBody(2.0, (0.01, 0.01, 0.015))

@@ -13,8 +13,7 @@ from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.cms import Superelement
 from bearingdyn.fem import Section
-from bearingdyn.material import STEEL, Maxwell
-from bearingdyn.material.shift import WLF, RhoT
+from bearingdyn.material import STEEL, WLF, Maxwell, RhoT
 from bearingdyn.parts import Housing, Layer, RigidBody, Ring, Shaft, damping_sample
 from rotors import BEARING, RUBBER, motor, oscillator
 

@@ -20,8 +20,8 @@ def test_moduli_of_steel():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ((0.0, 0.3, 7850.0), r"Elastic.E is 0.0 Pa"),
-        ((math.nan, 0.3, 7850.0), r"Elastic.E is nan Pa"),
+        ((0.0, 0.3, 7850.0), r"Elastic.E is 0.0; .*, Pa"),
+        ((math.nan, 0.3, 7850.0), r"Elastic.E is nan; .*, Pa"),
         ((210e9, 0.5, 7850.0), r"Elastic.nu is 0.5"),
         ((210e9, -1.0, 7850.0), r"Elastic.nu is -1.0"),
         ((210e9, math.nan, 7850.0), r"Elastic.nu is nan"),

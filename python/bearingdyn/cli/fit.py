@@ -9,10 +9,18 @@ from typing import Any
 
 from bearingdyn.cli.outcome import GOOD
 from bearingdyn.material import DMAData, MasterCurve, Maxwell, fit_maxwell, master_curve, read_dma
+from bearingdyn.material.reading import ReadingError
 
 # usual for rubber; said in the table where they were not given
 BULK_MODULUS = 2e9
 DENSITY = 1200.0
+
+# options of this command by the argument of read_dma they stand for
+_OPTIONS = {
+    "units": "--units storage=MPa loss=MPa temperature=C",
+    "columns": "--columns storage=TITLE",
+    "mode": "--mode shear",
+}
 
 
 def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -63,13 +71,8 @@ def _read(arguments: argparse.Namespace) -> DMAData:
     columns, units = _pairs("--columns", arguments.columns), _pairs("--units", arguments.units)
     try:
         return read_dma(arguments.data, arguments.mode, columns=columns, units=units)
-    except ValueError as error:
-        remedies = (
-            ("units={", "--units storage=MPa loss=MPa temperature=C"),
-            ("columns={", "--columns storage=TITLE"),
-            ("mode=", "--mode shear"),
-        )
-        options = ", ".join(option for word, option in remedies if word in str(error))
+    except ReadingError as error:
+        options = ", ".join(_OPTIONS[name] for name in _OPTIONS if name in error.arguments)
         raise ValueError(f"{error} (options: {options})" if options else str(error)) from error
 
 

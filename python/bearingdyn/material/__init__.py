@@ -4,13 +4,12 @@ from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, Tabula
 from bearingdyn.material.dma import DMAData, group_isotherms
 from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
-from bearingdyn.material.fit import fit_dense, fit_maxwell
-from bearingdyn.material.kk import Suspect, kk_ratio, suspects
+from bearingdyn.material.fit_report import FitReport, OutsideBand
+from bearingdyn.material.identification import fit_dense, fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.read import read_dma, sample_dma_path
-from bearingdyn.material.report import FitReport, OutsideBand
-from bearingdyn.material.shift import WLF, Arrhenius, Joined, RhoT, ShiftTable
-from bearingdyn.material.tts import MasterCurve, master_curve
+from bearingdyn.material.reading import read_dma, sample_dma_path
+from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
+from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, master_curve, suspects
 
 __all__ = [
     "STEEL",

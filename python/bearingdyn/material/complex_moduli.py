@@ -15,21 +15,22 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_density
-from bearingdyn.material.fit import fit_maxwell
+from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.shift import Law, ShiftTable
-from bearingdyn.material.tts import MasterCurve
+from bearingdyn.material.shift_laws import Law, ShiftTable
+from bearingdyn.material.superposition import MasterCurve
 from bearingdyn.types import Array, Complex
 
 _PER_DECADE = 40  # points at which a modulus is handed to the fit
 
 
-def _check(owner: str, positive: dict[str, float]) -> None:
-    for name, value in positive.items():
-        if not (value > 0 and math.isfinite(value)):
-            raise ValueError(f"{owner}.{name} is {value!r}; it must be positive and finite")
-    check_density(f"{owner}.density", positive["density"])
+def _check(owner: str, values: dict[str, float]) -> None:
+    """ValueError naming the first of the values that is not positive, or the density if no solid has it."""
+    for name, value in values.items():
+        positive(f"{owner}.{name}", value)
+    check_density(f"{owner}.density", values["density"])
 
 
 def _approximate(
@@ -78,12 +79,12 @@ class TabulatedModulus:
     K, density
         Bulk modulus, Pa, and density, kg/m³.
     law, temperature
-        Shift law, and the temperature, °C, the table holds at, for :meth:`at`.
+        Shift law, and the temperature, °C, at which the table holds, for :meth:`at`.
 
     Raises
     ------
     ValueError
-        If a value is out of range. Outside the table a modulus is refused, except at rest: the lowest
+        If a value is out of range, or a modulus is asked for outside the table. At rest it is the lowest
         storage modulus.
     """
 
@@ -101,14 +102,15 @@ class TabulatedModulus:
             values = np.array(getattr(self, name), dtype=np.float64)
             if values.ndim != 1 or values.size < 2 or values.size != np.size(self.frequency):
                 raise ValueError(
-                    f"TabulatedModulus.{name}: must be one-dimensional, two values or more, as many"
+                    f"TabulatedModulus.{name} has shape {values.shape}; it must be one-dimensional, with "
+                    "two values or more, and as many as there are frequencies"
                 )
             if not (np.all(values > 0) and np.all(np.isfinite(values))):
                 raise ValueError(f"TabulatedModulus.{name}: every value must be positive and finite")
             values.flags.writeable = False
             object.__setattr__(self, name, values)
         if not np.all(np.diff(self.frequency) > 0):
-            raise ValueError("TabulatedModulus.frequency: must rise strictly, Hz")
+            raise ValueError(f"TabulatedModulus.frequency is {self.frequency!r}; it must rise strictly, Hz")
 
     @classmethod
     def from_master(
@@ -135,7 +137,7 @@ class TabulatedModulus:
         inside = rest | ((f >= low * (1 - 1e-9)) & (f <= high * (1 + 1e-9)))
         if not np.all(inside):
             raise ValueError(
-                f"omega = {omega[~inside].flat[0]:.6g} rad/s: the table reaches from {low:.6g} to "
+                f"omega is {omega[~inside].flat[0]:.6g} rad/s; the table reaches from {low:.6g} to "
                 f"{high:.6g} Hz"
             )
         x = np.log(np.clip(np.where(rest, low, f), low, high))
@@ -181,9 +183,14 @@ class PowerLaw:
     K, density
         Bulk modulus, Pa, and density, kg/m³.
     law, temperature
-        Shift law, and the temperature, °C, the modulus holds at, for :meth:`at`.
+        Shift law, and the temperature, °C, at which the modulus holds, for :meth:`at`.
 
-    Raises ValueError for a value outside its range or not finite. Reference: paper §3.2.
+    Raises
+    ------
+    ValueError
+        If a value is outside its range or not finite.
+
+    Reference: paper §3.2.
     """
 
     modulus: float
@@ -197,16 +204,14 @@ class PowerLaw:
     def __post_init__(self) -> None:
         values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
         _check("PowerLaw", values)
-        if not 0 < self.exponent < 1:
-            raise ValueError(f"PowerLaw.exponent is {self.exponent!r}; it must lie between 0 and 1")
+        require(0 < self.exponent < 1, "PowerLaw.exponent", self.exponent, "it must lie between 0 and 1")
 
     @classmethod
     def of_loss_factor(
         cls, modulus: float, loss_factor: float, frequency: float, *, K: float, density: float
     ) -> PowerLaw:
         """By the loss factor: α = (2/π) arctan η. ValueError unless it is positive."""
-        if not (loss_factor > 0 and math.isfinite(loss_factor)):
-            raise ValueError(f"loss_factor is {loss_factor!r}; it must be positive and finite")
+        positive("loss_factor", loss_factor)
         return cls(modulus, 2 / math.pi * math.atan(loss_factor), frequency, K, density)
 
     def complex_modulus(self, omega: ArrayLike) -> Complex:
@@ -244,11 +249,14 @@ class FractionalZener:
     K, density
         Bulk modulus, Pa, and density, kg/m³.
     law, temperature
-        Shift law, and the temperature, °C, tau holds at, for :meth:`at`.
+        Shift law, and the temperature, °C, at which tau holds, for :meth:`at`.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside its range or not finite.
 
     Reference: T. Pritz, J. Sound Vib. 195 (1996) 103.
-
-    Raises ValueError for a value outside its range or not finite.
     """
 
     G0: float
@@ -263,12 +271,10 @@ class FractionalZener:
     def __post_init__(self) -> None:
         values = {"G_inf": self.G_inf, "tau": self.tau, "K": self.K, "density": self.density}
         _check("FractionalZener", values)
-        if not 0 <= self.G0 < self.G_inf:
-            raise ValueError(
-                f"FractionalZener.G0 is {self.G0!r} Pa; it must lie between 0 and G_inf = {self.G_inf:g}"
-            )
-        if not 0 < self.alpha <= 1:
-            raise ValueError(f"FractionalZener.alpha is {self.alpha!r}; it must lie above 0 and be at most 1")
+        remedy = f"it must lie between 0 and G_inf = {self.G_inf:g} Pa"
+        require(0 <= self.G0 < self.G_inf, "FractionalZener.G0", self.G0, remedy)
+        remedy = "it must lie above 0 and be at most 1"
+        require(0 < self.alpha <= 1, "FractionalZener.alpha", self.alpha, remedy)
 
     def complex_modulus(self, omega: ArrayLike) -> Complex:
         """G*(ω), Pa, at ω rad/s, any shape; the conjugate at −ω, G0 at rest."""

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bearingdyn.checks import positive, require
 from bearingdyn.notice import warn
 from bearingdyn.types import Array, Complex
 
@@ -16,6 +17,10 @@ Mode = Literal["shear", "tension"]
 _SPREAD = 6.0  # K; widest temperature range called one isotherm
 _SOFT, _HARD, _HARDEST = 10.0, 5e10, 1.2e12  # Pa; a soft gel, more than any polymer, diamond
 _UNIT = "is the unit right (Pa, kPa, MPa, GPa)? Give units={'storage': ..., 'loss': ...}"
+
+
+class UnitError(ValueError):
+    """Moduli no solid has: their unit is wrong."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +36,7 @@ class DMAData:
     storage, loss
         Storage and loss modulus, Pa, (n,), finite. Negative ones are kept, and left out of master curves.
     mode
-        "shear" if the moduli are G′ and G″, "tension" if E′ and E″.
+        "shear" if the moduli are G′ and G″, "tension" if they are E′ and E″.
     source
         Where the data come from, for messages.
     isotherm
@@ -40,7 +45,7 @@ class DMAData:
     notes
         What was assumed in reading, and what was converted.
     K
-        Bulk modulus, Pa, by which :meth:`to_shear` turned tension into shear.
+        Bulk modulus, Pa, with which :meth:`to_shear` turned tension into shear; None if it did not.
 
     Raises
     ------
@@ -63,7 +68,9 @@ class DMAData:
         for name in ("frequency", "temperature", "storage", "loss"):
             values = np.array(getattr(self, name), dtype=np.float64)
             if values.ndim != 1:
-                raise ValueError(f"{self.source}: {name} has shape {values.shape}: must be one-dimensional")
+                raise ValueError(
+                    f"{self.source}: {name} has shape {values.shape}; it must be one-dimensional"
+                )
             self._store(name, values)
         n = self.frequency.size
         if n == 0:
@@ -73,8 +80,8 @@ class DMAData:
         for name in ("temperature", "storage", "loss"):
             if getattr(self, name).size != n:
                 raise ValueError(
-                    f"{self.source}: {name} has {getattr(self, name).size} values, frequency {n}: must be "
-                    "as many"
+                    f"{self.source}: {name} has {getattr(self, name).size} values, frequency {n}; there "
+                    "must be as many"
                 )
         if self.mode not in ("shear", "tension"):
             raise ValueError(f"{self.source}: mode is {self.mode!r}; it must be 'shear' (G) or 'tension' (E)")
@@ -86,10 +93,10 @@ class DMAData:
             if not good.all():
                 i = int(np.argmin(good))
                 need = "positive and finite" if name == "frequency" else "finite"
-                raise ValueError(f"{self.source}: {name}[{i}] = {values[i]:g} {unit}: must be {need}")
+                raise ValueError(f"{self.source}: {name}[{i}] is {values[i]:g} {unit}; it must be {need}")
         middle = float(np.median(np.abs(self.storage)))
         if middle > _HARDEST:
-            raise ValueError(
+            raise UnitError(
                 f"{self.source}: median storage modulus {middle:.3g} Pa: no solid is harder than diamond, "
                 f"{_HARDEST:g} Pa: {_UNIT}"
             )
@@ -114,15 +121,14 @@ class DMAData:
             if not np.ptp(T) <= _SPREAD:
                 raise ValueError(
                     f"{self.source}: temperatures {T.min():.4g} to {T.max():.4g} °C cannot be told apart "
-                    "into "
-                    f"isotherms at most {_SPREAD:g} K wide: measure frequency sweeps at steady temperatures, "
-                    "or give each point's isotherm"
+                    f"into isotherms at most {_SPREAD:g} K wide: measure frequency sweeps at steady "
+                    "temperatures, or give each point's isotherm"
                 )
         i = first_unsorted(self.frequency, labels)
         if i is not None:
             raise ValueError(
-                f"{self.source}: frequency[{i}] = {self.frequency[i]:g} Hz runs back within the isotherm at "
-                f"{self.temperature[i]:.4g} °C: must rise throughout, or fall throughout"
+                f"{self.source}: frequency[{i}] is {self.frequency[i]:g} Hz and runs back within the "
+                f"isotherm at {self.temperature[i]:.4g} °C; it must rise throughout, or fall throughout"
             )
 
     @property
@@ -197,8 +203,12 @@ class DMAData:
     ) -> DMAData:
         """The points with f_min ≤ frequency ≤ f_max, Hz, and T[0] ≤ temperature ≤ T[1], °C.
 
-        To leave out, openly, what is known to be wrong: a fixture's resonance, a melted sample.
-        ValueError if no point is left.
+        Use it to leave out, openly, what is known to be wrong: a fixture's resonance, a melted sample.
+
+        Raises
+        ------
+        ValueError
+            If no point is left.
         """
         keep = (self.frequency >= f_min) & (self.frequency <= f_max)
         keep &= (self.temperature >= T[0]) & (self.temperature <= T[1])
@@ -230,12 +240,10 @@ def shear_modulus(modulus: Complex, K: float | None, nu: float | None) -> tuple[
     if (K is None) == (nu is None):
         raise ValueError("to_shear: give either the bulk modulus, K=2e9, or Poisson's ratio, nu=0.5")
     if nu is not None:
-        if not 0 <= nu <= 0.5:
-            raise ValueError(f"nu is {nu!r}; Poisson's ratio must lie between 0 and 0.5")
+        require(0 <= nu <= 0.5, "nu", nu, "Poisson's ratio must lie between 0 and 0.5")
         return modulus / (2 * (1 + nu)), f"tension turned into shear by E*/2(1 + nu), nu = {nu:g}"
     assert K is not None  # one of the two is given
-    if not (K > 0 and np.isfinite(K)):
-        raise ValueError(f"K is {K!r} Pa; it must be positive and finite")
+    positive("K", K, "it must be positive and finite, Pa")
     if not np.all(modulus.real < 9 * K):
         raise ValueError(
             f"K is {K:g} Pa; it must exceed a ninth of the tensile modulus, here {modulus.real.max():.4g} Pa"
@@ -260,8 +268,8 @@ def group_isotherms(temperature: ArrayLike) -> NDArray[np.int64]:
     """Number of the isotherm each temperature, °C, (n,), belongs to, 0 the coldest.
 
     Sorted temperatures are cut at their wide gaps; wide is what lies above the largest jump in the sizes of
-    the gaps, 0.3 K at least and 3 K at most, so that jitter of a tenth of a kelvin and drift of one do no
-    harm.
+    the gaps, 0.3 K at least and 3 K at most, so that jitter of a tenth of a kelvin and drift of one kelvin do
+    no harm.
     """
     T = np.asarray(temperature, dtype=float)
     order = np.argsort(T, kind="stable")

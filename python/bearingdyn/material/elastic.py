@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+from bearingdyn.checks import positive
 from bearingdyn.magnitude import SOFTEST, check_density
 
 
@@ -39,8 +39,7 @@ class Elastic:
     density: float
 
     def __post_init__(self) -> None:
-        if not (self.E > 0 and math.isfinite(self.E)):
-            raise ValueError(f"Elastic.E is {self.E!r} Pa; Young's modulus must be positive and finite")
+        positive("Elastic.E", self.E, "Young's modulus must be positive and finite, Pa")
         if not self.E >= SOFTEST:
             raise ValueError(
                 f"Elastic.E is {self.E!r} Pa; below {SOFTEST:g} Pa, softer than any rubber; is it in GPa or "
@@ -51,8 +50,7 @@ class Elastic:
                 f"Elastic.nu is {self.nu!r}; Poisson's ratio must lie strictly between -1 and 0.5 "
                 "(for a nearly incompressible material take 0.4999, or Maxwell with a bulk modulus)"
             )
-        if not (self.density > 0 and math.isfinite(self.density)):
-            raise ValueError(f"Elastic.density is {self.density!r} kg/m³; it must be positive and finite")
+        positive("Elastic.density", self.density, "it must be positive and finite, kg/m³")
         check_density("Elastic.density", self.density)
 
     @property

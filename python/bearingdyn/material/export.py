@@ -1,7 +1,7 @@
 """A Maxwell model written for other programs: Abaqus, ANSYS, CalculiX. All in SI units, Pa, s, kg/m³.
 
-What a program cannot hold is refused or said in a comment, never dropped: neither Prony form has a dashpot in
-parallel, neither frequency-domain analysis of Abaqus shifts with temperature (write ``material.at(T)``).
+What a program cannot hold is refused or said in a comment, never dropped: no Prony form has a dashpot in
+parallel, and no frequency-domain analysis of Abaqus shifts with temperature (write ``material.at(T)``).
 References: Abaqus Keywords Guide, *VISCOELASTIC and *TRS; ANSYS Material Reference, viscoelasticity (TB,PRONY
 and TB,SHIFT); G. Dhondt, CalculiX CrunchiX User's Manual, *DAMPING.
 """
@@ -13,8 +13,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import positive
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.shift import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrhenius
+from bearingdyn.material.shift_laws import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrhenius
 
 
 def elastic_constants(G: float, K: float) -> tuple[float, float]:
@@ -35,7 +36,7 @@ def to_abaqus_frequency(material: Maxwell, frequency: ArrayLike, name: str = "RU
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
     if f.ndim != 1 or f.size == 0 or not (np.all(f > 0) and np.all(np.isfinite(f))):
-        raise ValueError("frequency: must be a list of positive, finite values, Hz")
+        raise ValueError(f"frequency is {frequency!r}; it must be a list of positive, finite values, Hz")
     if not material.G0 > 0:
         raise ValueError("Maxwell.G0 is 0; Abaqus refers frequency data to a long-term modulus above zero")
     modulus = material.complex_modulus(2 * np.pi * f) / material.G0
@@ -49,8 +50,12 @@ def to_abaqus_frequency(material: Maxwell, frequency: ArrayLike, name: str = "RU
 def to_abaqus_prony(material: Maxwell, name: str = "RUBBER") -> str:
     """Abaqus material for the time domain: *VISCOELASTIC, TIME=PRONY with *TRS of a WLF or Arrhenius law.
 
-    Temperatures are in °C, with *PHYSICAL CONSTANTS saying where absolute zero is. ValueError if there is a
-    dashpot, no branch, or a law that Abaqus has not.
+    Temperatures are in °C, with *PHYSICAL CONSTANTS saying where absolute zero is.
+
+    Raises
+    ------
+    ValueError
+        If there is a dashpot, no branch, or a law that Abaqus does not have.
     """
     _check_prony(material, "Abaqus")
     total = material.G_instantaneous
@@ -78,8 +83,12 @@ def to_abaqus_prony(material: Maxwell, name: str = "RUBBER") -> str:
 def to_ansys(material: Maxwell, number: int = 1) -> str:
     """ANSYS commands: MP, TB,PRONY and TB,SHIFT; temperatures in kelvin, so TOFFST,0.
 
-    WLF as TB,SHIFT,,,3,WLF with (Tr, C1, C2); Arrhenius as TN (Tool–Narayanaswamy), (Tr, Ea/R). ValueError
-    if there is a dashpot, no branch, or a law that ANSYS has not.
+    WLF as TB,SHIFT,,,3,WLF with (Tr, C1, C2); Arrhenius as TN (Tool–Narayanaswamy), (Tr, Ea/R).
+
+    Raises
+    ------
+    ValueError
+        If there is a dashpot, no branch, or a law that ANSYS does not have.
     """
     _check_prony(material, "ANSYS")
     if not (isinstance(number, int) and number > 0):
@@ -121,11 +130,14 @@ def to_calculix(material: Maxwell, frequency: float, name: str = "RUBBER") -> st
     """CalculiX material for steady-state dynamics near one frequency, Hz: *ELASTIC and *DAMPING, STRUCTURAL.
 
     CalculiX has no viscoelastic material; a constant storage modulus and loss factor is all it holds, and it
-    applies the loss factor to the volume too, where this model has none. ValueError for a frequency that is
-    not positive.
+    applies the loss factor to the volume too, where this model has none.
+
+    Raises
+    ------
+    ValueError
+        If the frequency is not positive.
     """
-    if not (frequency > 0 and math.isfinite(frequency)):
-        raise ValueError(f"frequency is {frequency!r} Hz; it must be positive and finite")
+    positive("frequency", frequency, "it must be positive and finite, Hz")
     modulus = complex(material.complex_modulus(2 * math.pi * frequency))
     E, nu = elastic_constants(modulus.real, material.K)
     return "\n".join(
@@ -156,15 +168,15 @@ def _abaqus_head(material: Maxwell, name: str, G: float, kind: str) -> list[str]
 def _check_prony(material: Maxwell, program: str) -> None:
     if material.eta0 > 0:
         raise ValueError(
-            f"Maxwell.eta0 = {material.eta0:g} Pa s: {program}'s Prony series has no dashpot; fit with "
+            f"Maxwell.eta0 is {material.eta0:g} Pa s; {program}'s Prony series has no dashpot; fit with "
             "dashpot=False"
         )
     if material.G.size == 0:
-        raise ValueError(f"Maxwell.G is empty: {program}'s Prony series needs a branch")
+        raise ValueError(f"Maxwell.G is empty; {program}'s Prony series needs a branch")
     if material.vertical is not None:
         raise ValueError(
-            f"Maxwell.vertical: {program}'s Prony series has no vertical shift; write material.at(T) with "
-            "vertical=None"
+            f"Maxwell.vertical is set; {program}'s Prony series has no vertical shift; write material.at(T) "
+            "with vertical=None"
         )
 
 
@@ -183,6 +195,5 @@ def _at_temperature(law: WLF, material: Maxwell) -> WLF:
 def _no_such_law(law: object, program: str) -> str:
     return (
         f"law is {type(law).__name__}: {program} has WLF and Arrhenius; write material.at(T) for one "
-        "temperature "
-        "with law=None"
+        "temperature with law=None"
     )

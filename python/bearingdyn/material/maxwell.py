@@ -9,11 +9,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import nonnegative, number, positive
 from bearingdyn.magnitude import check_bulk, check_density
 from bearingdyn.material.creep import creep_compliance
-from bearingdyn.material.report import FitReport, OutsideBand
-from bearingdyn.material.retune import Retunable
-from bearingdyn.material.shift import Law, RhoT, law_from_dict, law_to_dict
+from bearingdyn.material.fit_report import FitReport, OutsideBand
+from bearingdyn.material.retuning import Retunable
+from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict
 from bearingdyn.notice import warn
 from bearingdyn.types import Array, Complex
 
@@ -24,7 +25,7 @@ def _branches(name: str, values: ArrayLike) -> Array:
     array = np.array(values, dtype=np.float64)
     if array.ndim != 1:
         raise ValueError(
-            f"Maxwell.{name} has shape {array.shape}: must be one-dimensional, a value per branch"
+            f"Maxwell.{name} has shape {array.shape}; it must be one-dimensional, a value per branch"
         )
     array.flags.writeable = False
     return array
@@ -46,8 +47,8 @@ class Maxwell(Retunable):
     eta0
         Viscosity of the parallel dashpot, Pa s, ≥ 0.
     K
-        Bulk modulus, Pa, constant; at least 2/3 of the shear modulus right after a step (at the upper end of
-        the band, where there is one): Poisson's ratio would else be negative.
+        Bulk modulus, Pa, constant; at least 2/3 of the shear modulus right after a step (or at the upper end
+        of the band, if there is one), as Poisson's ratio would otherwise be negative.
     density
         Mass density, kg/m³, 10 to 30000; 1e-4 to 0.1 stand for a layer without inertia.
     law
@@ -62,7 +63,7 @@ class Maxwell(Retunable):
     fit
         Report of the fit the model comes from.
 
-    Two materials are equal if everything but `band` and `fit` is.
+    Two materials are equal if they agree in everything but `band` and `fit`.
 
     Raises
     ------
@@ -130,31 +131,25 @@ class Maxwell(Retunable):
 
     def _validate(self) -> None:
         for name, value, unit in (("G0", self.G0, "Pa"), ("eta0", self.eta0, "Pa s")):
-            if not (value >= 0 and math.isfinite(value)):
-                raise ValueError(
-                    f"Maxwell.{name} is {value!r} {unit}; it must be zero or positive, and finite"
-                )
+            nonnegative(f"Maxwell.{name}", value, f"it must be zero or positive, and finite, {unit}")
         for name, value, unit in (("K", self.K, "Pa"), ("density", self.density, "kg/m³")):
-            if not (value > 0 and math.isfinite(value)):
-                raise ValueError(f"Maxwell.{name} is {value!r} {unit}; it must be positive and finite")
+            positive(f"Maxwell.{name}", value, f"it must be positive and finite, {unit}")
         if self.G.size != self.tau.size:
             raise ValueError(
                 f"Maxwell.G has {self.G.size} branches, Maxwell.tau {self.tau.size}: each strength needs "
                 "its time"
             )
         for i, (G, tau) in enumerate(zip(self.G.tolist(), self.tau.tolist(), strict=True)):
-            if not (G >= 0 and math.isfinite(G)):
-                raise ValueError(f"Maxwell.G[{i}] is {G!r} Pa; it must be zero or positive, and finite")
-            if not (tau > 0 and math.isfinite(tau)):
-                raise ValueError(f"Maxwell.tau[{i}] is {tau!r} s; it must be positive and finite")
+            nonnegative(f"Maxwell.G[{i}]", G, "it must be zero or positive, and finite, Pa")
+            positive(f"Maxwell.tau[{i}]", tau, "it must be positive and finite, s")
         if not self.G0 + self.eta0 + self.G.sum() > 0:
             raise ValueError(
                 "Maxwell: G0, every G and eta0 are zero: the material would carry no shear at all"
             )
         check_density("Maxwell.density", self.density)
         check_bulk("Maxwell.K", self.K, self._stiffest())
-        if self.temperature is not None and not math.isfinite(self.temperature):
-            raise ValueError(f"Maxwell.temperature is {self.temperature!r} °C; it must be finite")
+        if self.temperature is not None:
+            number("Maxwell.temperature", self.temperature, "it must be finite, °C")
         if self.band is not None and not 0 < self.band[0] < self.band[1] < math.inf:
             raise ValueError(f"Maxwell.band is {self.band!r} Hz; it must be a lower and a higher frequency")
 
@@ -205,7 +200,14 @@ class Maxwell(Retunable):
         Returns
         -------
         ndarray
-            Complex, the shape of omega; G0 at ω = 0, the conjugate at −ω. Reference: paper eqs 17-19.
+            Complex, the shape of omega; G0 at ω = 0, the conjugate at −ω.
+
+        Raises
+        ------
+        ValueError
+            If a frequency is not finite.
+
+        Reference: paper eqs 17-19.
         """
         omega = np.asarray(omega, dtype=np.float64)
         if not np.all(np.isfinite(omega)):
@@ -222,9 +224,8 @@ class Maxwell(Retunable):
         outside = f[(f < self.band[0] / _ROUNDING) | (f > self.band[1] * _ROUNDING)]
         if outside.size:
             warn(
-                f"{outside.min():.3g} to {outside.max():.3g} Hz lies outside the band the Maxwell model "
-                "was fitted "
-                f"in, {self.band[0]:.4g} to {self.band[1]:.4g} Hz: it extrapolates there",
+                f"{outside.min():.3g} to {outside.max():.3g} Hz lies outside the band the Maxwell model was "
+                f"fitted in, {self.band[0]:.4g} to {self.band[1]:.4g} Hz: there it extrapolates",
                 OutsideBand,
             )
 
@@ -242,6 +243,11 @@ class Maxwell(Retunable):
         """Relaxation modulus G_rel(t), Pa, at times t ≥ 0, s, any shape (paper eq. 6).
 
         The dashpot adds an impulse η0·δ(t) at t = 0, which is left out.
+
+        Raises
+        ------
+        ValueError
+            If a time is negative.
         """
         t = np.asarray(t, dtype=np.float64)
         if not np.all(t >= 0):
@@ -252,7 +258,12 @@ class Maxwell(Retunable):
         """Creep compliance J(t), 1/Pa, at times t ≥ 0, s, any shape: strain under a unit step of stress.
 
         Exact: iωJ* = 1/G* expanded in its poles, which lie between those of G*. With a dashpot J(0) = 0; with
-        G0 = 0 the material flows for ever. ValueError for negative times.
+        G0 = 0 the material flows forever.
+
+        Raises
+        ------
+        ValueError
+            If a time is negative.
         """
         return creep_compliance(self.G0, self.G, self.tau, self.eta0, t)
 
@@ -289,15 +300,15 @@ class Maxwell(Retunable):
         rate = np.asarray(strain_rate, dtype=np.float64)
         if rate.ndim == 0 or rate.shape[0] == 0:
             raise ValueError(
-                f"strain_rate has shape {rate.shape}: axis 0 must be time, with at least one sample"
+                f"strain_rate has shape {rate.shape}; axis 0 must be time, with at least one sample"
             )
         if not np.all(np.isfinite(rate)):
             raise ValueError("strain_rate: every value must be finite, 1/s")
         step = np.asarray(dt, dtype=np.float64)
         if step.ndim > 0 and step.shape != (rate.shape[0] - 1,):
             raise ValueError(
-                f"dt has shape {step.shape}: must be one number, or {rate.shape[0] - 1} for {rate.shape[0]} "
-                "samples"
+                f"dt has shape {step.shape}; it must be one number, or {rate.shape[0] - 1} for "
+                f"{rate.shape[0]} samples"
             )
         if not (np.all(step > 0) and np.all(np.isfinite(step))):
             raise ValueError("dt: every time step must be positive and finite, s")
@@ -312,8 +323,12 @@ class Maxwell(Retunable):
     def at(self, T: float) -> Maxwell:
         """The same material at temperature T, °C: tau and eta0 times a_T(T)/a_T(temperature), by its law.
 
-        Moduli are left as they are unless there is a vertical shift, b_T(T)/b_T(temperature); the band moves
-        along. ValueError if the material has no law.
+        Moduli are multiplied by b_T(T)/b_T(temperature) if there is a vertical shift; the band moves along.
+
+        Raises
+        ------
+        ValueError
+            If the material has no law.
         """
         if self.law is None or self.temperature is None:
             raise ValueError(

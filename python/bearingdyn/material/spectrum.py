@@ -50,7 +50,7 @@ class Strengths:
     basis: Array
 
     def project_out(self, columns: Array) -> Array:
-        """What of the columns, (m, k), the active strengths cannot take up (Kaufman's derivative)."""
+        """The part of the columns, (m, k), that active strengths cannot take up (Kaufman's derivative)."""
         return np.asarray(columns - self.basis @ (self.basis.T @ columns))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.material import DMAData, MasterCurve, Maxwell, kk_ratio, suspects
-from bearingdyn.material.kk import LIMIT
+from bearingdyn.material.superposition import LIMIT
 from bearingdyn.plot.frame import COLOURS, colour, finish, new_axes, some, style
 from bearingdyn.plot.material import letter_of, temperature_bar, temperature_colour, temperature_scale
 from bearingdyn.types import Array, Complex

@@ -13,12 +13,16 @@ from typing import Literal
 
 import numpy as np
 
+from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import shear_modulus
+from bearingdyn.material.fit_report import FitReport, OutsideBand
+from bearingdyn.material.identification.bounds import Limits
+from bearingdyn.material.identification.points import Points
+from bearingdyn.material.identification.polish import Polished, polish
+from bearingdyn.material.identification.projection import Projection
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.projection import Limits, Points, Polished, Projection, polish
-from bearingdyn.material.report import FitReport, OutsideBand
-from bearingdyn.material.tts import MasterCurve
+from bearingdyn.material.superposition import MasterCurve
 from bearingdyn.notice import warn
 from bearingdyn.types import Array
 
@@ -47,9 +51,9 @@ def fit_maxwell(
         Master curve. One measured in tension is turned into shear by G* = 3KE*/(9K − E*) with the K below,
         and a warning says so; :meth:`MasterCurve.to_shear` beforehand is silent.
     n
-        Number of branches; those the data give no strength are left out of the result. "auto": the smallest
-        number whose rms deviations of G′ and of tan δ are within `tolerance`, or within 1.2 times what the
-        best dense spectrum leaves.
+        Number of branches; those to which the data give no strength are left out of the result.
+        "auto": the smallest number whose rms deviations of G′ and of tan δ are within `tolerance`, or
+        within 1.2 times what the best dense spectrum leaves.
     band
         Lowest and highest frequency at T_ref, Hz; all points when not given.
     K
@@ -57,15 +61,15 @@ def fit_maxwell(
     density
         Mass density, kg/m³.
     dashpot
-        Whether η0 is fitted too; else it is zero.
+        Whether η0 is fitted too; otherwise it is zero.
     bounds, fixed
         Ranges and values of parameters by name: G0, G1 …, tau1 …, eta0, in SI units. Branches are numbered
         by rising time at the start; the result is sorted. fixed={"G0": 0.0} is a fluid.
     tolerance
-        Relative, for n="auto".
+        Relative rms deviation that is good enough for n="auto".
     bootstrap
         Number of refits to isotherms drawn with replacement, for standard errors that know of the
-        correlation within isotherms; shifts are kept, and so is the sequence of draws.
+        correlation within isotherms. Shifts are kept; the draws are the same every time.
 
     Returns
     -------
@@ -76,7 +80,7 @@ def fit_maxwell(
     Raises
     ------
     ValueError
-        If the band is not one, holds too few points, or a value is out of range.
+        If the band is empty or holds too few points, or a value is out of range.
 
     Reference: paper §3.2, eqs 18 and 19.
 
@@ -88,17 +92,12 @@ def fit_maxwell(
     >>> rubber.G.size, rubber.fit.storage_rms < 0.02
     (5, True)
     """
-    if n != "auto" and not (isinstance(n, int) and n >= 1):
-        raise ValueError(f"n is {n!r}; the number of branches must be a positive integer, or 'auto'")
-    for name, value in (("K", K), ("density", density)):
-        if not (value > 0 and math.isfinite(value)):
-            raise ValueError(f"{name} is {value!r}; it must be positive and finite")
-    if not (tolerance > 0 and math.isfinite(tolerance)):
-        raise ValueError(f"tolerance is {tolerance!r}; it must be positive and finite")
-    if not (isinstance(bootstrap, int) and bootstrap >= 0):
-        raise ValueError(
-            f"bootstrap is {bootstrap!r}; the number of refits must be zero or a positive integer"
-        )
+    remedy = "the number of branches must be a positive integer, or 'auto'"
+    require(n == "auto" or (isinstance(n, int) and n >= 1), "n", n, remedy)
+    for name, value in (("K", K), ("density", density), ("tolerance", tolerance)):
+        positive(name, value)
+    remedy = "the number of refits must be zero or a positive integer"
+    require(isinstance(bootstrap, int) and bootstrap >= 0, "bootstrap", bootstrap, remedy)
     points = _inside(master, band, K, 1 if n == "auto" else n)
     held = dict(fixed or {}) | ({} if dashpot else {"eta0": 0.0})
     limits = {k: v for k, v in (bounds or {}).items() if dashpot or k != "eta0"}
@@ -133,8 +132,7 @@ def fit_dense(
     """Dense relaxation spectrum of a master curve: spring and branches at times equispaced in the logarithm.
 
     Non-negative least squares of the deviations of G′ and tan δ, to first order; branches without strength
-    are left
-    out. No Maxwell model with non-negative strengths does much better; `fit` says how well, without
+    are left out. No Maxwell model with non-negative strengths does much better; `fit` says how well, without
     covariance, since such strengths are not determined one by one.
 
     Parameters
@@ -144,14 +142,18 @@ def fit_dense(
     per_decade
         Relaxation times per decade.
 
+    Returns
+    -------
+    Maxwell
+        As many branches as have strength, times rising; `law` is the master curve's.
+
     Raises
     ------
     ValueError
         As :func:`fit_maxwell`.
     """
     for name, value in (("K", K), ("density", density), ("per_decade", per_decade)):
-        if not (value > 0 and math.isfinite(value)):
-            raise ValueError(f"{name} is {value!r}; it must be positive and finite")
+        positive(name, value)
     points = _inside(master, band, K, "dense")
     times, x = points.dense(per_decade)
     model = Maxwell(float(x[0]), x[1:-1], times, float(x[-1]), K=K, density=density)
@@ -217,9 +219,8 @@ def _smallest(
             return found, limits
     assert best is not None  # at least one number was tried
     warn(
-        f"n = 'auto': no number of branches up to {most} comes within the tolerance of {tolerance:g} or "
-        "1.2 times "
-        f"the floor {floor[0]:.3g}, {floor[1]:.3g}; the best is {best[0]:.2g} times that",
+        f"n = 'auto': no number of branches up to {most} comes within the tolerance of {tolerance:g} or 1.2 "
+        f"times the floor {floor[0]:.3g}, {floor[1]:.3g}; the best is {best[0]:.2g} times that",
     )
     return best[1], best[2]
 
@@ -237,13 +238,13 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
     needed = n + 2 if isinstance(n, int) else 3
     if not count >= needed:
         raise ValueError(
-            f"band = {f_lo:g} to {f_hi:g} Hz holds {count} points of the master curve, which reaches from "
-            f"{low:.4g} to {high:.4g} Hz: {n} branches need at least {needed}"
+            f"band is {f_lo:g} to {f_hi:g} Hz; it holds {count} points of the master curve, which reaches "
+            f"from {low:.4g} to {high:.4g} Hz; {n} branches need at least {needed}"
         )
     if not (f_lo >= 0.5 * low and f_hi <= 2 * high):
         warn(
-            f"band = {f_lo:g} to {f_hi:g} Hz goes beyond the master curve, {low:.4g} to {high:.4g} Hz: "
-            "no point was measured outside it, and the model's band is cut to twice beyond it",
+            f"band is {f_lo:g} to {f_hi:g} Hz, which goes beyond the master curve, {low:.4g} to {high:.4g} "
+            "Hz: no point was measured outside it, and the model's band is cut to twice beyond it",
             OutsideBand,
         )
         f_lo, f_hi = max(f_lo, 0.5 * low), min(f_hi, 2 * high)
@@ -253,7 +254,7 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
         warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand")
     elif master.K is not None and not math.isclose(master.K, K, rel_tol=1e-6):
         raise ValueError(
-            f"K = {K:g} Pa: the curve was turned into shear with K = {master.K:g} Pa; both must be the same"
+            f"K is {K:g} Pa; the curve was turned into shear with K = {master.K:g} Pa; both must be the same"
         )
     check_bulk("K", K, float(np.abs(modulus).max()))
     T = master.temperature[keep]
@@ -270,7 +271,9 @@ def _refits(points: Points, best: Polished, limits: Limits, count: int) -> Array
     """Parameters, in the order of the names, of refits to isotherms drawn with replacement; (count, p)."""
     kinds = np.unique(points.isotherm)
     if count and kinds.size < 3:
-        raise ValueError(f"bootstrap = {count}: the band holds points of {kinds.size} isotherms, needs three")
+        raise ValueError(
+            f"bootstrap is {count}; it needs points of three isotherms, the band holds {kinds.size}"
+        )
     rng = np.random.default_rng(0)
     found: list[Array] = []
     tries = 0

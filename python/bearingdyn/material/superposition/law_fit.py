@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 import scipy
 
-from bearingdyn.material.shift import (
+from bearingdyn.material.shift_laws import (
     WLF,
     Arrhenius,
     Covariance,
@@ -21,7 +21,7 @@ from bearingdyn.material.shift import (
     Law,
     ShiftTable,
 )
-from bearingdyn.material.superpose import Superposition
+from bearingdyn.material.superposition.free_shifts import Superposition
 from bearingdyn.types import Array
 
 LawName = Literal["wlf", "arrhenius", "joined", "free"]
@@ -159,7 +159,7 @@ def fit_law_to_data(
     """
     T = fit.dma.temperature
     form = _form(name, fit.T, T_ref)
-    fit.weight, fit._last = fit.even, None
+    fit.weigh_evenly()
 
     def points(p: Array) -> Array:
         return form.law(p).log_shift(T)

@@ -155,19 +155,6 @@ def names_shear(text: str) -> bool:
     return bool(_SHEAR_SIGNS.search(text))
 
 
-def factor(quantity: str, unit: str, column: Column, where: str) -> float:
-    """Factor (temperature: sum) to the unit used inside; ValueError naming those that are known."""
-    known = UNITS[quantity]
-    key = unit.strip().strip("[]()").strip().lower()
-    if key not in known:
-        stated = f"unit {unit.strip()!r}" if key else "no unit"
-        raise ValueError(
-            f"{where}, column {column.title!r}: {stated} for the {quantity}: known are {', '.join(known)}; "
-            f"give units={{{quantity!r}: ...}}"
-        )
-    return known[key]
-
-
 def number_of(cell: str) -> float:
     """Number in a cell, decimal comma or point; ValueError if there is none."""
     text = cell.strip().strip('"')

@@ -168,6 +168,23 @@ def test_shifts_by_hand_are_kept_or_refined(sample):
         master_curve(sample, shifts={20.0: np.nan})
 
 
+@pytest.mark.parametrize("offset", [1.0, 4.0])
+@pytest.mark.parametrize("held", [(0, 1), (1, 2), (2, 3)])
+def test_free_shifts_follow_those_set_by_hand(held, offset):
+    """Two isotherms set decades off: the offset is anyone's choice, so all others move by it as well.
+
+    Sweeps of a third of a decade hardly overlap: the others find their place only if they start near it.
+    """
+    sweep, T = np.logspace(0, 0.3, 3), np.array([-20.0, 0.0, 20.0, 40.0])
+    f, temperature = np.tile(sweep, 4), np.repeat(T, 3)
+    modulus = made.modulus(2 * np.pi * f * 10 ** made.log_shift(temperature))
+    dma = DMAData(f, temperature, modulus.real, modulus.imag, "shear")
+    exact = made.log_shift(T)
+    by_hand = {T[k]: exact[k] + offset for k in held}
+    _, found = shift_table(master_curve(dma, law="free", shifts=by_hand, refine=False))
+    np.testing.assert_allclose(found, exact + offset, atol=0.02)  # what so little data tell
+
+
 def test_vertical_shift_is_off_unless_asked_for():
     """Moduli proportional to ρT: rendered with it, not without; and the model carries it to other T."""
     f, T, _, _ = made.points(0, noise=0.0, jitter=0.0)

@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from bearingdyn.material import read_dma
+from bearingdyn.material.reading import HeaderError, ReadingError
 from measured import DATA, written
 
 FORMATS = DATA / "formats"
@@ -236,3 +237,65 @@ def test_damaged_exports_only_raise_value_errors_that_say_where(tmp_path, data):
     with warnings.catch_warnings(), contextlib.suppress(UnicodeEncodeError):
         warnings.simplefilter("ignore")
         says_where(path)
+
+
+# ---------------------------------------------------------------- errors by class
+
+
+def book(path, *sheets):
+    """A spreadsheet with these tables."""
+    openpyxl = pytest.importorskip("openpyxl")
+    found = openpyxl.Workbook()
+    found.remove(found.active)
+    for rows in sheets:
+        sheet = found.create_sheet()
+        for row in rows:
+            sheet.append(row)
+    found.save(path)
+    return path
+
+
+def test_a_sheet_without_a_header_is_passed_over_and_a_broken_table_is_not(tmp_path):
+    """The first sheet with a header counts; what is wrong below that header is said, not passed over."""
+    names = ["f_Hz", "T_C", "G'_Pa", 'G"_Pa']
+    good, notes = [names, *map(list, ROWS)], [["made by hand"], ["on a Monday", 5]]
+    same_points(read_dma(book(tmp_path / "book.xlsx", notes, good)))
+    without_temperature = [[f, s, q] for f, _, s, q in good]
+    same_points(read_dma(book(tmp_path / "book.xlsx", without_temperature, good)))
+    broken = [names, ["x", 20.0, 5e6, 1e6]]
+    with pytest.raises(ReadingError, match="'x' is not a number"):
+        read_dma(book(tmp_path / "book.xlsx", broken, good))
+    with pytest.raises(HeaderError, match="no column recognised as frequency"):
+        read_dma(book(tmp_path / "book.xlsx", notes))
+
+
+def test_the_text_of_a_file_does_not_decide_what_an_error_is(tmp_path):
+    """A title that repeats the message of another error is only a title: its sheet is not passed over."""
+    title = "no column recognised as"
+    odd = [["f_Hz", "T_C", f"{title} [psi]", 'G"_Pa'], *map(list, ROWS)]
+    good = [["f_Hz", "T_C", title, 'G"_Pa'], *map(list, ROWS)]
+    with pytest.raises(ReadingError, match="unit 'psi' for the storage") as error:
+        read_dma(book(tmp_path / "book.xlsx", odd, good), columns={"storage": title})
+    assert not isinstance(error.value, HeaderError)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "arguments"),
+    [
+        ("a,b\n1,2\n", HeaderError, {"columns"}),
+        ("f_Hz,G'_Pa,G\"_Pa\n1,5e6,1e6\n", HeaderError, {"columns", "temperature"}),
+        ("f_Hz,T_C,G' [X],G\"_Pa\n1,20,5e6,1e6\n", ReadingError, {"units"}),
+        ("f_Hz,T_C,storage_Pa,loss_Pa\n1,20,5e6,1e6\n", ReadingError, {"mode"}),
+        ("f_Hz,T_C,storage modulus,loss_Pa\n1,20,5e6,1e6\n", ReadingError, {"units", "mode"}),
+        (HEAD.replace("Pa", "GPa") + "1,20,5e6,1e6\n", ReadingError, {"units"}),
+        (HEAD + "0,20,5e6,1e6\n", ReadingError, {"drop_invalid"}),
+        (HEAD + "1,20,5e6,1e6\n2,20,5e6,1e6\n1,20,5e6,1e6\n", ReadingError, {"sort"}),
+    ],
+)
+def test_errors_name_the_arguments_that_help(tmp_path, text, kind, arguments):
+    """For a program around the reader, as the command line is one."""
+    with pytest.raises(kind) as error:
+        read_dma(written(tmp_path, text))
+    assert type(error.value) is kind
+    assert set(error.value.arguments) == arguments
+    assert all(f"{name}=" in str(error.value) for name in arguments)

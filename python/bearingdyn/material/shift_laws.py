@@ -1,4 +1,4 @@
-"""Shift laws: the factor a_T by which temperature stretches relaxation times, b_T by which it raises moduli.
+"""Shift laws: the factors by which temperature stretches relaxation times, a_T, and raises moduli, b_T.
 
 A reduced frequency is f·a_T, a relaxation time at T is τ(T_ref)·a_T; log10 a_T(T_ref) = 0.
 """
@@ -13,6 +13,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import number, positive, require
 from bearingdyn.types import Array
 
 GAS_CONSTANT = 8.31446261815324
@@ -35,9 +36,9 @@ class ShiftLaw(Protocol):
         """log10 a_T at the temperatures T, °C; same shape as T."""
 
 
-def _finite(name: str, value: float) -> None:
-    if not math.isfinite(value):
-        raise ValueError(f"{name} is {value!r}; it must be a finite number")
+def _above_zero(field: str, T: float) -> None:
+    """ValueError unless T is a finite temperature above absolute zero, °C."""
+    require(-ZERO_CELSIUS < T < math.inf, field, T, f"it must lie above -{ZERO_CELSIUS} °C and be finite")
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,12 @@ class WLF:
     T_ref
         Reference temperature, °C.
     covariance
-        Of (C1, C2), 2×2, when fitted.
+        Covariance of (C1, C2), 2×2, of a fitted law.
+
+    Raises
+    ------
+    ValueError
+        If a constant is not positive or not finite.
 
     Reference: M.L. Williams, R.F. Landel, J.D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701.
     """
@@ -64,10 +70,9 @@ class WLF:
     covariance: Covariance | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        _finite("WLF.T_ref", self.T_ref)
-        for name, value in (("C1", self.C1), ("C2", self.C2)):
-            if not (value > 0 and math.isfinite(value)):
-                raise ValueError(f"WLF.{name} is {value!r}; it must be positive and finite")
+        number("WLF.T_ref", self.T_ref, "it must be a finite temperature, °C")
+        positive("WLF.C1", self.C1)
+        positive("WLF.C2", self.C2, "it must be positive and finite, K")
 
     def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C.
@@ -80,7 +85,7 @@ class WLF:
         x = np.asarray(T, dtype=float) - self.T_ref
         if not np.all(self.C2 + x > 0):
             raise ValueError(
-                f"T = {np.min(x) + self.T_ref:.6g} °C: this WLF law holds above "
+                f"T is {np.min(x) + self.T_ref:.6g} °C; this WLF law holds above "
                 f"T_ref - C2 = {self.T_ref - self.C2:.6g} °C only"
             )
         return np.asarray(-self.C1 * x / (self.C2 + x))
@@ -97,7 +102,12 @@ class Arrhenius:
     T_ref
         Reference temperature, °C.
     variance
-        Of Ea, (J/mol)², when fitted.
+        Variance of Ea, (J/mol)², of a fitted law.
+
+    Raises
+    ------
+    ValueError
+        If Ea is not positive, or T_ref not above absolute zero.
     """
 
     Ea: float
@@ -105,16 +115,14 @@ class Arrhenius:
     variance: float | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        if not (self.Ea > 0 and math.isfinite(self.Ea)):
-            raise ValueError(f"Arrhenius.Ea is {self.Ea!r} J/mol; it must be positive and finite")
-        if not (self.T_ref > -ZERO_CELSIUS and math.isfinite(self.T_ref)):
-            raise ValueError(f"Arrhenius.T_ref is {self.T_ref!r} °C; it must lie above -273.15 °C")
+        positive("Arrhenius.Ea", self.Ea, "it must be positive and finite, J/mol")
+        _above_zero("Arrhenius.T_ref", self.T_ref)
 
     def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C; ValueError at or below absolute zero."""
         kelvin = np.asarray(T, dtype=float) + ZERO_CELSIUS
         if not np.all(kelvin > 0):
-            raise ValueError(f"T = {np.min(kelvin) - ZERO_CELSIUS:.6g} °C: must lie above -273.15 °C")
+            raise ValueError(f"T is {np.min(kelvin) - ZERO_CELSIUS:.6g} °C; it must lie above -273.15 °C")
         slope = self.Ea / (GAS_CONSTANT * math.log(10))
         return np.asarray(slope * (1 / kelvin - 1 / (self.T_ref + ZERO_CELSIUS)))
 
@@ -136,7 +144,12 @@ class Joined:
     T_ref
         Reference temperature, °C; on either side of Tg.
     covariance
-        Of (C1, C2, Tg, Ea), 4×4, when fitted.
+        Covariance of (C1, C2, Tg, Ea), 4×4, of a fitted law.
+
+    Raises
+    ------
+    ValueError
+        If a constant is not positive, or a temperature not above absolute zero.
     """
 
     C1: float
@@ -147,13 +160,10 @@ class Joined:
     covariance: Covariance | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        _finite("Joined.T_ref", self.T_ref)
-        for name, value in (("C1", self.C1), ("C2", self.C2), ("Ea", self.Ea)):
-            if not (value > 0 and math.isfinite(value)):
-                raise ValueError(f"Joined.{name} is {value!r}; it must be positive and finite")
-        for name, value in (("Tg", self.Tg), ("T_ref", self.T_ref)):
-            if not (value > -ZERO_CELSIUS and math.isfinite(value)):
-                raise ValueError(f"Joined.{name} is {value!r} °C; it must lie above -273.15 °C")
+        for name, unit in (("C1", ""), ("C2", ", K"), ("Ea", ", J/mol")):
+            positive(f"Joined.{name}", getattr(self, name), f"it must be positive and finite{unit}")
+        _above_zero("Joined.Tg", self.Tg)
+        _above_zero("Joined.T_ref", self.T_ref)
 
     def _from_transition(self, T: Array) -> Array:
         above = np.maximum(T - self.Tg, 0.0)
@@ -167,7 +177,7 @@ class Joined:
         """log10 a_T at T, °C; ValueError at or below absolute zero."""
         T = np.asarray(T, dtype=float)
         if not np.all(T > -ZERO_CELSIUS):
-            raise ValueError(f"T = {np.min(T):.6g} °C: must lie above -273.15 °C")
+            raise ValueError(f"T is {np.min(T):.6g} °C; it must lie above -273.15 °C")
         return np.asarray(self._from_transition(T) - self._from_transition(np.asarray(float(self.T_ref))))
 
 
@@ -183,6 +193,11 @@ class ShiftTable:
         log10 a_T at each.
     T_ref
         Reference temperature, °C; the table is offset so that log10 a_T(T_ref) = 0.
+
+    Raises
+    ------
+    ValueError
+        If the lengths differ, a value is not finite, the temperatures do not increase, or T_ref lies outside.
     """
 
     T: tuple[float, ...]
@@ -207,8 +222,7 @@ class ShiftTable:
         if not np.all((T >= self.T[0]) & (T <= self.T[-1])):
             raise ValueError(
                 f"T is {T.tolist()!r} °C; free shifts are known from {self.T[0]:.6g} to {self.T[-1]:.6g} °C "
-                "only "
-                "(take law='wlf' or 'arrhenius' to go beyond)"
+                "only (take law='wlf' or 'arrhenius' to go beyond)"
             )
 
     def log_shift(self, T: ArrayLike) -> Array:
@@ -228,19 +242,25 @@ class RhoT:
     T_ref
         Reference temperature, °C.
     expansion
-        Volumetric thermal expansion, 1/K, ≥ 0: ρ = ρ_ref/(1 + expansion (T − T_ref)).
+        Volumetric thermal expansion, 1/K, 0 to 0.01: ρ = ρ_ref/(1 + expansion (T − T_ref)).
+
+    Raises
+    ------
+    ValueError
+        If T_ref is not above absolute zero, or the expansion is out of range.
     """
 
     T_ref: float
     expansion: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (self.T_ref > -ZERO_CELSIUS and math.isfinite(self.T_ref)):
-            raise ValueError(f"RhoT.T_ref is {self.T_ref!r} °C; it must lie above -273.15 °C")
-        if not 0 <= self.expansion < 1e-2:
-            raise ValueError(
-                f"RhoT.expansion is {self.expansion!r} 1/K; it must lie between 0 and 0.01 (rubber: 6e-4)"
-            )
+        _above_zero("RhoT.T_ref", self.T_ref)
+        require(
+            0 <= self.expansion < 1e-2,
+            "RhoT.expansion",
+            self.expansion,
+            "it must lie between 0 and 0.01, 1/K (rubber: 6e-4)",
+        )
 
     def factor(self, T: ArrayLike) -> Array:
         """b_T at T, °C; same shape as T. ValueError where ρT is not positive."""
@@ -267,7 +287,7 @@ def law_to_dict(law: Law) -> dict[str, Any]:
 
 
 def law_from_dict(data: dict[str, Any]) -> Law:
-    """The law written by :func:`law_to_dict`; ValueError if it is none."""
+    """The law written by :func:`law_to_dict`; ValueError if the data are not a law."""
     match data:
         case {"law": "wlf", "C1": C1, "C2": C2, "T_ref": T_ref}:
             return WLF(C1, C2, T_ref)

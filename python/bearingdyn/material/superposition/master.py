@@ -15,11 +15,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.checks import nonnegative, require
 from bearingdyn.material.dma import DMAData, Mode, check_range, shear_modulus
-from bearingdyn.material.kk import Suspect, summary, suspects
-from bearingdyn.material.laws import LawName, fit_law, fit_law_to_data, require_isotherms
-from bearingdyn.material.shift import ZERO_CELSIUS, Law, RhoT
-from bearingdyn.material.superpose import Superposed, Superposition, first_shifts
+from bearingdyn.material.shift_laws import ZERO_CELSIUS, Law, RhoT
+from bearingdyn.material.superposition.free_shifts import Superposed, Superposition, first_shifts
+from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, suspects
+from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
 from bearingdyn.notice import warn
 from bearingdyn.types import Array
 
@@ -96,7 +97,10 @@ class MasterCurve:
     def to_shear(self, *, K: float | None = None, nu: float | None = None) -> MasterCurve:
         """The same curve in shear, by a bulk modulus or a Poisson's ratio, as :meth:`DMAData.to_shear`.
 
-        ValueError unless exactly one of K, Pa, and nu is given, in its range, and the curve is in tension.
+        Raises
+        ------
+        ValueError
+            Unless exactly one of K, Pa, and nu is given, in its range, and the curve is in tension.
         """
         if self.mode != "tension":
             raise ValueError(f"mode is {self.mode!r}; only a measurement in tension is converted")
@@ -125,53 +129,53 @@ def master_curve(
     dma
         Frequency sweeps at two temperatures at least.
     T_ref
-        Reference temperature, °C; need not be one that was measured.
+        Reference temperature, °C; it need not be one that was measured.
     law
-        "wlf", "arrhenius" or both "joined" at Tg: good beyond the measured temperatures too; or "free": the
-        shifts themselves, interpolated.
+        "wlf", "arrhenius", or "joined" (both, joined at Tg) hold beyond the measured temperatures too; "free"
+        interpolates the shifts themselves.
     clean
         Leave out, with a warning, the points that no passive material could give (:func:`suspects`). Points
         with a modulus that is not positive are left out in any case.
     shifts
         log10 a_T by temperature, °C, set by hand for some or all isotherms (the nearest, within 2 K).
     refine
-        Whether shifts set by hand are a start only; else they are kept as they are.
+        Whether shifts set by hand are only a start; otherwise they are kept as they are.
     law_from
         Fit the law to the free shifts, or, from there, directly to the data; the curve is then shifted by
         the law, each point by its own temperature.
     vertical
-        Divide moduli by b_T = ρT/(ρ_ref T_ref) first: a RhoT, or "rhoT" for one without expansion. Off
-        unless asked for.
+        Divide moduli by b_T = ρT/(ρ_ref T_ref) first: a RhoT, or "rhoT" for one without expansion. None, the
+        default, leaves them as measured.
     smoothness
-        Strength of a prior on the curvature of log10 a_T(T); 0 for none. Chosen by the data unless given.
+        Strength of a prior on the curvature of log10 a_T(T); 0 for none, None to let the data choose it.
+
+    Returns
+    -------
+    MasterCurve
+        Reduced frequency, Hz, and moduli, Pa, (n,), sorted by reduced frequency.
 
     Raises
     ------
     ValueError
-        If there is only one isotherm, two have one temperature, or T_ref lies where the law cannot reach or
-        more than 100 K outside the measured temperatures.
-
-    Returns a MasterCurve: reduced frequency, Hz, and moduli, Pa, (n,), sorted by reduced frequency.
+        If there is only one isotherm, two isotherms have the same temperature, or T_ref lies where the law
+        cannot reach or more than 100 K outside the measured temperatures.
 
     Reference: paper §3.2; M. L. Williams, R. F. Landel, J. D. Ferry,
     J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
     """
-    if law not in ("wlf", "arrhenius", "joined", "free"):
-        raise ValueError(f"law is {law!r}; it must be 'wlf', 'arrhenius', 'joined' or 'free'")
-    if law_from not in ("shifts", "data") or (law, law_from) == ("free", "data"):
-        raise ValueError(
-            f"law_from is {law_from!r}; it must be 'shifts', or 'data' with a law that has constants"
-        )
-    if not -ZERO_CELSIUS < T_ref < 1e4:
-        raise ValueError(f"T_ref is {T_ref!r} °C; it must be a temperature in °C")
-    if smoothness is not None and not 0 <= smoothness < np.inf:
-        raise ValueError(f"smoothness is {smoothness!r}; it must be zero or positive")
+    known = ("wlf", "arrhenius", "joined", "free")
+    require(law in known, "law", law, "it must be 'wlf', 'arrhenius', 'joined' or 'free'")
+    possible = law_from == "shifts" or (law_from == "data" and law != "free")
+    require(possible, "law_from", law_from, "it must be 'shifts', or 'data' with a law that has constants")
+    require(-ZERO_CELSIUS < T_ref < 1e4, "T_ref", T_ref, "it must be a temperature in °C")
+    if smoothness is not None:
+        nonnegative("smoothness", smoothness)
     check_range(dma)
     used, left_out = _cleaned(dma, clean)
     if vertical is not None:
         vertical = RhoT(float(T_ref)) if vertical == "rhoT" else vertical
-        if vertical.T_ref != T_ref:
-            raise ValueError(f"vertical is {vertical!r}; its T_ref must be that of the curve, {T_ref:g} °C")
+        remedy = f"its T_ref must be that of the curve, {T_ref:g} °C"
+        require(vertical.T_ref == T_ref, "vertical", vertical, remedy)
         factor = vertical.factor(used.temperature)
         used = replace(used, storage=used.storage / factor, loss=used.loss / factor)
     T = _temperatures(used, T_ref)
@@ -256,9 +260,8 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
     twin = np.flatnonzero(~(np.diff(T) > 1e-3))
     if twin.size:
         raise ValueError(
-            f"{dma.source}: two isotherms at {T[twin[0]]:.4g} °C: a shift belongs to a temperature; "
-            "leave one "
-            "out, or give both the same isotherm number"
+            f"{dma.source}: two isotherms at {T[twin[0]]:.4g} °C: a shift belongs to a temperature; leave "
+            "one out, or give both the same isotherm number"
         )
     single = [k for k in range(T.size) if np.unique(dma.frequency[dma.labels == k]).size < 2]
     if len(single) == T.size:
@@ -269,8 +272,7 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
     if single:
         warn(
             f"{dma.source}: one frequency only at {', '.join(f'{T[k]:.4g}' for k in single)} °C: these "
-            "shifts "
-            "rest on a single point",
+            "shifts rest on a single point",
         )
     if not T[0] - _FAR <= T_ref <= T[-1] + _FAR:
         raise ValueError(

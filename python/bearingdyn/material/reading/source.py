@@ -93,8 +93,7 @@ def _decode(path: Path, data: bytes) -> str:
     elif b"\0" in data:
         raise ValueError(
             f"{path}, line {1 + data[: data.index(0)].count(10)}: a binary file (an instrument's own "
-            "format), "
-            "not a text table: export it as CSV"
+            "format), not a text table: export it as CSV"
         )
     else:
         encodings = ["utf-8-sig", "latin-1"]  # the second takes any bytes
@@ -191,9 +190,8 @@ def _array_columns(data: Sequence[Any]) -> dict[str, Any]:
         array = np.empty(0)
     if array.ndim != 2 or array.shape[1] != 4:
         raise ValueError(
-            f"data of type {type(data).__name__}: must be a path, a pandas frame, a mapping of columns, "
-            "or an "
-            "array of four columns: frequency Hz, temperature °C, storage and loss modulus Pa"
+            f"data of type {type(data).__name__}: must be a path, a pandas frame, a mapping of columns, or "
+            "an array of four columns: frequency Hz, temperature °C, storage and loss modulus Pa"
         )
     names = ("frequency_Hz", "temperature_C", "storage modulus_Pa", "loss modulus_Pa")
     return {name: array[:, k].astype(object) for k, name in enumerate(names)}

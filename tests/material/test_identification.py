@@ -17,6 +17,7 @@ from bearingdyn.material import (
     WLF,
     Arrhenius,
     FractionalZener,
+    MasterCurve,
     Maxwell,
     OutsideBand,
     PowerLaw,
@@ -100,6 +101,44 @@ def test_fixed_values_and_bounds_hold(master):
             fit_maxwell(master, 5, bounds=wrong, **SOLID)
     with pytest.raises(ValueError, match="both in bounds and in fixed"):
         fit_maxwell(master, 5, bounds={"G0": (0, 1e6)}, fixed={"G0": 0.0}, **SOLID)
+
+
+def exact_curve(material, frequency):
+    """Master curve of a material, without noise."""
+    G = material.complex_modulus(2 * np.pi * frequency)
+    law = ShiftTable((0.0, 40.0), (1.0, -1.0), 20.0)
+    return MasterCurve(
+        frequency, G.real, G.imag, 20 + 0 * frequency, "shear", 20.0, {}, {}, law, 0.0, (0.0, 0.0)
+    )
+
+
+def test_floor_knows_of_the_dashpot():
+    """Of exact data made with a dashpot that is most of G″ at the top a dense spectrum leaves less than 1 %.
+
+    Without the dashpot tan δ would miss by a factor of three and more.
+    """
+    lossy = Maxwell(1e6, [2e6], [1e-2], 100.0, **SOLID)
+    omega = 2e4 * np.pi
+    assert 100.0 * omega > 0.9 * complex(lossy.complex_modulus(omega)).imag
+    floor = fit_maxwell(exact_curve(lossy, np.geomspace(1.0, 1e4, 60)), 1, **SOLID).fit.floor
+    assert max(floor) < 0.01  # twelve times per decade
+
+
+def test_a_time_may_be_bounded_below_the_band():
+    """A branch far faster than the band acts as a dashpot G τ: with G known its time is found in (0, 1e-7].
+
+    By itself the search goes a decade beyond the band, here to 1.6e-6 s.
+    """
+    fast = Maxwell(1e6, [1e8, 2e6], [5e-8, 1e-2], **SOLID)
+    found = fit_maxwell(
+        exact_curve(fast, np.geomspace(1.0, 1e4, 60)),
+        2,
+        bounds={"tau1": (0.0, 1e-7)},
+        fixed={"G1": 1e8, "eta0": 0.0},
+        **SOLID,
+    )
+    np.testing.assert_allclose(found.tau, fast.tau, rtol=1e-5)  # the optimiser's tolerance
+    assert "ln tau1" in found.fit.names
 
 
 def test_bootstrap_knows_of_isotherms(master):
@@ -187,6 +226,24 @@ def test_creep_has_the_closed_forms_of_simple_models():
 
 
 # ---------------------------------------------------------------- other moduli
+
+
+@pytest.mark.parametrize(
+    "modulus",
+    [
+        PowerLaw(4e6, 0.2, 1e3, 2e9, 1200.0),
+        FractionalZener(1e6, 1e8, 1e-4, 0.6, 2e9, 1200.0),
+        TabulatedModulus([1.0, 10.0, 1e4], [1e6, 2e6, 5e6], [1e5, 5e5, 2e6], 2e9, 1200.0),
+        Maxwell(1e6, [3e6, 5e5], [1e-3, 0.1], 20.0, **SOLID),
+    ],
+    ids=lambda m: type(m).__name__,
+)
+def test_modulus_is_conjugate_at_negative_frequencies(modulus):
+    """G*(−ω) is the conjugate of G*(ω): a real strain makes a real stress. Passive: G″ > 0 at ω > 0."""
+    omega = 2 * np.pi * np.geomspace(1.0, 1e4, 9)
+    forward = modulus.complex_modulus(omega)
+    assert (forward.imag > 0).all()
+    np.testing.assert_allclose(modulus.complex_modulus(-omega), forward.conj(), rtol=1e-15)
 
 
 def test_power_law_has_one_loss_factor_and_a_maxwell_approximation():
@@ -360,5 +417,5 @@ def test_calculix_holds_one_frequency():
     modulus = complex(rubber.complex_modulus(200 * np.pi))
     assert E / (2 * (1 + nu)) == pytest.approx(modulus.real, rel=1e-9)
     assert float(text.strip().rpartition("=")[2]) == pytest.approx(modulus.imag / modulus.real, rel=1e-9)
-    with pytest.raises(ValueError, match=r"frequency is -1.0 Hz"):
+    with pytest.raises(ValueError, match=r"frequency is -1.0; .*, Hz"):
         to_calculix(rubber, -1.0)

@@ -18,7 +18,7 @@ import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.material.dma import DMAData
-from bearingdyn.material.shift import WLF
+from bearingdyn.material.shift_laws import WLF
 from bearingdyn.material.spectrum import (
     Strengths,
     branch_columns,
@@ -114,6 +114,10 @@ class Superposition:
         storage, loss = np.split(self.solve(point_shifts).residual, 2)
         return float(np.sqrt(np.mean(storage**2))), float(np.sqrt(np.mean((loss / self.weight) ** 2)))
 
+    def weigh_evenly(self) -> None:
+        """Let relative deviations of G′ and of G″ count alike from now on."""
+        self.weight, self._last = self.even, None
+
     def _owner(self) -> Array:
         return np.where(self.dma.labels[:, None] == self.free, 1.0, 0.0)
 
@@ -199,7 +203,7 @@ class Superposition:
             spread[np.ix_(self.free, self.free)] = variance * np.linalg.pinv(J.T @ J)
             own = np.diag(spread)
             errors = np.sqrt(np.maximum(own + own[reference] - 2 * spread[reference], 0.0))
-        self.weight, self._last = self.even, None
+        self.weigh_evenly()
         return Superposed(shifts, errors, point, self.misfit(point), smoothness)
 
     def _choose(self, theta: Array) -> tuple[float, Array]:

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from bearingdyn.checks import positive, require
 from bearingdyn.types import Array, Complex
 
 
@@ -31,17 +32,14 @@ class Retunable:
 
         The loss factor is unchanged at every frequency.
         """
-        if not (modulus > 0 and math.isfinite(modulus)):
-            raise ValueError(f"modulus is {modulus!r} Pa; it must be positive and finite")
+        positive("modulus", modulus, "it must be positive and finite, Pa")
         magnitude = float(np.abs(self.complex_modulus(omega)))
-        if not magnitude > 0:
-            raise ValueError(f"omega is {omega!r} rad/s; |G*| is zero there, no scaling can change it")
+        require(magnitude > 0, "omega", omega, "|G*| is zero at this angular frequency; take one above zero")
         factor = modulus / magnitude
         return self._with(G0=self.G0 * factor, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
 
     def with_loss_factor(self, loss_factor: float, omega: float) -> Self:
-        """A causal material of the same |G*(omega)| and relaxation times, whose loss factor at omega is
-        given.
+        """A causal material of the same |G*(omega)| and relaxation times, with this loss factor at omega.
 
         The branches and the dashpot are scaled against the spring G0, then all of them together until
         |G*(omega)| is what it was. G′ and G″ change together as Kramers and Kronig demand; G″ scaled alone
@@ -59,8 +57,7 @@ class Retunable:
         ValueError
             If the material has no spring or no branches, or the loss factor is out of reach.
         """
-        if not (omega > 0 and math.isfinite(omega)):
-            raise ValueError(f"omega is {omega!r} rad/s; it must be positive and finite")
+        positive("omega", omega, "it must be positive and finite, rad/s")
         modulus = complex(self.complex_modulus(omega))
         branches = modulus - self.G0
         if not (self.G0 > 0 and branches.imag > 0):
@@ -68,18 +65,16 @@ class Retunable:
                 "Maxwell: with_loss_factor weighs branches against the spring: both must be there"
             )
         limit = branches.imag / branches.real if branches.real > 0 else math.inf
-        if not 0 < loss_factor < limit:
-            raise ValueError(
-                f"loss_factor is {loss_factor!r}; it must lie between 0 and {limit:.4g}, "
-                "that of the branches alone at this frequency"
-            )
+        remedy = f"it must lie between 0 and {limit:.4g}, that of the branches alone at this frequency"
+        require(0 < loss_factor < limit, "loss_factor", loss_factor, remedy)
         factor = loss_factor * self.G0 / (branches.imag - loss_factor * branches.real)
         weighed = self._with(G=self.G * factor, eta0=self.eta0 * factor, fit=None)
         return weighed.with_modulus(abs(modulus), omega)
 
     def with_relaxation(self, loss_factor: float, omega: float) -> Self:
-        """A causal material of the same |G*(omega)| with one more relaxation, τ = 1/omega, that raises the
-        loss factor there to the one given.
+        """A causal material of the same |G*(omega)| and this loss factor there, by one more relaxation.
+
+        Its time is τ = 1/omega.
 
         A branch of strength s adds s/2 to G′ and to G″ at its own frequency, so s = 2(tan δ G′ − G″)/(1 −
         tan δ); then all strengths are scaled together until |G*(omega)| is what it was. Against
@@ -98,14 +93,11 @@ class Retunable:
         ValueError
             If omega is not positive or the loss factor out of reach.
         """
-        if not (omega > 0 and math.isfinite(omega)):
-            raise ValueError(f"omega is {omega!r} rad/s; it must be positive and finite")
+        positive("omega", omega, "it must be positive and finite, rad/s")
         modulus = complex(self.complex_modulus(omega))
         present = modulus.imag / modulus.real
-        if not present < loss_factor < 1:
-            raise ValueError(
-                f"loss_factor is {loss_factor!r}; it must lie between the present {present:.4g} and 1"
-            )
+        remedy = f"it must lie between the present {present:.4g} and 1"
+        require(present < loss_factor < 1, "loss_factor", loss_factor, remedy)
         strength = 2 * (loss_factor * modulus.real - modulus.imag) / (1 - loss_factor)
         G, tau = np.append(self.G, strength), np.append(self.tau, 1 / omega)
         order = np.argsort(tau)

@@ -236,10 +236,10 @@ def test_bad_requests_are_refused(sample_master):
         with pytest.raises(ValueError, match="free shifts are known"):
             master_curve(dma, T_ref=90.0, law="free")
     for change, message in (
-        ({"n": 0}, "n = 0"),
+        ({"n": 0}, "n is 0"),
         ({"band": (10.0, 1.0)}, "must be a lower and a higher frequency"),
-        ({"K": np.nan}, "K = nan"),
-        ({"density": 0.0}, "density = 0.0"),
+        ({"K": np.nan}, "K is nan"),
+        ({"density": 0.0}, "density is 0.0"),
     ):
         with pytest.raises(ValueError, match=message):
             fit_maxwell(sample_master, **({"K": 2e9, "density": 1200.0} | change))

@@ -1,0 +1,62 @@
+"""Bounds of the parameters of a Maxwell model, by the names a user gives them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearingdyn.types import Array
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Bounds of the strengths (spring, branches, dashpot; n + 2) and of ln τ (n); equal where fixed."""
+
+    lower: Array
+    upper: Array
+    log_lower: Array
+    log_upper: Array
+
+    @classmethod
+    def of(
+        cls,
+        n: int,
+        span: tuple[float, float],
+        bounds: Mapping[str, tuple[float, float]],
+        fixed: Mapping[str, float],
+    ) -> Limits:
+        """From bounds and fixed values by name: G0, G1 …, tau1 …, eta0; SI units.
+
+        ValueError naming a parameter that does not exist, an empty range, or a value out of range.
+        """
+        strengths = ["G0", *(f"G{i + 1}" for i in range(n)), "eta0"]
+        times = [f"tau{i + 1}" for i in range(n)]
+        lower, upper = np.zeros(n + 2), np.full(n + 2, np.inf)
+        log_lower, log_upper = np.full(n, span[0]), np.full(n, span[1])
+        both = set(bounds) & set(fixed)
+        if both:
+            raise ValueError(f"{sorted(both)}: both in bounds and in fixed: give one")
+        wanted = {name: tuple(pair) for name, pair in bounds.items()}
+        wanted |= {name: (value, value) for name, value in fixed.items()}
+        for name, pair in wanted.items():
+            what = "fixed" if name in fixed else "bounds"
+            if name not in strengths and name not in times:
+                raise ValueError(
+                    f"{what}: {name!r} is no parameter: there are {', '.join(strengths + times)}"
+                )
+            if len(pair) != 2 or not 0 <= pair[0] <= pair[1] or math.isnan(pair[1]) or math.isinf(pair[0]):
+                raise ValueError(
+                    f"{what}[{name!r}] is {pair!r}; it must be a lower and an upper value, both >= 0"
+                )
+            if name in strengths:
+                lower[strengths.index(name)], upper[strengths.index(name)] = pair
+            else:
+                if not pair[1] > 0 or (name in fixed and not pair[0] > 0):
+                    raise ValueError(f"{what}[{name!r}] is {pair!r} s; a relaxation time must be positive")
+                i = times.index(name)
+                log_lower[i] = math.log(pair[0]) if pair[0] > 0 else min(span[0], math.log(pair[1]) - 1)
+                log_upper[i] = math.log(pair[1]) if math.isfinite(pair[1]) else max(span[1], log_lower[i])
+        return cls(lower, upper, log_lower, log_upper)

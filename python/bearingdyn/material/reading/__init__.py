@@ -1,0 +1,10 @@
+"""Measurements read: from a file, a frame or an array to :class:`DMAData`.
+
+A file passes through once: `source` makes numbered rows of it, `block` finds the headers among them,
+`columns` and `units` say what their columns mean, `table` reads the numbers, `read` makes DMAData of them.
+"""
+
+from bearingdyn.material.reading.errors import HeaderError, ReadingError
+from bearingdyn.material.reading.read import read_dma, sample_dma_path
+
+__all__ = ["HeaderError", "ReadingError", "read_dma", "sample_dma_path"]

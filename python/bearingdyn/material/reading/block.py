@@ -1,0 +1,144 @@
+"""Headers found among the rows of a source, each with the rows below it: a block."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from bearingdyn.material.reading.columns import (
+    UNITS,
+    Column,
+    choose,
+    columns_of,
+    is_number,
+    quantity_of,
+    title_of,
+)
+from bearingdyn.material.reading.errors import HeaderError, ReadingError, together
+from bearingdyn.material.reading.request import Request
+from bearingdyn.material.reading.source import Row, Source, Splitter
+from bearingdyn.material.reading.units import ColumnUnits
+
+_UNIT_WORDS = {unit for table in UNITS.values() for unit in table} - {""}
+
+
+@dataclass(frozen=True)
+class Block:
+    """One header, the rows below it down to the next, and its columns.
+
+    Attributes
+    ----------
+    columns
+        Recognised columns by quantity.
+    quantities
+        Those a complex modulus is made of: a frequency and two others.
+    labelled
+        Whether a label stands in front of the header that has none in front of the numbers.
+    """
+
+    source: Source
+    header: Row
+    rows: tuple[Row, ...]
+    splitter: Splitter
+    columns: Mapping[str, Column]
+    quantities: tuple[str, ...]
+    labelled: bool = False
+
+    @property
+    def where(self) -> str:
+        """File and line of the header, for a message."""
+        return self.source.at(self.header.number)
+
+    def cells(self, row: Row) -> list[str]:
+        """Cells of a row, under those of the header."""
+        cells = self.splitter.cells(row)
+        return ["", *cells] if self.labelled and cells and is_number(cells[0]) else cells
+
+    @cached_property
+    def unit_row(self) -> Row | None:
+        """The row of units between the header and the numbers, if there is one."""
+        if not self.rows:
+            return None
+        cells = self.cells(self.rows[0])
+        here = {cell_at(cells, c.index).strip("[]() ").lower() for c in self.columns.values()}
+        return None if any(map(is_number, cells)) or not here & _UNIT_WORDS else self.rows[0]
+
+    @property
+    def numbers(self) -> tuple[Row, ...]:
+        """The rows below the header and its units."""
+        return self.rows if self.unit_row is None else self.rows[1:]
+
+    def units(self, quantities: Sequence[str], given: Mapping[str, str]) -> ColumnUnits:
+        """Units of these columns, read from the header, the row below it, or `given` by quantity."""
+        below = [] if self.unit_row is None else self.cells(self.unit_row)
+        first = self.cells(self.numbers[0]) if self.numbers else []
+        units = ColumnUnits(given)
+        for quantity in quantities:
+            column = self.columns[quantity]
+            where, cell = self.where, cell_at(below, column.index)
+            if self.unit_row is not None and cell and not column.unit:
+                where, column = self.source.at(self.unit_row.number), replace(column, unit=cell)
+            units.read(quantity, column, where, cell_at(first, column.index))
+        return units
+
+
+def cell_at(cells: Sequence[str], index: int) -> str:
+    """A cell, empty where the row is too short."""
+    return cells[index].strip() if index < len(cells) else ""
+
+
+def find_blocks(source: Source, request: Request) -> list[Block]:
+    """The blocks of a source, from top to bottom.
+
+    Raises
+    ------
+    HeaderError
+        If no row is a header; the message says what the best candidate lacks.
+    ReadingError
+        If two columns of a header look like the same quantity.
+    """
+    heads: list[tuple[int, Block]] = []
+    best: tuple[int, Splitter, dict[str, Column]] = (0, Splitter.of(source.rows[0].text), {})
+    for position, row in enumerate(source.rows):
+        splitter = Splitter.of(row.text)
+        cells = splitter.cells(row)
+        columns, doubles = columns_of(cells, request.columns)
+        chosen = choose(columns)
+        if chosen is None:
+            if len(columns) > len(best[2]):
+                best = (position, splitter, columns)
+            continue
+        for quantity, first, second in doubles:
+            if quantity in (*chosen, "temperature"):
+                raise ReadingError(
+                    f"{source.at(row.number)}: columns {first!r} and {second!r} both look like the "
+                    f"{quantity}: choose by columns={{{quantity!r}: ...}}",
+                    "columns",
+                )
+        label = bool(cells) and cells[0].strip().endswith(":") and quantity_of(title_of(cells[0])[0]) is None
+        heads.append((position, Block(source, row, (), splitter, columns, chosen, label)))
+    if not heads:
+        raise _no_header(source, request, *best)
+    ends = [position for position, _ in heads[1:]] + [len(source.rows)]
+    return [
+        replace(block, rows=source.rows[position + 1 : end])
+        for (position, block), end in zip(heads, ends, strict=True)
+    ]
+
+
+def _no_header(
+    source: Source, request: Request, position: int, splitter: Splitter, columns: dict[str, Column]
+) -> ReadingError:
+    """What the row that resembles a header best lacks, and what is wrong with its units."""
+    has = columns.keys() | ({"frequency"} if "angular" in columns else set())
+    missing = [q for q in ("frequency", "temperature", "storage", "loss") if q not in has]
+    known = tuple(q for q in columns if q != "isotherm")
+    block = Block(source, source.rows[position], source.rows[position + 1 :], splitter, columns, known)
+    none = HeaderError(
+        f"{block.where}: no column recognised as {', '.join(missing)}: the header must name "
+        "frequency, temperature, storage modulus and loss modulus (or tan delta, or |G*| and phase), or "
+        "give columns={...} with the names used",
+        "columns",
+    )
+    return together(block.where, [none, *block.units(known, request.units).faults])
