@@ -179,6 +179,22 @@ def test_importing_the_package_loads_numpy_and_scipy_at_most(wanted: str) -> Non
     assert ("numpy" in installed) == ("*" in wanted)
 
 
+# what NumPy and SciPy, or a package they load, take where they find it
+OPTIONAL = ("threadpoolctl", "matplotlib", "pandas", "dask", "sklearn")
+
+
+def test_importing_everything_takes_no_package_that_happens_to_be_installed(tmp_path: Path) -> None:
+    """SciPy's MatrixMarket reader, for one, loads threadpoolctl where it is there: coverage's tools bring it."""
+    for name in OPTIONAL:
+        (tmp_path / f"{name}.py").write_text("class LibController: pass\nregister = lambda _: None\n")
+    code = (
+        f"import sys; sys.path.insert(0, {str(tmp_path)!r})\nfrom bearingdyn import *\n"
+        f"print(sorted(sys.modules.keys() & set({OPTIONAL!r})))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
+
+
 def test_public_names_live_where_the_stub_says() -> None:
     stub = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8"))
     named = {a.name: n.module for n in stub.body if isinstance(n, ast.ImportFrom) for a in n.names}
