@@ -1,4 +1,4 @@
-"""What a march begins with: loads before their table, the speed before its profile, the first acceleration."""
+"""How a march begins: loads before their table, speed before its profile, the first acceleration."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def direction(degrees: float) -> np.ndarray:
 
 @pytest.mark.parametrize("ratio", [2.0, 4.0])
 def test_like_shapes_an_octave_apart_keep_their_frequencies(ratio: float, monkeypatch) -> None:
-    """Shapes 20° apart turn by 12° towards each other: by shape alone (cos² 8° over cos² 12°) they would swap."""
+    """Shapes 20° apart turn by 12° towards each other; by shape alone (cos² 8° > cos² 12°) they swap."""
     low = 2 * math.pi * 100.0
     shapes = {100.0: (0.0, 20.0), 0.0: (12.0, 8.0)}
 

@@ -37,7 +37,7 @@ def test_a_part_joined_at_its_second_place_stands_where_that_place_meets(order: 
 
 @pytest.mark.parametrize("held", [[0], [1, 2], [5]], ids=["x", "y and z", "θz"])
 def test_a_part_held_in_one_direction_only_is_no_free_body(held: list[int]) -> None:
-    """Its own stiffness resists a rigid motion, so its weight is not mass times acceleration in all of them."""
+    """Its own stiffness resists that rigid motion, so it is no body that gravity moves freely."""
 
     class Held:
         def superelement(self) -> Superelement:

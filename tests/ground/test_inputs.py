@@ -120,7 +120,7 @@ def test_what_has_no_content_stands_by_its_class_in_a_result():
 
 
 def test_small_entries_stay_readable_beside_many_long_ones():
-    """A hundred entries of 2 kB are more than HDF5 keeps in an attribute: they go by hash, the small ones stay."""
+    """A hundred entries of 2 kB are more than an HDF5 attribute keeps: only they go by hash."""
     content = {f"part {k}": "x" * 1990 + f"{k:010d}" for k in range(100)}
     content |= {"radius": 0.026, "layer": Layer(0.026, 0.028, 0.016, RUBBER), "bearing": "6205"}
     written = inputs.text(content)

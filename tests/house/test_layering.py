@@ -184,7 +184,7 @@ OPTIONAL = ("threadpoolctl", "matplotlib", "pandas", "dask", "sklearn")
 
 
 def test_importing_everything_takes_no_package_that_happens_to_be_installed(tmp_path: Path) -> None:
-    """SciPy's MatrixMarket reader, for one, loads threadpoolctl where it is there: coverage's tools bring it."""
+    """SciPy's MatrixMarket reader, for one, loads threadpoolctl where it finds it."""
     for name in OPTIONAL:
         (tmp_path / f"{name}.py").write_text("class LibController: pass\nregister = lambda _: None\n")
     code = (

@@ -93,7 +93,7 @@ def outlines(ax):
 @pytest.mark.parametrize("axis", ["x", "y"])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_motion_along_the_shaft_is_drawn_to_the_side_it_goes(axis, sign):
-    """The largest motion is drawn positive, a tenth of 200 mm; half of it along z goes by half, in its sense."""
+    """The largest motion is drawn positive, a tenth of 200 mm; the motion along z in its proportion."""
     side = [0.0, 0.0, 0.5 * sign]
     side["xyz".index(axis)] = 1.0
     rest, drawn, later = outlines(plot.mode_shape(mode([0, 0, 0], side, [0, 0, 0]), 0, axis=axis))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.application import COMPONENTS, GROUND
-from bearingdyn.bearing.series import NET
+from bearingdyn.bearing.raceway_series import NET
 from bearingdyn.system import RATES, PartTerm, SpringTerm, System, component_of
 from bearingdyn.types import Array, Complex
 

@@ -15,8 +15,8 @@ import scipy.linalg
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS
-from bearingdyn.bearing.minimum import NoBalance, minimum
-from bearingdyn.bearing.series import NET, RIGID, RacewaySeries
+from bearingdyn.bearing.energy_minimum import NoBalance, minimum
+from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
 from bearingdyn.system import BearingTerm, System
 from bearingdyn.types import Array
 

@@ -16,7 +16,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.running import digest, run
 from bearingdyn.application import Application
 from bearingdyn.bearing import ConstantDamping
-from bearingdyn.bearing.series import NET
+from bearingdyn.bearing.raceway_series import NET
 from bearingdyn.results import march_dataset
 from bearingdyn.system import QUANTITIES, RATES, System, is_rotation
 from bearingdyn.types import Array

@@ -17,12 +17,12 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
-from bearingdyn.bearing.minimum import minimum
-from bearingdyn.bearing.series import RIGID, RacewaySeries
+from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.checks import nonnegative, number, positive, require, vector
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.types import Array

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.bearing.kernel import BearingKernel
-from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.bearing.raceway_series import RacewaySeries
 from bearingdyn.checks import nonnegative, positive, require
 from bearingdyn.types import Index
 

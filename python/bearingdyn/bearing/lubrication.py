@@ -10,6 +10,7 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.contact_loads import load_distribution
 from bearingdyn.bearing.hertz import resultant_damping
 from bearingdyn.bearing.kernel import ConstantDamping
 from bearingdyn.bearing.lubricant import (
@@ -18,7 +19,6 @@ from bearingdyn.bearing.lubricant import (
     nijenbanning_venner_moes,
     wijnant_damping,
 )
-from bearingdyn.bearing.quasistatic import load_distribution
 from bearingdyn.checks import number, positive, require
 
 FilmLaw = Literal["nijenbanning-venner-moes", "hamrock-dowson"]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.minimum import minimum
+from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.checks import nonnegative, positive, require, vector
 from bearingdyn.types import Array
 

@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.bearing.raceway_series import RacewaySeries
 from bearingdyn.types import Array, Complex, Index
 
 SYMMETRY = 1e-9  # largest accepted |A - Aᵀ| over the largest |A|: congruence stays far below it

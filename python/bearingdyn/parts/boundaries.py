@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.bearing.raceway_series import RacewaySeries
 from bearingdyn.fem.eigen import rigid_transfer
 from bearingdyn.fem.revolution import ALL, AXIAL, TORSION, Harmonic
 from bearingdyn.fem.revolution_mesh import RevolutionMesh

@@ -12,7 +12,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import BallBearing
-from bearingdyn.bearing.minimum import minimum
+from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.checks import vector
 from bearingdyn.cms import Superelement
 from bearingdyn.parts.flexible_ring import FlexibleRing

@@ -20,7 +20,7 @@ import scipy.linalg
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Part
 from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
-from bearingdyn.bearing.series import RIGID, RacewaySeries
+from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.material import Maxwell
 from bearingdyn.types import Array, Index
