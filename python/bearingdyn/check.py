@@ -30,7 +30,7 @@ CLOSED = "closed form"
 
 @dataclass(frozen=True)
 class Check:
-    """One comparison; `tolerance` is of the relative error. A case that raised has a NaN and the error."""
+    """One comparison. `tolerance` is for the relative error; a case that raised has NaN and its error."""
 
     case: str
     source: str
@@ -170,7 +170,10 @@ FAMILIES: tuple[Callable[[], Iterator[Check]], ...] = (
 def check(progress: Progress | None = None) -> list[Check]:
     """Compute every case; one that raises an exception is a row that does not hold.
 
-    progress: called with (families done, families in all).
+    Parameters
+    ----------
+    progress
+        Called with (families done, families in all).
     """
     found: list[Check] = []
     for done, family in enumerate(FAMILIES):

@@ -41,6 +41,15 @@ def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Pas
 
     The mean of equally spaced values of a periodic function: it converges fast unless balls come and go.
 
+    Parameters
+    ----------
+    bearing
+        At rest, or with the inertia of its balls.
+    load
+        (6,) on the inner ring, N and N m.
+    n
+        Number of cage angles.
+
     Raises
     ------
     ValueError
@@ -62,8 +71,16 @@ def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Pas
 def without_spin(stiffness: ArrayLike) -> Array:
     """(…, 5, 5) over (x, y, z, θx, θy) of a stiffness (…, 6, 6): a bearing holds no rotation about its axis.
 
-    Raises ValueError if the last two axes are not 6 long.
+    Parameters
+    ----------
+    stiffness
+        (…, 6, 6), N/m, N and N m.
+
+    Raises
+    ------
+    ValueError
+        If the last two axes are not 6 long.
     """
     K = np.asarray(stiffness, dtype=np.float64)
-    require(K.shape[-2:] == (6, 6), "stiffness", K.shape, "the last two axes must be 6 long")
+    require(K.shape[-2:] == (6, 6), "stiffness", K.shape, "its last two axes must be 6 long")
     return K[..., :5, :5]

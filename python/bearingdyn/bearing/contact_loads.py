@@ -74,7 +74,7 @@ def load_distribution(
         On a wrong shape, or where a ball runs beyond the shoulder: the axial load is more than it can hold.
     """
     if shoulder is not None:
-        positive("shoulder", shoulder, "the height of the shoulder in metres must be positive and finite")
+        positive("shoulder", shoulder, "it must be positive and finite, in m")
     if isinstance(bearing, Running):
         brg, b = bearing.bearing, bearing.balls(q, angle)
         psi, Q_i, Q_o, a_i, a_o = b.azimuth, b.Q_i, b.Q_o, b.alpha_i, b.alpha_o
