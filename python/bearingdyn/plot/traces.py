@@ -39,8 +39,8 @@ def time(
 ) -> Axes:
     """Recorded channels of marches by bd.transient over time, several marches by label, sample by sample.
 
-    Channels in one unit share axes; each further unit has its own below, in the order of the channels. A trace
-    beyond 20 000 samples is drawn by the smallest and largest of each stretch, so that no peak is lost.
+    Channels in one unit share axes; each further unit has its own below, in the order of the channels. A
+    trace beyond 20 000 samples is drawn by the smallest and largest of each stretch: no peak is lost.
 
     Parameters
     ----------

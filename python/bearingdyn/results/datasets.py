@@ -48,7 +48,13 @@ def stamp(time: datetime | None = None) -> str:
 
 
 def inputs_of(text: str) -> dict[str, str]:
-    """Attributes that say what a result was computed from, and its hash; none where it is not known."""
+    """Attributes that say what a result was computed from, and its hash.
+
+    Parameters
+    ----------
+    text
+        Description by `inputs.text`; empty where it is not known: then there are no attributes.
+    """
     if not text:
         return {}
     return {"inputs": text, "inputs_hash": hashlib.sha256(text.encode()).hexdigest()[:32]}
