@@ -94,7 +94,7 @@ def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, f
     from scipy.stats import qmc
 
     if n != int(n) or not n >= 1:
-        raise ValueError(f"n is {n}; it must be a number of cases, at least 1")
+        raise ValueError(f"n is {n}; it must be one case or more")
     if not ranges:
         raise ValueError("sobol needs at least one range, such as sobol(64, width=(0.012, 0.020))")
     for name, given in ranges.items():
