@@ -1,7 +1,8 @@
 """Docstrings of the package, put into the form Sphinx reads.
 
-They are written for the reader of the source: plain lines, "name: meaning" for each field with continuation
-lines indented, |x| for magnitudes. Sections underlined in NumPy's manner are left to napoleon.
+They are written for the reader of the source, with |x| for magnitudes and E* for a modulus: these marks are
+escaped here. Sections underlined in NumPy's manner are left to napoleon. The rooms that conf.py lists as
+mixed also have plain lines "name: meaning", continued by indented lines: here they become lists.
 """
 
 from __future__ import annotations
@@ -20,6 +21,10 @@ LITERAL = re.compile(r"(``.+?``|`[^`]+`)", re.DOTALL)
 
 def process(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
     """Rewrite the lines of one docstring in place (Sphinx's event autodoc-process-docstring)."""
+    room = str(getattr(obj, "__module__", None) or name).split(".")[1:2]
+    if not room or room[0] not in app.config.mixed_docstrings:
+        lines[:] = map(escaped, lines)
+        return
     prose: list[list[str]] = []
     sections: list[list[str]] = []
     for block in blocks(lines):

@@ -13,10 +13,8 @@ import numpy as np
 
 from bearingdyn.analysis import equilibrium, frequency_response, modes, transient
 from bearingdyn.application import Application
-from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing import BallBearing, PointContact, Walther
 from bearingdyn.bearing.catalogue import bearing
-from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.bearing.lubricant import Walther
 from bearingdyn.core import Progress
 from bearingdyn.material import Elastic, Maxwell
 from bearingdyn.parts import Disc, Layer, RigidBody, Section, Shaft
@@ -30,7 +28,7 @@ CLOSED = "closed form"
 
 @dataclass(frozen=True)
 class Check:
-    """One comparison; `tolerance` is of the relative error. A case that raised has a NaN and the error."""
+    """One comparison. `tolerance` is for the relative error; a case that raised has NaN and its error."""
 
     case: str
     source: str
@@ -170,7 +168,10 @@ FAMILIES: tuple[Callable[[], Iterator[Check]], ...] = (
 def check(progress: Progress | None = None) -> list[Check]:
     """Compute every case; one that raises an exception is a row that does not hold.
 
-    progress: called with (families done, families in all).
+    Parameters
+    ----------
+    progress
+        Called with (families done, families in all).
     """
     found: list[Check] = []
     for done, family in enumerate(FAMILIES):

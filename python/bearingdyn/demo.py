@@ -61,9 +61,22 @@ def motor(rubber: Maxwell | None) -> Application:
 def demo(folder: Path, tell: Callable[[str], object] = lambda _: None) -> dict[str, Any]:
     """Compute the motor without and with its layer; write result.nc and response.png to the folder.
 
-    tell: called with a line before each stage. Returns what the layer does, in numbers, and the files.
+    Parameters
+    ----------
+    folder
+        Where result.nc and response.png are written; made if it is not there.
+    tell
+        Called with a line before each stage.
 
-    Raises OSError where the folder cannot be made or written.
+    Returns
+    -------
+    dict[str, Any]
+        What the layer does, in numbers, and the files.
+
+    Raises
+    ------
+    OSError
+        Where the folder cannot be made or written.
     """
     from matplotlib.figure import Figure
 

@@ -29,8 +29,17 @@ def describe(value: Any, *, strict: bool = True) -> Any:
     Numbers, texts, dataclasses, arrays (sparse ones too), mappings, sequences, sets, functions by their
     names, and objects by their `told_as` where they have it, else by their attributes.
 
-    Raises ValueError for what has no content to tell it by, such as an open file; where not strict, its
-    class stands for it.
+    Parameters
+    ----------
+    value
+        Anything a result may be computed from.
+    strict
+        Refuse what has no content to tell it by.
+
+    Raises
+    ------
+    ValueError
+        For what has no content to tell it by, such as an open file. If not strict, its class stands for it.
     """
 
     def told(part: Any) -> Any:
@@ -62,7 +71,7 @@ def describe(value: Any, *, strict: bool = True) -> Any:
 
 
 def text(value: Any) -> str:
-    """The description, not strict, as one line of JSON; entries of a mapping that are too long by digest."""
+    """One line of JSON that describes a value, not strict; a hash replaces each long entry of a mapping."""
     described = describe(value, strict=False)
     written = json.dumps(described, sort_keys=True)
     if len(written) > LONGEST and isinstance(described, dict):

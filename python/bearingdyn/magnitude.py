@@ -13,7 +13,7 @@ SOFTEST = 1e4  # Pa; below any rubber
 
 
 def check_length(field: str, value: float, largest: float = LARGEST_BODY) -> None:
-    """ValueError for a length above `largest`, both in m, as one given in mm is."""
+    """Raise ValueError for a length above `largest`, both in m: it was probably given in mm."""
     if not abs(value) <= largest:
         raise ValueError(
             f"{field} is {value:.6g} m, above {largest:g} m: is it in mm? lengths are in m, as "
@@ -22,7 +22,7 @@ def check_length(field: str, value: float, largest: float = LARGEST_BODY) -> Non
 
 
 def check_density(field: str, density: float) -> None:
-    """ValueError for a density, kg/m³, that no solid has; 1e-4 to 0.1 stand for a body without inertia."""
+    """Raise ValueError for a density, kg/m³, that no solid has; 1e-4 to 0.1 mean a body without inertia."""
     if not (LIGHTEST <= density <= HEAVIEST or MASSLESS[0] <= density <= MASSLESS[1]):
         raise ValueError(
             f"{field} is {density!r} kg/m³; a solid has {LIGHTEST:g} to {HEAVIEST:g} kg/m³; is it in g/cm³ "
@@ -32,7 +32,7 @@ def check_density(field: str, density: float) -> None:
 
 
 def check_bulk(field: str, K: float, G: float) -> None:
-    """ValueError for a bulk modulus at which a shear modulus G, both Pa, has a Poisson's ratio below 0."""
+    """Raise ValueError for a bulk modulus K that with the shear modulus G, both Pa, gives ν < 0."""
     if not K >= 2 / 3 * G:  # ν = (3K − 2G)/(6K + 2G)
         raise ValueError(
             f"{field} is {K:g} Pa, below 2/3 of the shear modulus, {G:.4g} Pa: Poisson's ratio would be "

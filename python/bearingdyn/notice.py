@@ -11,7 +11,7 @@ _OWN = __name__.partition(".")[0]
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Warn at the nearest caller that is not of this package.
 
-    By the module's name, not by the file: a dataclass's __init__ has none.
+    The caller is known by its module's name, not its file: the `__init__` of a dataclass has no file.
     """
     level, frame = 1, sys._getframe()
     while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] == _OWN:

@@ -87,7 +87,10 @@ def _version(data: bytes) -> int:
 def read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[Chunk], int]:
     """Header, every finished chunk, and where the last of them ends, in bytes.
 
-    Raises ValueError if the file is none of ours or its header is damaged.
+    Raises
+    ------
+    ValueError
+        If the file is none of ours or its header is damaged.
     """
     data = Path(path).read_bytes()
     version = _version(data)
@@ -121,7 +124,10 @@ def _block(data: bytes, at: int) -> tuple[bytes | None, int]:
 class Writer:
     """Appends to a run file; made anew, or opened behind its last finished chunk.
 
-    Raises OSError, naming the file, where it cannot be written; what was written before stays.
+    Raises
+    ------
+    OSError
+        Naming the file, where it cannot be written; what was written before stays.
     """
 
     def __init__(self, path: str | os.PathLike[str], header: Mapping[str, Any]) -> None:

@@ -223,7 +223,7 @@ def test_the_body_that_lost_its_support_is_named():
 
 
 def test_a_search_that_ends_without_balance_says_who_lost_support(monkeypatch):
-    from bearingdyn.bearing import minimum as search
+    from bearingdyn.bearing import energy_minimum as search
 
     monkeypatch.setattr(search, "_STEPS", 2)
     with pytest.raises(ArithmeticError, match=r"'\w+' finds no support along [xyz].*no equilibrium within 2"):

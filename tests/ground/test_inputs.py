@@ -117,3 +117,26 @@ def test_what_has_no_content_stands_by_its_class_in_a_result():
     assert json.loads(inputs.text({"part": Held(object())})) == {
         "part": {"class": f"{__name__}.Held", "x": {"class": "builtins.object"}}
     }
+
+
+def test_small_entries_stay_readable_beside_many_long_ones():
+    """A hundred entries of 2 kB are more than an HDF5 attribute keeps: only they go by hash."""
+    content = {f"part {k}": "x" * 1990 + f"{k:010d}" for k in range(100)}
+    content |= {"radius": 0.026, "layer": Layer(0.026, 0.028, 0.016, RUBBER), "bearing": "6205"}
+    written = inputs.text(content)
+    assert len(written) <= 64_000
+    record = json.loads(written)
+    assert record.keys() == content.keys()
+    assert (record["radius"], record["bearing"]) == (0.026, "6205")
+    digests = {record[f"part {k}"]["sha256"] for k in range(100)}
+    assert len(digests) == 100  # each still known from the others
+
+
+def test_what_is_short_is_written_out_whole():
+    content = {f"part {k}": "x" * 100 for k in range(100)}
+    assert json.loads(inputs.text(content)) == content
+
+
+def test_what_cannot_be_kept_even_so_is_told_by_one_hash():
+    """Ten thousand entries of ten bytes: nothing in it is long, and all of it is."""
+    assert json.loads(inputs.text({f"{k:08d}": k for k in range(10_000)})).keys() == {"sha256"}

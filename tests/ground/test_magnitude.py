@@ -64,7 +64,9 @@ def test_a_large_machine_passes():
 
 @pytest.mark.parametrize("clearance", [10, 1e-3])
 def test_clearance_in_micrometres_is_refused(clearance):
-    with pytest.raises(ValueError, match=f"clearance is {clearance}; above Dw/10 = 0.000794 m: is it in µm"):
+    with pytest.raises(
+        ValueError, match=f"clearance is {clearance}; it must be at most Dw/10, 0.000794 m: is it in µm"
+    ):
         bd.BallBearing(**BALLS, clearance=clearance)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import bearingdyn as bd
-from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.bearing.raceway_series import RacewaySeries
 from bearingdyn.material import STEEL
 from bearingdyn.parts import FlexibleBearing, FlexibleRing, RigidBody
 from flexible_rings import (

@@ -11,7 +11,7 @@ import scipy.linalg
 import scipy.sparse.linalg
 
 import bearingdyn as bd
-from bearingdyn.bearing.series import RIGID, RacewaySeries
+from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.material import STEEL
 from bearingdyn.parts import FlexibleBearing, FlexibleRing, Ring
 from flexible_rings import (

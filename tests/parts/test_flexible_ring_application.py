@@ -10,7 +10,7 @@ import pytest
 
 import bearingdyn as bd
 from bearingdyn.bearing import LooseFit
-from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.bearing.raceway_series import RacewaySeries
 from bearingdyn.parts import FlexibleBearing, FlexibleRing, Layer, Revolved, RigidBody
 from flexible_rings import (
     B6305,

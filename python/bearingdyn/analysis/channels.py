@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, QUANTITIES, Channel
-from bearingdyn.bearing.series import NET
+from bearingdyn.bearing import NET
 from bearingdyn.system import System
 from bearingdyn.types import Array
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.application import COMPONENTS, GROUND, QUANTITIES, Channel, Place
-from bearingdyn.bearing.series import NET
+from bearingdyn.bearing import NET
 from bearingdyn.system import PartTerm, SpringTerm, System
 from bearingdyn.types import Array, Complex
 

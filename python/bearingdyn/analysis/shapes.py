@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.application import COMPONENTS, Application
-from bearingdyn.application.rigid import arm
+from bearingdyn.application import COMPONENTS, Application, arm
 from bearingdyn.checks import name_list
 from bearingdyn.parts import Outlined
 from bearingdyn.system import System, assemble

@@ -15,8 +15,7 @@ import scipy.linalg
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Place
-from bearingdyn.bearing.minimum import NoBalance, minimum
-from bearingdyn.bearing.series import NET, RIGID, RacewaySeries
+from bearingdyn.bearing import NET, RIGID, NoBalance, RacewaySeries, minimum
 from bearingdyn.system import BearingTerm, System
 from bearingdyn.types import Array
 

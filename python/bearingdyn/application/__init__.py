@@ -5,6 +5,7 @@ from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJ
 from bearingdyn.application.loads import ConstantLoad, CoreLoad, HarmonicLoad, Load, SampledLoad, Unbalance
 from bearingdyn.application.place import COMPONENTS, GRAVITY, GROUND, QUANTITIES, RATES, Channel, Place
 from bearingdyn.application.plan import Part, Plan
+from bearingdyn.application.rigid import arm
 
 __all__ = [
     "COMPONENTS",
@@ -28,4 +29,5 @@ __all__ = [
     "SampledLoad",
     "Support",
     "Unbalance",
+    "arm",
 ]

@@ -2,6 +2,10 @@
 
 from bearingdyn.bearing import catalogue
 from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.ball_inertia import Balls, Running
+from bearingdyn.bearing.ball_passage import Passage, passage, without_spin
+from bearingdyn.bearing.contact_loads import BearingWarning, LoadDistribution, load_distribution
+from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness
 from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import (
@@ -11,25 +15,18 @@ from bearingdyn.bearing.hertz import (
     resultant_deflection_coefficient,
 )
 from bearingdyn.bearing.kernel import BearingKernel, ConstantDamping, Damping, LoadDamping, TabulatedDamping
-from bearingdyn.bearing.lines import fault_lines, waviness_lines
 from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.lubrication import Lubrication, lubricate
 from bearingdyn.bearing.mounting import Mounting, Seat
 from bearingdyn.bearing.pairs import Pair
-from bearingdyn.bearing.quasistatic import (
-    BearingWarning,
-    LoadDistribution,
-    Passage,
-    load_distribution,
-    passage,
-    without_spin,
-)
-from bearingdyn.bearing.running import Balls, Running
-from bearingdyn.bearing.series import RacewaySeries
-from bearingdyn.bearing.surface import WavinessSpectrum, dent, diameter_scatter, spall
+from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
+from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
+from bearingdyn.bearing.surface_generation import WavinessSpectrum, dent, diameter_scatter, spall
 
 __all__ = [
+    "NET",
+    "RIGID",
     "BallBearing",
     "Balls",
     "BearingKernel",
@@ -46,6 +43,7 @@ __all__ = [
     "Lubricant",
     "Lubrication",
     "Mounting",
+    "NoBalance",
     "Pair",
     "Passage",
     "Pit",
@@ -65,6 +63,7 @@ __all__ = [
     "hamrock_dowson",
     "load_distribution",
     "lubricate",
+    "minimum",
     "nijenbanning_venner_moes",
     "passage",
     "resultant_damping",

@@ -17,12 +17,12 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
-from bearingdyn.bearing.minimum import minimum
-from bearingdyn.bearing.series import RIGID, RacewaySeries
+from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.checks import nonnegative, number, positive, require, vector
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.types import Array
@@ -153,7 +153,7 @@ class BallBearing:
             ratio = number("cage_ratio", given.cage_ratio)
             require(0 <= ratio <= 1, "cage_ratio", ratio, "it must lie in 0..1 (½(1 − γ), near 0.4)")
         if given.arm is not None:
-            positive("arm", given.arm, "the arm of the moments in metres must be positive and finite")
+            positive("arm", given.arm, "it must be positive and finite, in m")
         waves, pits, sizes = checked(int(Z), waviness, defects, oversize)
         values = {
             "Z": int(Z),
@@ -165,9 +165,9 @@ class BallBearing:
             "contact_angle": contact_angle,
             "material": material,
             "ball_material": ball_material,
-            "film": nonnegative("film", film, "h_i + h_o in metres must be zero or positive"),
+            "film": nonnegative("film", film, "it must be zero or positive, in m (h_i + h_o)"),
             "damping": as_damping(damping),
-            "angle0": number("angle0", angle0, "the azimuth of the first ball in rad must be finite"),
+            "angle0": number("angle0", angle0, "it must be a finite angle in rad"),
             "waviness": waves,
             "defects": pits,
             "oversize": sizes,
@@ -218,7 +218,10 @@ class BallBearing:
     def frequencies(self, speed: float, contact_angle: float | None = None) -> Frequencies:
         """Cage, ball-pass and ball-spin frequencies, Hz, at the inner-ring speed in rad/s, in pure rolling.
 
-        contact_angle: of the loaded state, rad; None: the nominal one, 0 if a clearance is given.
+        Parameters
+        ----------
+        contact_angle
+            Of the loaded state, rad; None: the nominal one, 0 if a clearance is given.
         """
         if contact_angle is None:
             return self.geometry.frequencies(speed)
@@ -370,7 +373,7 @@ class BallBearing:
             If no equilibrium is found.
         """
         f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
-        turn = self.angle0 + number("angle", angle, "the cage angle in rad must be finite")
+        turn = self.angle0 + number("angle", angle, "it must be a finite angle in rad")
         R = self.arm
         target = np.array([f[0], f[1], f[2], -f[4] / R, f[3] / R])
         still = np.zeros(5)
@@ -391,8 +394,8 @@ class BallBearing:
 
         z = self.relative(q)
         zdot = self.coefficients() @ vector("velocity", velocity, (6,), f"rate of {_MOTION}")
-        turn = self.angle0 + number("angle", angle, "the cage angle in rad must be finite")
-        cage = self.cage_ratio * number("speed", speed, "the inner-ring speed in rad/s must be finite")
+        turn = self.angle0 + number("angle", angle, "it must be a finite angle in rad")
+        cage = self.cage_ratio * number("speed", speed, "it must be a finite speed in rad/s")
         # the shaft has turned so far that the cage stands at `angle`
         shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
         response: _Response = core.bearing_force(self._kernel, z, zdot, turn, cage, shaft, speed)

@@ -59,8 +59,9 @@ def estimate(
 
     Pitch diameter midway. Balls: the largest in steps of 1/64 inch up to 0.3 of the section (outside − bore);
     in narrow bearings, up to 0.7 of the width. Deep groove: as many as can be filled in over 196°; angular
-    contact: as many as stand 1.1 diameters apart. Groove radii .52 and .53 (ISO 76). Own rule, made from the
-    entries of CATALOGUE that have a source: it gives their balls within one, their diameters within 7 %.
+    contact: as many as stand 1.1 diameters apart. Groove radii .52 and .53 (ISO 76). The rule is our
+    own, drawn from the entries of CATALOGUE that have a source: it gives their number of balls within one and
+    their diameters within 7 %.
 
     Parameters
     ----------
@@ -85,11 +86,11 @@ def estimate(
         kind in ("deep groove", "angular contact"), "kind", kind, 'give "deep groove" or "angular contact"'
     )
     angular = kind == "angular contact"
-    remedy = "in rad, belongs to an angular contact bearing and to no other"
+    remedy = "give it in rad for an angular contact bearing, and for no other"
     require((contact_angle is not None) == angular, "contact_angle", contact_angle, remedy)
     Dpw = (d + D) / 2
     Dw = math.floor(min(_BALL_SHARE * (D - d), 0.7 * B) / _BALL_STEP) * _BALL_STEP
-    require(Dw > 0, "outside", outside, "the section is too thin for a ball of 1/64 inch")
+    require(Dw > 0, "outside", outside, "it must leave room for a ball of 1/64 inch")
     if angular:
         Z = math.floor(math.pi / math.asin(_CAGE * Dw / Dpw))
     else:
@@ -162,7 +163,18 @@ CATALOGUE: dict[str, Entry] = _table()
 
 
 def entry(designation: str | int) -> Entry:
-    """Typical geometry of a designation, its source beside it; ValueError if it is not listed."""
+    """Typical geometry of a designation, and its source.
+
+    Parameters
+    ----------
+    designation
+        A key of CATALOGUE, such as "6305"; the number 6305 will do.
+
+    Raises
+    ------
+    ValueError
+        If the designation is not listed.
+    """
     listed = ", ".join(CATALOGUE)
     require(str(designation) in CATALOGUE, "designation", designation, f"it must be one of {listed}")
     return CATALOGUE[str(designation)]
@@ -195,16 +207,27 @@ def bearing(designation: str | int, *, clearance: float | None = None, **keyword
 
 
 def from_entry(entry: Entry, *, clearance: float | None = None, **keywords: Any) -> BallBearing:
-    """BallBearing of an Entry, such as one by `estimate`; as `bearing`."""
+    """BallBearing of an Entry, such as one by `estimate`.
+
+    Parameters
+    ----------
+    entry
+        Dimensions, listed or by `estimate`.
+    clearance
+        Diametral clearance, m: of a deep groove bearing, and of no other.
+    **keywords
+        Passed to BallBearing.
+    """
     e = entry
     if e.contact_angle is None:
         require(
-            clearance is not None, "clearance", clearance, "a deep groove bearing needs it, diametral, in m"
+            clearance is not None,
+            "clearance",
+            clearance,
+            "it must be given, diametral, in m, for a deep groove bearing",
         )
     else:
-        require(
-            clearance is None, "clearance", clearance, "follows from the angle of an angular contact bearing"
-        )
+        require(clearance is None, "clearance", clearance, "it must not be given: the contact angle fixes it")
     return BallBearing(
         e.Z, e.Dw, e.Dpw, e.fi, e.fo, clearance=clearance, contact_angle=e.contact_angle, **keywords
     )

@@ -40,9 +40,14 @@ class Waviness:
     ball
         Which ball carries it, from 1; None: every ball, in phase.
 
-    Raises ValueError naming the field, its value and what would be right.
+    Raises
+    ------
+    ValueError
+        Naming the field, its value and what would be right.
 
-    Reference: J. A. Wensing, On the Dynamics of Ball Bearings, University of Twente, 1998.
+    References
+    ----------
+    J. A. Wensing, On the Dynamics of Ball Bearings, University of Twente, 1998.
     """
 
     body: Body
@@ -93,7 +98,10 @@ class Pit:
     ball
         Which ball carries it, from 1, with body "ball".
 
-    Raises ValueError naming the field, its value and what would be right.
+    Raises
+    ------
+    ValueError
+        Naming the field, its value and what would be right.
     """
 
     body: Body
@@ -119,9 +127,20 @@ class Pit:
 class Imperfections:
     """All of a bearing's imperfections as the core takes them, with the kinematics they need.
 
-    spin_ratio: ball spin over shaft speed. ball_diameter, and inner_radius, outer_radius where the balls
-    run, m.
-    waves (n, 5), pits (n, 5), oversize (Z,) or empty, m.
+    Parameters
+    ----------
+    spin_ratio
+        Ball spin over shaft speed.
+    ball_diameter
+        m.
+    inner_radius, outer_radius
+        Of the races where the balls run, m.
+    waves
+        (n, 5), rows as by `Waviness.rows`.
+    pits
+        (n, 5), rows as by `Pit.row`.
+    oversize
+        (Z,) diameter of each ball beyond the nominal one, m, or empty.
     """
 
     spin_ratio: float = 0.0

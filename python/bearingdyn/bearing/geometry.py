@@ -69,10 +69,10 @@ class Geometry:
     contact_angle: float | None = None
 
     def __post_init__(self) -> None:
-        n = number("Z", self.Z, "the number of balls must be a whole number, at least 3")
-        require(n >= 3 and n == int(n), "Z", self.Z, "the number of balls must be a whole number, at least 3")
-        positive("Dw", self.Dw, "the ball diameter in metres must be positive and finite")
-        positive("Dpw", self.Dpw, "the pitch diameter in metres must be positive and finite")
+        n = number("Z", self.Z, "it must be a whole number of balls, at least 3")
+        require(n >= 3 and n == int(n), "Z", self.Z, "it must be a whole number of balls, at least 3")
+        positive("Dw", self.Dw, "it must be positive and finite, in m")
+        positive("Dpw", self.Dpw, "it must be positive and finite, in m")
         check_length("Dw", self.Dw, LARGEST_BALL)
         check_length("Dpw", self.Dpw, LARGEST_BODY)
         require(
@@ -84,8 +84,7 @@ class Geometry:
         )
         for name, f in (("fi", self.fi), ("fo", self.fo)):
             remedy = (
-                "the groove radius must exceed half the ball diameter: give groove radius / ball diameter, "
-                "above 0.5 (commonly 0.515 to 0.53)"
+                "it must exceed 0.5: give groove radius / ball diameter, above 0.5 (commonly 0.515 to 0.53)"
             )
             require(number(name, f, remedy) > 0.5, name, f, remedy)
         require(
@@ -95,13 +94,11 @@ class Geometry:
             "give exactly one: clearance (diametral, m; deep groove) or contact_angle (rad; angular contact)",
         )
         if self.clearance is not None:
-            Pd = number(
-                "clearance", self.clearance, "the diametral clearance in metres must be zero or positive"
-            )
+            Pd = number("clearance", self.clearance, "it must be zero or positive, in m")
             require(
                 Pd >= 0, "clearance", self.clearance, f"it must be zero or positive, in metres; {PRELOADED}"
             )
-            unit = f"above Dw/10 = {0.1 * self.Dw:.6g} m: is it in µm? the clearance is in m"
+            unit = f"it must be at most Dw/10, {0.1 * self.Dw:.6g} m: is it in µm? give m"
             require(Pd <= 0.1 * self.Dw, "clearance", self.clearance, unit)
             require(
                 Pd < 2 * self.A,
@@ -110,7 +107,7 @@ class Geometry:
                 f"it must be less than 2A = {2 * self.A:.6g} m, A the groove centres' distance",
             )
         else:
-            remedy = "the contact angle must be in radians, 0 <= angle < pi/2"
+            remedy = "it must be in radians, 0 <= angle < pi/2"
             angle = nonnegative("contact_angle", self.contact_angle, remedy)
             require(angle < math.pi / 2, "contact_angle", self.contact_angle, remedy)
 

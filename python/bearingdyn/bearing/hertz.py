@@ -20,14 +20,30 @@ from bearingdyn.material import Elastic
 
 
 def contact_modulus(first: Elastic, second: Elastic) -> float:
-    """Contact modulus E* of two elastic bodies, 1/E* = Σ(1 − ν²)/E, Pa."""
+    """Contact modulus E* of two elastic bodies, 1/E* = Σ(1 − ν²)/E, Pa.
+
+    Parameters
+    ----------
+    first
+        One body.
+    second
+        The other body.
+    """
     return 1 / ((1 - first.nu**2) / first.E + (1 - second.nu**2) / second.E)
 
 
 def resultant_deflection_coefficient(*kappa: float) -> float:
     """Contacts in series, κ_res = (Σ κ^{−2/3})^{−3/2}, N/m^1.5 (paper eq. 2).
 
-    Raises ValueError unless every κ is positive and finite.
+    Parameters
+    ----------
+    *kappa
+        Deflection coefficient of each contact, N/m^1.5.
+
+    Raises
+    ------
+    ValueError
+        Unless every κ is positive and finite.
     """
     require(len(kappa) > 0, "kappa", kappa, "give at least one deflection coefficient")
     return math.pow(math.fsum(math.pow(positive("kappa", k), -2 / 3) for k in kappa), -1.5)
@@ -37,7 +53,19 @@ def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) ->
     """Damping of one ball from its two contacts, each a pair (κ in N/m^1.5, c in N s/m), N s/m.
 
     Spring and damper pairs in series, c = k²(c_i/k_i² + c_o/k_o²) with k ∝ κ^{2/3} under one force, as long
-    as the dampers carry little of it (ω ≪ k/c). Raises ValueError if κ is not positive or c negative.
+    as the dampers carry little of it (ω ≪ k/c).
+
+    Parameters
+    ----------
+    inner
+        (κ, c) of the inner contact, N/m^1.5 and N s/m.
+    outer
+        (κ, c) of the outer contact.
+
+    Raises
+    ------
+    ValueError
+        If κ is not positive or c negative.
     """
     kappa = resultant_deflection_coefficient(inner[0], outer[0])
     return math.fsum(nonnegative("c", c) * math.pow(kappa / k, 4 / 3) for k, c in (inner, outer))
@@ -46,11 +74,22 @@ def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) ->
 def ellipticity(F: float) -> float:
     """Ratio χ = a/b ≥ 1 of the contact ellipse's semi-axes from the curvature difference F(ρ), 0 ≤ F < 1.
 
-    Raises ValueError if F is outside [0, 1).
-    Source: Harris, Rolling Bearing Analysis, F(ρ) = [(χ²+1)E − 2K]/[(χ²−1)E].
+    Parameters
+    ----------
+    F
+        Curvature difference F(ρ), 0 ≤ F < 1.
+
+    Raises
+    ------
+    ValueError
+        If F is outside [0, 1).
+
+    References
+    ----------
+    Harris, Rolling Bearing Analysis, F(ρ) = [(χ²+1)E − 2K]/[(χ²−1)E].
     """
-    value = number("F", F, "the curvature difference must satisfy 0 <= F < 1")
-    require(0 <= value < 1, "F", F, "the curvature difference must satisfy 0 <= F < 1")
+    value = number("F", F, "it must satisfy 0 <= F < 1")
+    require(0 <= value < 1, "F", F, "it must satisfy 0 <= F < 1")
     return _ellipticity(1 - value)
 
 
@@ -96,9 +135,9 @@ class PointContact:
     modulus: float
 
     def __post_init__(self) -> None:
-        positive("Rx", self.Rx, "the effective radius in metres must be positive and finite")
-        positive("Ry", self.Ry, "the effective radius in metres must be positive and finite")
-        positive("modulus", self.modulus, "the contact modulus in Pa must be positive and finite")
+        positive("Rx", self.Rx, "it must be positive and finite, in m")
+        positive("Ry", self.Ry, "it must be positive and finite, in m")
+        positive("modulus", self.modulus, "it must be positive and finite, in Pa")
 
     @property
     def sum_rho(self) -> float:
@@ -145,7 +184,7 @@ class PointContact:
 
     def semi_axes(self, Q: float) -> tuple[float, float]:
         """Semi-axes (a, b), a ≥ b, of the contact ellipse under the load Q ≥ 0 in N, m."""
-        load = nonnegative("Q", Q, "the contact load in N must be zero or positive")
+        load = nonnegative("Q", Q, "it must be zero or positive, in N")
         scale = (3 * load / (2 * self.sum_rho * self.modulus)) ** (1 / 3)
         return self.a_star * scale, self.b_star * scale
 
@@ -156,12 +195,12 @@ class PointContact:
 
     def approach(self, Q: float) -> float:
         """Approach δ = (Q/κ)^{2/3} of the bodies under the load Q ≥ 0 in N, m."""
-        load = nonnegative("Q", Q, "the contact load in N must be zero or positive")
+        load = nonnegative("Q", Q, "it must be zero or positive, in N")
         return math.pow(load / self.kappa, 2 / 3)
 
     def load_at_pressure(self, p: float) -> float:
         """Contact load at which the largest pressure reaches p > 0 in Pa, N."""
-        peak = positive("p", p, "the contact pressure in Pa must be positive and finite")
+        peak = positive("p", p, "it must be positive and finite, in Pa")
         return (peak / self.pressure(1.0)) ** 3
 
 
@@ -170,7 +209,21 @@ def race_contact(
 ) -> PointContact:
     """Contact of a ball with one race: Rx = (D/2)(1 ∓ γ) (inner −, outer +), Ry = f D/(2f − 1).
 
-    Raises ValueError if `race` is neither "inner" nor "outer".
+    Parameters
+    ----------
+    geometry
+        Balls and grooves.
+    race
+        "inner" or "outer".
+    ring
+        Material of the ring.
+    ball
+        Material of the balls.
+
+    Raises
+    ------
+    ValueError
+        If `race` is neither "inner" nor "outer".
     """
     require(race in ("inner", "outer"), "race", race, 'it must be "inner" or "outer"')
     f, sign = (geometry.fi, -1.0) if race == "inner" else (geometry.fo, 1.0)

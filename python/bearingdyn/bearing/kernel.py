@@ -20,7 +20,10 @@ KernelFields: TypeAlias = tuple[Law, float, Array]
 class ConstantDamping:
     """c(δ) = c, N s/m: the paper's harmonic case (30 N s/m). The force jumps where contact is lost.
 
-    Raises ValueError if c is negative or not finite.
+    Raises
+    ------
+    ValueError
+        If c is negative or not finite.
     """
 
     c: float
@@ -78,7 +81,10 @@ class LoadDamping:
 
     Values of (0.25–2.5)e-5 s are quoted for lubricated contacts; unverified here.
 
-    Raises ValueError if `time` (s) is negative or not finite.
+    Raises
+    ------
+    ValueError
+        If `time` (s) is negative or not finite.
     """
 
     time: float

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.bearing.kernel import BearingKernel
-from bearingdyn.bearing.series import RacewaySeries
+from bearingdyn.bearing.raceway_series import RacewaySeries
 from bearingdyn.checks import nonnegative, positive, require
 from bearingdyn.types import Index
 
@@ -34,7 +34,10 @@ class LooseFit:
     hold
         Stiffness against sliding along z and, at the ring's radius, against tilting, N/m.
 
-    Raises ValueError naming the field, its value and what would be right.
+    Raises
+    ------
+    ValueError
+        Naming the field, its value and what would be right.
     """
 
     clearance: float
@@ -43,7 +46,7 @@ class LooseFit:
     hold: float = 1e8
 
     def __post_init__(self) -> None:
-        nonnegative("clearance", self.clearance, "diametral, in m, must be zero or positive")
+        nonnegative("clearance", self.clearance, "it must be zero or positive, in m (diametral)")
         whole = self.stations % 1 == 0 and self.stations >= 3
         require(whole, "stations", self.stations, "it must be a whole number, 3 or more")
         positive("kappa", self.kappa, "it must be positive and finite, in N/m^1.5")
@@ -61,7 +64,10 @@ class LooseFit:
     def kernel(self, series: RacewaySeries) -> BearingKernel:
         """The fit as the contact kernel takes it: radial coefficients alone, ring less bore.
 
-        Raises ValueError for a series with axial terms, or too fine for the stations.
+        Raises
+        ------
+        ValueError
+            For a series with axial terms, or too fine for the stations.
         """
         axial, order, sine = series.columns
         require(not axial.any(), "series", series.terms, "a loose fit takes radial terms only")

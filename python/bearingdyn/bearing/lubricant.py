@@ -56,9 +56,12 @@ class Walther:
 
     @classmethod
     def from_two_points(cls, T1: float, nu1: float, T2: float, nu2: float) -> Walther:
-        """Through the kinematic viscosities nu1, nu2 in m²/s at the temperatures T1 < T2 in °C.
+        """Oil whose kinematic viscosities are nu1 and nu2, m²/s, at the temperatures T1 < T2, °C.
 
-        Raises ValueError unless T1 < T2 and nu1 > nu2 ≥ 2 mm²/s, below which the law does not hold.
+        Raises
+        ------
+        ValueError
+            Unless T1 < T2 and nu1 > nu2 ≥ 2 mm²/s, below which the law does not hold.
         """
         first, second = _kelvin("T1", T1), _kelvin("T2", T2)
         require(first < second, "T1, T2", (T1, T2), "temperatures in °C must increase")
@@ -71,23 +74,31 @@ class Walther:
 
     @classmethod
     def iso_vg(cls, grade: int, nu_100: float | None = None) -> Walther:
-        """Oil of an ISO viscosity grade: ν(40 °C) = grade mm²/s and nu_100 m²/s at 100 °C.
+        """Oil of an ISO viscosity grade: grade, mm²/s, at 40 °C and nu_100, m²/s, at 100 °C.
 
         Without nu_100 a customary value for mineral oil of viscosity index near 100 is taken for grades 10 to
         220; the standard does not fix it, and the customary values are unverified: prefer the data sheet's.
 
-        Raises ValueError for a grade outside 10..220 without nu_100.
+        Raises
+        ------
+        ValueError
+            For a grade outside 10..220 without nu_100.
         """
         if nu_100 is None:
             grades = ", ".join(map(str, _VG_AT_100))
-            require(grade in _VG_AT_100, "grade", grade, f"without nu_100 give one of {grades}")
+            require(
+                grade in _VG_AT_100, "grade", grade, f"it must be one of {grades} where nu_100 is not given"
+            )
             nu_100 = _VG_AT_100[grade] * 1e-6
         return cls.from_two_points(40.0, positive("grade", grade) * 1e-6, 100.0, nu_100)
 
     def viscosity(self, T: float) -> float:
         """Kinematic viscosity, m²/s, at T in °C.
 
-        Raises ValueError where it would lie outside 2 to 2e7 mm²/s, in which the law holds (ASTM D341).
+        Raises
+        ------
+        ValueError
+            Where it would lie outside 2 to 2e7 mm²/s, in which the law holds (ASTM D341).
         """
         kelvin = _kelvin("T", T)
         double_log = self.A - self.B * math.log10(kelvin)
@@ -140,7 +151,14 @@ class Lubricant:
 def barus(eta0: float, alpha: float, p: float) -> float:
     """Dynamic viscosity η0 e^{αp}, Pa s; far too high above some 0.1 GPa.
 
-    eta0 in Pa s, alpha in 1/Pa, p in Pa ≥ 0.
+    Parameters
+    ----------
+    eta0
+        Viscosity at ambient pressure, Pa s.
+    alpha
+        Pressure–viscosity coefficient, 1/Pa.
+    p
+        Pressure, Pa, zero or more.
     """
     return positive("eta0", eta0) * math.exp(positive("alpha", alpha) * nonnegative("p", p))
 
@@ -148,14 +166,29 @@ def barus(eta0: float, alpha: float, p: float) -> float:
 def roelands(eta0: float, z: float, p: float) -> float:
     """Dynamic viscosity η0 exp{(ln η0 + 9.67)[(1 + p/1.96e8)^z − 1]}, Pa s (C. J. A. Roelands 1966).
 
-    eta0 in Pa s, above 6.31e-5; z dimensionless; p in Pa ≥ 0.
+    Parameters
+    ----------
+    eta0
+        Viscosity at ambient pressure, Pa s, above 6.31e-5.
+    z
+        Exponent, dimensionless.
+    p
+        Pressure, Pa, zero or more.
     """
     growth = (1 + nonnegative("p", p) / _ROELANDS_PRESSURE) ** positive("z", z) - 1
     return eta0 * math.exp(_roelands_log(eta0) * growth)
 
 
 def roelands_exponent(eta0: float, alpha: float) -> float:
-    """Exponent z that gives the pressure–viscosity coefficient α at p = 0: α = z (ln η0 + 9.67)/1.96e8."""
+    """Exponent z that gives the pressure–viscosity coefficient α at p = 0: α = z (ln η0 + 9.67)/1.96e8.
+
+    Parameters
+    ----------
+    eta0
+        Viscosity at ambient pressure, Pa s.
+    alpha
+        Pressure–viscosity coefficient, 1/Pa.
+    """
     return positive("alpha", alpha) * _ROELANDS_PRESSURE / _roelands_log(eta0)
 
 
@@ -186,9 +219,9 @@ def hamrock_dowson(contact: PointContact, F: float, u: float, eta0: float, alpha
         If a value is not positive, or Rx > Ry.
     """
     E, Rx = _film_scales(contact)
-    U = positive("eta0", eta0) * positive("u", u, "the mean surface speed in m/s must be positive") / (E * Rx)
+    U = positive("eta0", eta0) * positive("u", u, "it must be positive, in m/s") / (E * Rx)
     G = positive("alpha", alpha) * E
-    W = positive("F", F, "the contact load in N must be positive") / (E * Rx**2)
+    W = positive("F", F, "it must be positive, in N") / (E * Rx**2)
     chi = contact.chi
     return Film(
         central=Rx * 2.69 * U**0.67 * G**0.53 * W**-0.067 * (1 - 0.61 * math.exp(-0.73 * chi)),
@@ -200,10 +233,28 @@ def nijenbanning_venner_moes(contact: PointContact, F: float, us: float, eta0: f
     """Central film thickness, m (G. Nijenbanning, C. H. Venner, H. Moes 1994), rolling across the minor axis.
 
     As `hamrock_dowson`, but with the sum of the surface speeds us = u1 + u2, m/s; for all regimes.
+
+    Parameters
+    ----------
+    contact
+        Point contact with Rx ≤ Ry.
+    F
+        Load, N.
+    us
+        Sum of the surface speeds u1 + u2, m/s.
+    eta0
+        Dynamic viscosity at ambient pressure, Pa s.
+    alpha
+        Pressure–viscosity coefficient, 1/Pa.
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive, or Rx > Ry.
     """
     E, Rx = _film_scales(contact)
-    speed = positive("eta0", eta0) * positive("us", us, "u1 + u2 in m/s must be positive") / (E * Rx)
-    M = positive("F", F, "the contact load in N must be positive") / (E * Rx**2) * speed**-0.75
+    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
+    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
     L = positive("alpha", alpha) * E * speed**0.25
     return dimensionless_film(M, L, Rx / contact.Ry) * Rx * math.sqrt(speed)
 
@@ -214,15 +265,36 @@ def wijnant_damping(contact: PointContact, F: float, us: float, eta0: float, alp
     c = C (F/δ)(2a/us), C = r M^{−s}, r = .98 − L/60, s = .83 − .008L; δ the dry approach, a the half-width in
     rolling direction. The form was written from memory and not read again in its source; that its load number
     is the M of Nijenbanning, Venner and Moes is an assumption of this package. Values of 4 to 15 N s/m are
-    quoted for it. Arguments as `nijenbanning_venner_moes`.
+    quoted for it.
 
-    Raises ValueError if a value is not positive, Rx > Ry, or L ≥ 58.8, where r vanishes.
+    Parameters
+    ----------
+    contact
+        Point contact with Rx ≤ Ry.
+    F
+        Load, N.
+    us
+        Sum of the surface speeds u1 + u2, m/s.
+    eta0
+        Dynamic viscosity at ambient pressure, Pa s.
+    alpha
+        Pressure–viscosity coefficient, 1/Pa.
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive, Rx > Ry, or L ≥ 58.8, where r vanishes.
     """
     E, Rx = _film_scales(contact)
-    speed = positive("eta0", eta0) * positive("us", us, "u1 + u2 in m/s must be positive") / (E * Rx)
-    M = positive("F", F, "the contact load in N must be positive") / (E * Rx**2) * speed**-0.75
+    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
+    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
     L = positive("alpha", alpha) * E * speed**0.25
-    require(L < 58.8, "alpha", alpha, f"L = {L:.3g} is beyond the fit of the damping")
+    require(
+        L < 58.8,
+        "alpha",
+        alpha,
+        f"it must give a lubricant number below 58.8, where the fit of the damping ends; here L is {L:.3g}",
+    )
     C = (0.98 - L / 60) * M ** -(0.83 - 0.008 * L)
     return float(C * F / contact.approach(F) * 2 * contact.semi_axes(F)[1] / us)
 
@@ -230,7 +302,21 @@ def wijnant_damping(contact: PointContact, F: float, us: float, eta0: float, alp
 def dimensionless_film(M: float, L: float, D: float) -> float:
     """Central film H of Nijenbanning, Venner, Moes from load M, lubricant L and radius ratio D = Rx/Ry ≤ 1.
 
-    h = H Rx √(η0 us/(E′Rx)). Raises ValueError if a number is not positive or D > 1.
+    h = H Rx √(η0 us/(E′Rx)).
+
+    Parameters
+    ----------
+    M
+        Load number.
+    L
+        Lubricant number.
+    D
+        Radius ratio Rx/Ry, at most 1.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive or D > 1.
     """
     for name, value in (("M", M), ("L", L), ("D", D)):
         positive(name, value)
@@ -253,19 +339,19 @@ def _film_scales(contact: PointContact) -> tuple[float, float]:
         contact.Rx <= contact.Ry,
         "contact.Rx",
         contact.Rx,
-        f"it must not exceed Ry is {contact.Ry!r} m; the formulas hold for rolling across the minor axis",
+        f"it must not exceed Ry, {contact.Ry!r} m: the formulas hold for rolling across the minor axis",
     )
     return 2 * contact.modulus, contact.Rx
 
 
 def _roelands_log(eta0: float) -> float:
-    log = math.log(positive("eta0", eta0, "the dynamic viscosity in Pa s must be positive"))
+    log = math.log(positive("eta0", eta0, "it must be positive, in Pa s"))
     log += _ROELANDS_LOG_VISCOSITY
     require(log > 0, "eta0", eta0, "it must exceed 6.31e-5 Pa s for Roelands' law (give Pa s, not mPa s)")
     return log
 
 
 def _kelvin(field: str, T: float) -> float:
-    kelvin = number(field, T, "the temperature in °C must be finite") + _ZERO_CELSIUS
+    kelvin = number(field, T, "it must be a finite temperature in °C") + _ZERO_CELSIUS
     require(kelvin > 0, field, T, "it must lie above absolute zero, −273.15 °C")
     return kelvin

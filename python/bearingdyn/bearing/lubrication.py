@@ -10,6 +10,7 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.contact_loads import load_distribution
 from bearingdyn.bearing.hertz import resultant_damping
 from bearingdyn.bearing.kernel import ConstantDamping
 from bearingdyn.bearing.lubricant import (
@@ -18,7 +19,6 @@ from bearingdyn.bearing.lubricant import (
     nijenbanning_venner_moes,
     wijnant_damping,
 )
-from bearingdyn.bearing.quasistatic import load_distribution
 from bearingdyn.checks import number, positive, require
 
 FilmLaw = Literal["nijenbanning-venner-moes", "hamrock-dowson"]
@@ -26,7 +26,7 @@ FilmLaw = Literal["nijenbanning-venner-moes", "hamrock-dowson"]
 
 @dataclass(frozen=True)
 class Lubrication:
-    """What an operating point makes of the films of a bearing; lengths in m."""
+    """Films of a bearing at one operating point; lengths in m."""
 
     Q: float
     """Contact load at which the films are taken: the mean of the loaded balls, N."""
@@ -99,9 +99,14 @@ def lubricate(
         If the bearing finds no equilibrium.
     """
     require(isinstance(lubricant, Lubricant), "lubricant", lubricant, "give a Lubricant")
-    require(law in ("nijenbanning-venner-moes", "hamrock-dowson"), "law", law, "unknown film formula")
-    omega = number("speed", speed, "the inner-ring speed in rad/s must be finite")
-    require(omega != 0, "speed", speed, "without speed there is no film")
+    require(
+        law in ("nijenbanning-venner-moes", "hamrock-dowson"),
+        "law",
+        law,
+        'it must be "nijenbanning-venner-moes" or "hamrock-dowson"',
+    )
+    omega = number("speed", speed, "it must be a finite speed in rad/s")
+    require(omega != 0, "speed", speed, "it must not be zero: without speed there is no film")
     share = positive("starvation", starvation)
     require(share <= 1, "starvation", starvation, "it must be at most 1, fully flooded")
     sigma = 0.0

@@ -38,7 +38,10 @@ class Seat:
     warming
         Its temperature over that of assembly, K.
 
-    Raises ValueError naming the field, its value and what would be right.
+    Raises
+    ------
+    ValueError
+        Naming the field, its value and what would be right.
     """
 
     interference: float = 0.0
@@ -48,7 +51,7 @@ class Seat:
     warming: float = 0.0
 
     def __post_init__(self) -> None:
-        nonnegative("interference", self.interference, "diametral, in m, must be zero or positive")
+        nonnegative("interference", self.interference, "it must be zero or positive, in m (diametral)")
         require(isinstance(self.material, Elastic), "material", self.material, "give a material.Elastic")
         nonnegative("expansion", self.expansion, "the thermal expansion in 1/K must be zero or positive")
         number("warming", self.warming, "it must be a finite temperature difference in K")
@@ -108,7 +111,10 @@ class Mounting:
     def clearance_change(self, bearing: BallBearing) -> float:
         """Change of the diametral clearance, m; negative where fits and temperatures take from it.
 
-        Raises ValueError if the races do not lie between bore and outside diameter.
+        Raises
+        ------
+        ValueError
+            If the races do not lie between bore and outside diameter.
         """
         race_i, race_o = bearing.Dpw - bearing.Dw, bearing.Dpw + bearing.Dw
         inside = self.bore < race_i and race_o < self.outside
@@ -130,7 +136,7 @@ class Mounting:
         Raises
         ------
         ValueError
-            If less than no clearance is left: the model has no rings pressed together by their balls.
+            If the clearance left is negative: rings clamped onto their balls are not modelled.
         """
         left = bearing.geometry.Pd + self.clearance_change(bearing)
         why = (

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.minimum import minimum
+from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.checks import nonnegative, positive, require, vector
 from bearingdyn.types import Array
 
@@ -76,7 +76,7 @@ class Pair:
             both = self.preload_force is None
             require(both, "preload_force", self.preload_force, "give a preload or a preload_force, not both")
         if self.preload_force is not None:
-            nonnegative("preload_force", self.preload_force, f"in N, {remedy}")
+            nonnegative("preload_force", self.preload_force, f"{remedy}, in N")
         free = self.arrangement != "DT" or not (self.preload or self.preload_force)
         require(
             free, "arrangement", self.arrangement, "a tandem has no preload of its own: load it from outside"

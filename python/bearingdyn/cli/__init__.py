@@ -31,7 +31,7 @@ that cannot be used. SI units throughout, temperatures in C.
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command, sys.argv's when none is given, and return its exit code."""
+    """Run a command, by default that of sys.argv, and return its exit code."""
     parser = _parser()
     try:
         arguments = parser.parse_args(argv)

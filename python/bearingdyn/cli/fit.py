@@ -8,8 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from bearingdyn.cli.outcome import GOOD
-from bearingdyn.material import DMAData, MasterCurve, Maxwell, fit_maxwell, master_curve, read_dma
-from bearingdyn.material.reading import ReadingError
+from bearingdyn.material import (
+    DMAData,
+    MasterCurve,
+    Maxwell,
+    ReadingError,
+    fit_maxwell,
+    master_curve,
+    read_dma,
+)
 
 # usual for rubber; said in the table where they were not given
 BULK_MODULUS = 2e9

@@ -7,7 +7,7 @@ from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification import fit_dense, fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.reading import read_dma, sample_dma_path
+from bearingdyn.material.reading import ReadingError, read_dma, sample_dma_path
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
 from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, master_curve, suspects
 
@@ -24,6 +24,7 @@ __all__ = [
     "Maxwell",
     "OutsideBand",
     "PowerLaw",
+    "ReadingError",
     "RhoT",
     "ShiftTable",
     "Suspect",

@@ -11,8 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing import BallBearing
-from bearingdyn.bearing.minimum import minimum
+from bearingdyn.bearing import BallBearing, minimum
 from bearingdyn.checks import vector
 from bearingdyn.cms import Superelement
 from bearingdyn.parts.flexible_ring import FlexibleRing

@@ -24,7 +24,22 @@ STIFFNESSES = {"x": 0, "y": 1, "z": 2, "θx": 3, "θy": 4}
 def load_distribution(distributions: Mapping[str, LoadDistribution], ax: Axes | None = None) -> Axes:
     """Loads of the inner contacts, N, around the bearing, several states by label: azimuth from x towards y.
 
-    ax: polar. Raises ValueError if there are none or the axes are not polar.
+    Parameters
+    ----------
+    distributions
+        States by label, each by `bearing.load_distribution`.
+    ax
+        Axes to draw into, polar; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        If there are none or the axes are not polar.
     """
     if ax is not None and ax.name != "polar":
         raise ValueError(f"ax has the projection {ax.name!r}; a load distribution needs projection='polar'")
@@ -69,15 +84,25 @@ def bearing_stiffness(
     Parameters
     ----------
     bearings
-        At rest, or with the inertia of their balls.
+        Bearings by label, at rest, or with the inertia of their balls.
     direction
         (6,) load per unit of `loads`, N and N m; (1, 0, 0, 0, 0, 0) for a radial load.
     loads
         (n,) increasing and positive.
     component
         "x", "y", "z" (N/m), "θx" or "θy" (N m).
+    ax
+        Axes to draw into; None: those of a new figure.
 
-    Raises ValueError for an unknown component or loads that do not increase from above zero.
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        For an unknown component or loads that do not increase from above zero.
     """
     F = np.asarray(loads, dtype=np.float64)
     if component not in STIFFNESSES:
@@ -116,10 +141,36 @@ def film(
 ) -> Axes:
     """Central films of both races against speed, rpm, a colour for each temperature in °C; with roughness, λ.
 
-    speeds: (n,) of the inner ring, rad/s, increasing and positive. load: (6,), N and N m. With a roughness
-    the axes are halved and λ, film over composite roughness, stands below; the axes of the film are returned.
+    With a roughness the axes are halved, and λ, the film over the composite roughness, stands below.
 
-    Raises ValueError for speeds that do not increase from above zero, and as `bearing.lubricate`.
+    Parameters
+    ----------
+    bearing
+        Its own film and damping are not used.
+    lubricant
+        Oil, or base oil of a grease.
+    temperatures
+        (k,) at the inlet of the contacts, °C.
+    speeds
+        (n,) of the inner ring, rad/s, increasing and positive.
+    load
+        (6,) on the inner ring, N and N m.
+    ax
+        Axes to draw into; None: those of a new figure.
+    roughness
+        Rms roughness of race and ball, m.
+    starvation
+        Film over fully flooded film, in 0..1.
+
+    Returns
+    -------
+    Axes
+        The axes of the film.
+
+    Raises
+    ------
+    ValueError
+        For speeds that do not increase from above zero, and as `bearing.lubricate`.
     """
     omega = np.asarray(speeds, dtype=np.float64)
     if omega.ndim != 1 or omega.size < 2 or not (omega > 0).all() or not (np.diff(omega) > 0).all():
@@ -171,12 +222,38 @@ def bearing_spectrum(
     waviness: bool = False,
     contact_angle: float | None = None,
 ) -> Axes:
-    """Spectra as by `spectrum`, the lines of the bearing's faults named, and of its waviness if asked for.
+    """Spectra as `spectrum` draws them, with the lines of the bearing's faults, or waviness, named.
 
     A wave at the frequency of a fault goes by the name of the fault.
 
-    speed: of the inner ring, rad/s. harmonics: multiples of the ball passes. contact_angle: of the loaded
-    state, rad. Raises ValueError as `spectrum`, `fault_lines` and `waviness_lines`.
+    Parameters
+    ----------
+    datasets
+        Spectra by label, as `spectrum` takes them.
+    bearing
+        The bearing whose lines are named.
+    speed
+        Of the inner ring, rad/s.
+    ax
+        Axes to draw into; None: those of a new figure.
+    f_max
+        Highest frequency drawn, Hz; None: the whole of the spectra.
+    harmonics
+        Multiples of the ball passes.
+    waviness
+        Name the lines of waviness too.
+    contact_angle
+        Of the loaded state, rad.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        As `spectrum`, `fault_lines` and `waviness_lines`.
     """
     lines = fault_lines(bearing, speed, harmonics=harmonics, contact_angle=contact_angle)
     if waviness:

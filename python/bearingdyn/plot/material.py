@@ -25,7 +25,18 @@ BRIGHTEST = 0.9  # of its range: the end would not show on white
 def isotherms(dma: DMAData, ax: Axes | None = None) -> Axes:
     """Storage modulus, and loss factor below it, of each isotherm against frequency, coloured by temperature.
 
-    The axes given are halved; those of the storage modulus are returned.
+
+    Parameters
+    ----------
+    dma
+        Measured isotherms.
+    ax
+        Axes to draw into, halved; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes of the storage modulus.
     """
     letter = letter_of(dma.mode)
     with style():
@@ -53,11 +64,28 @@ def isotherms(dma: DMAData, ax: Axes | None = None) -> Axes:
 def master(curve: MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None) -> Axes:
     """Storage modulus, and loss factor below it, against reduced frequency, with a Maxwell model.
 
-    Points are coloured by the temperature they were measured at. The band of the fit is shaded, and outside
-    it the model is dashed: there it is an extrapolation. A curve measured in tension is compared with
-    E* = 9 K G*/(3 K + G*) of the model. The axes given are halved; the upper ones are returned.
+    Points are coloured by the temperature they were measured at. The band of the fit is shaded. Outside it
+    the model is an extrapolation, and dashed. A curve measured in tension is compared with
+    E* = 9 K G*/(3 K + G*) of the model.
 
-    Raises ValueError if the model holds at another temperature than the curve.
+    Parameters
+    ----------
+    curve
+        Master curve.
+    maxwell
+        Model at the reference temperature of the curve; None: points only.
+    ax
+        Axes to draw into, halved; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes of the storage modulus.
+
+    Raises
+    ------
+    ValueError
+        If the model holds at another temperature than the curve.
     """
     if maxwell is not None and maxwell.temperature not in (None, curve.T_ref):
         raise ValueError(
@@ -120,7 +148,20 @@ def _draw_model(ax: Axes, lower: Axes, curve: MasterCurve, maxwell: Maxwell) -> 
 
 
 def shifts(curve: MasterCurve, ax: Axes | None = None) -> Axes:
-    """Free shifts log10 a_T of the isotherms, two standard errors each way, with the law fitted to them."""
+    """Free shifts log10 a_T of the isotherms, two standard errors each way, with the law fitted to them.
+
+    Parameters
+    ----------
+    curve
+        Master curve.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+    """
     T = np.array(list(curve.shifts))
     values = np.array([curve.shifts[t] for t in T.tolist()])
     errors = np.array([curve.shift_errors[t] for t in T.tolist()])
@@ -146,11 +187,26 @@ def shifts(curve: MasterCurve, ax: Axes | None = None) -> Axes:
 
 
 def layer_stiffness(layers: Mapping[str, Layer], frequency: ArrayLike, ax: Axes | None = None) -> Axes:
-    """|k| against frequency, radial (solid) and axial (dashed), of layers held outside and moved inside.
+    """Stiffness |k| of layers, held outside and moved inside, against frequency: radial solid, axial dashed.
 
-    frequency: (f,) Hz, positive; a static solution is made at each.
+    Parameters
+    ----------
+    layers
+        Layers by label.
+    frequency
+        (f,) Hz, positive; a static solution is made at each.
+    ax
+        Axes to draw into; None: those of a new figure.
 
-    Raises ValueError for frequencies that are not positive and finite.
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        For frequencies that are not positive and finite.
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
     if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f > 0).all()):

@@ -26,8 +26,22 @@ NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, point
 def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes | None = None) -> Axes:
     """Natural frequencies by bd.campbell over the speed, in rpm; forward, backward and other modes apart.
 
-    orders: of the shaft speed, drawn as rays. Where a mode that swings crosses one stands a ring (straight
-    between the speeds computed), and beside it the speed in rpm where there is room.
+    A ring stands where a mode that swings crosses an order (straight between the speeds computed), and
+    beside it the speed in rpm where there is room.
+
+    Parameters
+    ----------
+    data
+        Result of `bd.campbell`.
+    orders
+        Orders of the shaft speed, drawn as rays.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
     """
     rpm = data["speed"].values * RPM
     order = np.argsort(rpm)
@@ -101,20 +115,37 @@ def _ring(ax: Axes, crossings: Array) -> None:
 
 
 def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis: str = "y") -> Axes:
-    """One mode by bd.mode_shapes, seen from the side: motion along `axis` over z, part by part, at rest in
-    grey.
+    """One mode by `bd.mode_shapes` from the side, part by part: motion along `axis` over z, at rest in grey.
 
-    mode: its place in the dataset, counted from 0 as in `data.isel(mode=mode)`; the title gives it so. The
-    largest motion is drawn a tenth as long as the structure. Phases are turned so that it is real; what a
-    damped mode does a quarter period later is drawn thin.
+    The largest motion is drawn a tenth as long as the structure. Phases are turned so that it is real; the
+    motion of a damped mode a quarter period later is drawn thin.
 
-    Raises ValueError for a mode or an axis that is not there.
+    Parameters
+    ----------
+    data
+        Result of `bd.mode_shapes`.
+    mode
+        Its place in the dataset, counted from 0 as in `data.isel(mode=mode)`; the title gives it so.
+    ax
+        Axes to draw into; None: those of a new figure.
+    axis
+        "x" or "y", drawn upwards.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        For a mode or an axis that is not there.
     """
     if axis not in ("x", "y"):
-        raise ValueError(f"axis is {axis!r}; a side view has 'x' or 'y' upwards")
+        raise ValueError(f"axis is {axis!r}; it must be 'x' or 'y', drawn upwards")
     count = data.sizes["mode"]
     if not 0 <= mode < count:
-        raise ValueError(f"mode is {mode}; there are modes 0 to {count - 1}")
+        raise ValueError(f"mode is {mode}; it must be one of 0 to {count - 1}")
     motion = data["motion"].values[mode]
     up, along = (motion[:, "xyz".index(a)] for a in (axis, "z"))
     z = data["position"].sel(axis="z").values

@@ -48,11 +48,32 @@ def frequency_response(
 ) -> Axes:
     """Magnitude of a response by bd.frequency_response against frequency, several by label, on a log axis.
 
-    With `phase` the axes are halved and the phase stands below; the axes of the magnitude are returned. It is
-    unwrapped: it begins between −225° and 135° and goes on without jumps.
+    With `phase` the axes are halved, and the phase stands below. It is unwrapped: it begins between −225° and
+    135° and goes on without jumps.
 
-    Raises ValueError if a label lacks the output or the input, if they are of different quantities, or for a
-    response over the speed, which `unbalance_response` draws.
+    Parameters
+    ----------
+    datasets
+        Results of `bd.frequency_response` by label.
+    output
+        Channel of the response.
+    input
+        Channel of its cause.
+    ax
+        Axes to draw into; None: those of a new figure.
+    phase
+        Draw the phase too.
+
+    Returns
+    -------
+    Axes
+        The axes of the magnitude.
+
+    Raises
+    ------
+    ValueError
+        If a label lacks the output or the input, if they are of different quantities, or for a response
+        over the speed, which `unbalance_response` draws.
     """
     curves = {}
     for label, data in some(datasets).items():
@@ -94,9 +115,28 @@ def unbalance_response(
     """Magnitude of a response by bd.unbalance_response over the speed in rpm, several by label; log axis.
 
     With `phase` the axes are halved and the phase against the angle of the shaft stands below, unwrapped from
-    the lowest speed that moves; the axes of the magnitude are returned.
+    the lowest speed that moves.
 
-    Raises ValueError if a label lacks the output or is no unbalance response, or if their quantities differ.
+    Parameters
+    ----------
+    datasets
+        Results of `bd.unbalance_response` by label.
+    output
+        Channel of the response.
+    ax
+        Axes to draw into; None: those of a new figure.
+    phase
+        Draw the phase too.
+
+    Returns
+    -------
+    Axes
+        The axes of the magnitude.
+
+    Raises
+    ------
+    ValueError
+        If a label lacks the output or is no unbalance response, or if their quantities differ.
     """
     curves = {}
     for label, data in some(datasets).items():
@@ -139,6 +179,18 @@ def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axe
 
     The mean of the record is what bd.orbit subtracts and keeps as mean_x and mean_y. The paper subtracts the
     static deflection; from that the mean differs by what speed adds to it.
+
+    Parameters
+    ----------
+    datasets
+        Results of `bd.orbit` by label.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
     """
     first = next(iter(some(datasets).values()))
     with style():
@@ -167,10 +219,26 @@ def spectrum(
 ) -> Axes:
     """Amplitude spectra by bd.spectrum or bd.envelope_spectrum, several by label, 120 dB deep at most.
 
-    lines: name -> frequency, Hz, such as {"BPFO": 107.4}: marked and named where they fall inside the figure.
-    f_max: highest frequency drawn, Hz; the whole of the spectra when not given.
+    Parameters
+    ----------
+    datasets
+        Results of `bd.spectrum` or `bd.envelope_spectrum` by label, in one unit.
+    lines
+        Name -> frequency, Hz, such as {"BPFO": 107.4}: marked and named where they fall inside the figure.
+    ax
+        Axes to draw into; None: those of a new figure.
+    f_max
+        Highest frequency drawn, Hz; None: the whole of the spectra.
 
-    Raises ValueError if f_max is not positive or the spectra have different units.
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        If f_max is not positive or the spectra have different units.
     """
     if f_max is not None and not f_max > 0:
         raise ValueError(f"f_max is {f_max}; it must be a positive frequency, in Hz")
@@ -205,13 +273,28 @@ def spectrum(
 def ball_loads(loads: BearingState | ArrayLike, ax: Axes | None = None, *, angle: float = 0.0) -> Axes:
     """Load of each ball, N, around the bearing: azimuth from x (right) towards y (up).
 
-    loads: a bearing of an equilibrium, or (Z,) N. angle: azimuth of the first ball, rad. ax: polar.
+    Parameters
+    ----------
+    loads
+        A bearing of an equilibrium, or (Z,) N.
+    ax
+        Axes to draw into, polar; None: those of a new figure.
+    angle
+        Azimuth of the first ball, rad.
 
-    Raises ValueError if the loads are not a list of finite numbers or the axes are not polar.
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        If the loads are not a list of finite numbers or the axes are not polar.
     """
     Q = np.asarray(loads.loads if isinstance(loads, BearingState) else loads, dtype=np.float64)
     if Q.ndim != 1 or Q.size == 0 or not np.isfinite(Q).all():
-        raise ValueError(f"loads has shape {Q.shape}; give one finite load per ball, N")
+        raise ValueError(f"loads is an array of shape {Q.shape}; it must be one finite load per ball, in N")
     if ax is not None and ax.name != "polar":
         raise ValueError(f"ax has the projection {ax.name!r}; ball loads need projection='polar'")
     from matplotlib.ticker import MaxNLocator

@@ -20,7 +20,22 @@ DEPTH = 1e-6  # of the largest line: 120 dB, as in `spectrum`
 def order_spectrum(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
     """Amplitudes by bd.order_spectrum over orders of the shaft speed, several by label, 120 dB deep at most.
 
-    Raises ValueError for a result that has no orders, or results in different units.
+    Parameters
+    ----------
+    datasets
+        Results of `bd.order_spectrum` by label, in one unit.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        For a result that has no orders, or results in different units.
     """
     for label, data in some(datasets).items():
         if "order" not in data.coords or "time" in data.coords:
@@ -58,11 +73,29 @@ def orders(
 ) -> Axes:
     """Amplitudes of orders by bd.track_orders over the speed in rpm, on a log axis.
 
-    Where the speed does not change, or turns back, they stand over the time. With `phase` the axes are halved
-    and the phases against the angle of the shaft stand below; the axes of the amplitudes are returned.
-    wanted: the orders drawn; all of them when not given.
+    They are drawn over the time if the speed does not change, or turns back. With `phase` the axes are
+    halved, and the phases against the angle of the shaft stand below.
 
-    Raises ValueError for a result without tracked orders, or an order that was not tracked.
+    Parameters
+    ----------
+    data
+        Result of `bd.track_orders`.
+    wanted
+        Orders drawn; None: all of them.
+    ax
+        Axes to draw into; None: those of a new figure.
+    phase
+        Draw the phases too.
+
+    Returns
+    -------
+    Axes
+        The axes of the amplitudes.
+
+    Raises
+    ------
+    ValueError
+        For a result without tracked orders, or an order that was not tracked.
     """
     if "order" not in data.coords or "speed" not in data:
         raise ValueError("this result has no tracked orders; make it with bd.track_orders")
@@ -70,7 +103,7 @@ def orders(
     chosen = known if wanted is None else np.atleast_1d(np.asarray(wanted, dtype=np.float64))
     for order in chosen:
         if not (known == order).any():
-            raise ValueError(f"order {order:g} was not tracked; there are {known.tolist()}")
+            raise ValueError(f"order {order:g} was not tracked; it must be one of {known.tolist()}")
     speed = np.asarray(data["speed"].values) * RPM
     one_way = speed.size > 1 and bool((np.diff(speed) > 0).all() or (np.diff(speed) < 0).all())
     across = speed if one_way else data["time"].values

@@ -20,8 +20,20 @@ if TYPE_CHECKING:
 def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
     """Local Kramers–Kronig ratio G″/((π/2) dG′/d ln ω) against frequency, coloured by temperature.
 
-    Near one for a causal material with a broad spectrum. Points that no passive material could give are
-    crossed; the limit for the median over the isotherms is dotted.
+    The ratio of a causal material with a broad spectrum is near one. Points that no passive material could
+    give are crossed. The dotted line is the limit for the median over the isotherms.
+
+    Parameters
+    ----------
+    dma
+        Measured isotherms.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
     """
     ratio = kk_ratio(dma)
     flagged, _ = suspects(dma)
@@ -53,6 +65,20 @@ def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: A
     """Loss against storage modulus, both logarithmic, coloured by temperature, with a Maxwell model.
 
     Shifts along the frequency do not move it: isotherms that do not form one curve do not superpose.
+
+    Parameters
+    ----------
+    data
+        Isotherms or a master curve.
+    maxwell
+        Model drawn over its band; None: points only.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
     """
     letter = letter_of(data.mode)
     with style():
@@ -74,7 +100,21 @@ def van_gurp_palmen(
 ) -> Axes:
     """Phase angle against the magnitude of the modulus, coloured by temperature, with a Maxwell model.
 
-    Free of frequency, like Cole–Cole, and of the scatter a shift could hide.
+    Like Cole–Cole it is free of frequency, so that no shift can hide scatter.
+
+    Parameters
+    ----------
+    data
+        Isotherms or a master curve.
+    maxwell
+        Model drawn over its band; None: points only.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
     """
     letter = letter_of(data.mode)
     with style():
@@ -97,7 +137,22 @@ def van_gurp_palmen(
 def spectrum_of(materials: Mapping[str, Maxwell], ax: Axes | None = None) -> Axes:
     """Relaxation spectra: strength against time of the branches of each model, as stems.
 
-    Raises ValueError if there is no model, or none has a branch.
+    Parameters
+    ----------
+    materials
+        Models by label.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        If there is no model, or none has a branch.
     """
     if not any(m.G.size for m in some(materials).values()):
         raise ValueError("there is nothing to draw; no model has a branch")

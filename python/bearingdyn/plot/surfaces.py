@@ -35,13 +35,34 @@ def mode_geometry(
     scale: float | None = None,
     parts: Sequence[str] | None = None,
 ) -> Axes:
-    """One mode by bd.modes on the surfaces of the parts, in colours of how far they move; edges at rest thin.
-
-    scale: times which the mode is drawn, None: so that the largest motion is 8 % of the structure's size.
-    parts: names of those drawn; None: all that have a surface. ax: with projection "3d".
+    """One mode by `bd.modes` on the surfaces of the parts, coloured by how far they move; thin edges at rest.
 
     Phases are turned so that the largest motion is real. The colour is the amplitude √(|x|² + |y|² + |z|²).
-    Raises ValueError as bd.mode_surfaces.
+
+    Parameters
+    ----------
+    source
+        What the modes are of; an Application is needed for parts with a surface.
+    found
+        Result of `bd.modes`.
+    mode
+        Its place in `found`, counted from 0.
+    ax
+        Axes to draw into, of projection "3d"; None: those of a new figure.
+    scale
+        Factor on the mode as drawn; None: its largest motion is 8 % of the structure's size.
+    parts
+        Names of the parts drawn; None: all that have a surface.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        As `bd.mode_surfaces`.
     """
     surfaces, factor = _drawn(source, found, mode, scale, parts)
     from matplotlib import colormaps
@@ -94,12 +115,30 @@ def mode_scene(
     scale: float | None = None,
     parts: Sequence[str] | None = None,
 ) -> Any:
-    """The same as a pyvista.MultiBlock, a moved surface for each part: `.plot(scalars="amplitude")` shows it.
+    """What `mode_geometry` draws as a pyvista.MultiBlock; `.plot(scalars="amplitude")` shows it.
 
     Data of the points: displacement (p, 3) and amplitude (p,), over the largest amplitude, and rest (p, 3),
-    m, where they stand. `.save("mode.vtm")` writes it for ParaView. scale, parts: as mode_geometry.
+    m, where they stand. `.save("mode.vtm")` writes it for ParaView.
 
-    Raises ImportError without pyvista, ValueError as bd.mode_surfaces.
+    Parameters
+    ----------
+    source
+        What the modes are of; an Application is needed for parts with a surface.
+    found
+        Result of `bd.modes`.
+    mode
+        Its place in `found`, counted from 0.
+    scale
+        Factor on the mode as drawn; None: its largest motion is 8 % of the structure's size.
+    parts
+        Names of the parts drawn; None: all that have a surface.
+
+    Raises
+    ------
+    ImportError
+        Without pyvista.
+    ValueError
+        As `bd.mode_surfaces`.
     """
     try:
         from importlib import import_module
@@ -131,7 +170,7 @@ def _drawn(
 ) -> tuple[list[MovedSurface], float]:
     """The surfaces with their phases turned, and times what their motion is drawn."""
     if scale is not None and not np.isfinite(scale):
-        raise ValueError(f"scale is {scale}; it must be finite, or None for one that fits the picture")
+        raise ValueError(f"scale is {scale}; it must be finite, or None for a scale that fits the picture")
     surfaces = mode_surfaces(source, found, mode, parts)
     motion = np.concatenate([s.motion for s in surfaces]).ravel()
     largest = motion[int(np.argmax(np.abs(motion)))]

@@ -40,14 +40,31 @@ def time(
 ) -> Axes:
     """Recorded channels of marches by bd.transient over time, several marches by label, sample by sample.
 
-    Channels in one unit share axes; each further unit has its own below, in the order of the channels, and
-    the uppermost axes are returned. Of a trace beyond 20 000 samples the smallest and largest of each stretch
-    are drawn, so that no peak is lost. channels: those drawn; all of them when not given. span: first and
-    last time drawn, s. about_mean: each trace less the mean of its record, so that small motion about a large
-    deflection is seen.
+    Channels in one unit share axes; each further unit has its own below, in the order of the channels. A
+    trace beyond 20 000 samples is drawn by the smallest and largest of each stretch: no peak is lost.
 
-    Raises ValueError for a channel that a march has not recorded, a result without a record, or a span
-    without samples.
+    Parameters
+    ----------
+    datasets
+        Results of `bd.transient` by label.
+    channels
+        Channels drawn; None: all that were recorded.
+    ax
+        Axes to draw into; None: those of a new figure.
+    span
+        First and last time drawn, s.
+    about_mean
+        Draw each trace less the mean of its record, so that small motion about a large deflection is seen.
+
+    Returns
+    -------
+    Axes
+        The uppermost axes.
+
+    Raises
+    ------
+    ValueError
+        For a channel that a march has not recorded, a result without a record, or a span without samples.
     """
     marches = some(datasets)
     for label, data in marches.items():
@@ -73,7 +90,7 @@ def time(
         for name in wanted
     }
     if span is not None and not all(t.size for t, _ in traces.values()):
-        raise ValueError(f"span is {span}; a march has no sample in it, in s")
+        raise ValueError(f"span is {span}, in s; a march has no sample in it, it must hold one of each")
     from matplotlib.ticker import MaxNLocator
 
     title = f"{wanted[0] if len(wanted) == 1 else 'Recorded channels'} over time"

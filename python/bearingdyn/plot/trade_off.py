@@ -16,15 +16,35 @@ if TYPE_CHECKING:
 def trade_off(
     study: xarray.Dataset, x: str, y: str, colour: str | None = None, ax: Axes | None = None
 ) -> Axes:
-    """The cases of a study, two of its columns against each other, a third as colour; returns the axes.
+    """The cases of a study: two of its columns against each other, a third as colour.
 
-    study: as `bearingdyn.study.table` makes it, its columns over "case". Where `bearingdyn.study.pareto` has
-    marked the front, its cases are ringed, and joined where x and y were the only aims. An axis is
-    logarithmic where its values are positive and span a decade or more. Units come from the columns'
-    attribute "units"; ticks are written in a fitting multiple of them, µm for 1e-5 m, while the axes keep the
-    study's own numbers for whatever else is drawn.
+    Where `bearingdyn.study.pareto` has marked the front, its cases are ringed, and joined if x and y were
+    the only aims. An axis is logarithmic if its values are positive and span a decade or more. Units come
+    from the columns' attribute "units". Ticks are written in a fitting multiple of them, µm for 1e-5 m,
+    while the axes keep the study's own numbers for whatever else is drawn.
 
-    Raises ValueError for a column that is not in the study or holds no finite number.
+    Parameters
+    ----------
+    study
+        Result of `bearingdyn.study.table`, its columns over "case".
+    x
+        Column drawn to the right.
+    y
+        Column drawn upwards.
+    colour
+        Column drawn as colour; None: one colour.
+    ax
+        Axes to draw into; None: those of a new figure.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        For a column that is not in the study or holds no finite number.
     """
     values = {name: _column(study, name) for name in (x, y, colour) if name is not None}
     whole = np.all([np.isfinite(column) for column in values.values()], axis=0)

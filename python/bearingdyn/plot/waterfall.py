@@ -18,10 +18,27 @@ DEPTH = 1e-4  # of the largest line of a waterfall: 80 dB
 def waterfall(data: xarray.Dataset, ax: Axes | None = None, *, f_max: float | None = None) -> Axes:
     """Spectra of a record piece by piece, by bd.waterfall: frequency across, speed or time up.
 
-    Upwards stands the speed where it changes with the pieces and does not turn back, else the time. The
-    colour is logarithmic, 80 dB deep. f_max: highest frequency drawn, Hz.
+    The upward axis is the speed if it changes from piece to piece without turning back, else the time. The
+    colour is logarithmic over 80 dB.
 
-    Raises ValueError if f_max is not positive.
+    Parameters
+    ----------
+    data
+        Result of `bd.waterfall`.
+    ax
+        Axes to draw into; None: those of a new figure.
+    f_max
+        Highest frequency drawn, Hz; None: the whole of the spectra.
+
+    Returns
+    -------
+    Axes
+        The axes drawn into.
+
+    Raises
+    ------
+    ValueError
+        If f_max is not positive.
     """
     if f_max is not None and not f_max > 0:
         raise ValueError(f"f_max is {f_max}; it must be a positive frequency, in Hz")

@@ -48,7 +48,13 @@ def stamp(time: datetime | None = None) -> str:
 
 
 def inputs_of(text: str) -> dict[str, str]:
-    """Attributes that say what a result was computed from, and its hash; none where it is not known."""
+    """Attributes that say what a result was computed from, and its hash.
+
+    Parameters
+    ----------
+    text
+        Description by `inputs.text`; empty where it is not known: then there are no attributes.
+    """
     if not text:
         return {}
     return {"inputs": text, "inputs_hash": hashlib.sha256(text.encode()).hexdigest()[:32]}
@@ -59,7 +65,17 @@ def dataset(
     attrs: Mapping[str, Any],
     coords: Mapping[str, tuple[Any, str]] | None = None,
 ) -> xarray.Dataset:
-    """A Dataset whose variables carry units and meaning, and which says what made it, and when (UTC)."""
+    """A Dataset whose variables carry units and meaning, and which says what made it, and when (UTC).
+
+    Parameters
+    ----------
+    variables
+        Name -> (dimensions, values, unit, meaning).
+    attrs
+        Attributes of the whole.
+    coords
+        Name -> (values, unit).
+    """
     import xarray
 
     made_by = ", ".join(f"{name} {number}" for name, number in versions().items())
@@ -80,8 +96,19 @@ def march_dataset(
 ) -> xarray.Dataset:
     """Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
 
-    facts: channels, units, dt, speed (times and speeds), decimate, settle, steps and, where known, inputs and
-    system_hash, as in a run file's header.
+    Parameters
+    ----------
+    facts
+        Channels, units, dt, speed (times and speeds), decimate, settle, steps and, where known, inputs and
+        system_hash, as in a run file's header.
+    rows
+        (samples, channels) recorded.
+    state
+        State at the end, from which a march goes on.
+    report
+        What the core counted.
+    attrs
+        Further attributes.
     """
     origin, count = float(state[0]), int(state[1])
     decimate = int(facts["decimate"])

@@ -23,11 +23,26 @@ PARTS = "part"
 def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
     """Write one Dataset, or several by name (as groups), to one netCDF-4 file.
 
-    The file is written under another name and moved into place, so that a failure leaves no half file.
-    Raises ValueError if there is nothing to save, OSError where the place cannot be written.
+    The file is written under another name and then moved into place: a failure leaves no half-written file.
 
-    A file opens elsewhere too: complex numbers lie there as a last axis of two, real and imaginary part.
+    Other programs can open the file: a complex number is stored along a last axis of two, real and imaginary.
 
+    Parameters
+    ----------
+    results
+        One Dataset, or several by name.
+    path
+        File to write; one that is there is replaced.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to save.
+    OSError
+        Where the place cannot be written.
+
+    Examples
+    --------
     >>> import tempfile
     >>> from pathlib import Path
     >>> import bearingdyn as bd
@@ -59,9 +74,22 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
 def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
     """Read a Dataset written by `save`, or what a run file holds so far, wholly into memory.
 
-    Raises ValueError if the file does not exist, is no netCDF-4 file, or lacks the group.
+    Parameters
+    ----------
+    path
+        File by `save`, or by the `stream` of a march.
+    group
+        Name of the result in a file of several.
 
-    Returns the Dataset, its variables with units, complex numbers complex again.
+    Returns
+    -------
+    xarray.Dataset
+        Its variables carry units; complex numbers are complex again.
+
+    Raises
+    ------
+    ValueError
+        If the file does not exist, is no netCDF-4 file, or lacks the group.
     """
     import xarray
 
@@ -83,7 +111,20 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
 def groups(path: str | os.PathLike[str]) -> list[str]:
     """Names of the groups in a result file.
 
-    Raises ValueError if it cannot be read.
+    Parameters
+    ----------
+    path
+        File by `save`.
+
+    Returns
+    -------
+    list[str]
+        Sorted; empty for a file of one result.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
     """
     import h5netcdf
 

@@ -51,10 +51,24 @@ def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
     value and increment where these say it exactly, else value by value. Places are numbered as nodes from 1
     in the order they first appear; the names of response and reference stand in full in the first text line.
 
-    Returns the names of the places, node 1 first.
+    Parameters
+    ----------
+    data
+        Result of `bd.frequency_response` or `bd.transient`.
+    path
+        File to write.
 
-    Raises ValueError for a Dataset that is neither, or has fewer than two points; OSError where the place
-    cannot be written.
+    Returns
+    -------
+    list[str]
+        The names of the places, node 1 first.
+
+    Raises
+    ------
+    ValueError
+        For a Dataset that is neither, or has fewer than two points.
+    OSError
+        Where the place cannot be written.
     """
     functions = list(_functions(data))
     dim = "time" if "record" in data else "frequency"

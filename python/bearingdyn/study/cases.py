@@ -30,8 +30,23 @@ class Case:
 def grid(**axes: Iterable[Any]) -> list[dict[str, Any]]:
     """Every combination of the values of the axes, the last axis running fastest.
 
-    Raises ValueError for an axis without values, or no axis at all.
+    Parameters
+    ----------
+    **axes
+        Values of each parameter by its name.
 
+    Returns
+    -------
+    list[dict[str, Any]]
+        Parameters of each case by name.
+
+    Raises
+    ------
+    ValueError
+        For an axis without values, or no axis at all.
+
+    Examples
+    --------
     >>> from bearingdyn import study
     >>> study.grid(width=[0.012, 0.016], rubber=["soft", "hard"])[1]
     {'width': 0.012, 'rubber': 'hard'}
@@ -48,19 +63,38 @@ def grid(**axes: Iterable[Any]) -> list[dict[str, Any]]:
 def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, float]]:
     """n cases that fill the box of the ranges evenly: a scrambled Sobol sequence, the same for the same seed.
 
-    A range is (low, high), or (low, high, "log") for one filled evenly in its logarithm. Powers of two fill
-    the box best, and a longer study of the same seed begins with the cases of a shorter one.
+    Powers of two fill the box best. A longer study with the same seed begins with the cases of a shorter one.
 
-    Reference: S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635; scipy.stats.qmc.
+    Parameters
+    ----------
+    n
+        Number of cases, at least 1.
+    seed
+        Seed of the scrambling.
+    **ranges
+        (low, high) of each parameter by its name, or (low, high, "log") for one filled evenly in its
+        logarithm.
 
-    Raises ValueError for n below 1, no range, or a range that is none.
+    Returns
+    -------
+    list[dict[str, Any]]
+        Parameters of each case by name.
+
+    Raises
+    ------
+    ValueError
+        For n below 1, no range, or a range that is none.
+
+    References
+    ----------
+    S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635; scipy.stats.qmc.
     """
     import warnings
 
     from scipy.stats import qmc
 
     if n != int(n) or not n >= 1:
-        raise ValueError(f"sobol needs one case or more, not {n}")
+        raise ValueError(f"n is {n}; it must be one case or more")
     if not ranges:
         raise ValueError("sobol needs at least one range, such as sobol(64, width=(0.012, 0.020))")
     for name, given in ranges.items():
@@ -86,8 +120,11 @@ def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, f
 def checked(cases: Iterable[Parameters]) -> list[dict[str, Any]]:
     """The cases as dicts in one order of names.
 
-    Raises ValueError for no cases, unequal names, a parameter that is not a number, a text or something
-    told by its content, or of another kind than in the first case.
+    Raises
+    ------
+    ValueError
+        For no cases, unequal names, a parameter that is not a number, a text or something told by its
+        content, or of another kind than in the first case.
     """
     found = [{name: _plain(i, name, v) for name, v in case.items()} for i, case in enumerate(cases)]
     if not found:

@@ -72,6 +72,11 @@ def sweep(
     retry
         Compute again what failed before and lies in the store with its error.
 
+    Returns
+    -------
+    list[Case]
+        One for each case, in the order given.
+
     Raises
     ------
     ValueError

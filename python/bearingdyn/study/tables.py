@@ -18,11 +18,25 @@ if TYPE_CHECKING:
 def table(cases: Sequence[Case], units: Mapping[str, str] | None = None) -> xarray.Dataset:
     """A study as a Dataset over "case": parameters as coordinates, values and "error" as variables.
 
-    error is "" where there was none. Values of failed cases are NaN. A parameter that is an object goes by
-    its class and a hash. ``.to_dataframe()`` makes it a table of pandas.
-    units: of parameters and values, by name; they stand beside the axes of `bearingdyn.plot.trade_off`.
+    The error of a case that did not fail is "". Values of failed cases are NaN. A parameter that is an object
+    is shown as its class and a hash. ``.to_dataframe()`` makes it a table of pandas.
 
-    Raises ValueError where there are no cases, a value has the name of a parameter, or a unit none of either.
+    Parameters
+    ----------
+    cases
+        Result of `sweep`.
+    units
+        Units of parameters and values, by name; they stand beside the axes of `bearingdyn.plot.trade_off`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Parameters as coordinates, values and "error" as variables.
+
+    Raises
+    ------
+    ValueError
+        Where there are no cases, a value has the name of a parameter, or a unit none of either.
     """
     if not cases:
         raise ValueError("a table needs at least one case")
@@ -56,7 +70,24 @@ def pareto(
     A case is beaten by one that is as good in every aim and better in one. Cases with NaN in an aim are not
     on the front. Aims may be values or numeric parameters.
 
-    Raises ValueError for no aims, an aim that is not in the table or not a number, or one named twice.
+    Parameters
+    ----------
+    study
+        Result of `table`.
+    minimise
+        Names of the values, or numeric parameters, that should be small.
+    maximise
+        Names of those that should be large.
+
+    Returns
+    -------
+    xarray.Dataset
+        The table with the variable "front".
+
+    Raises
+    ------
+    ValueError
+        For no aims, an aim that is not in the table or not a number, or one named twice.
     """
     aims = [*minimise, *maximise]
     if not aims:
@@ -66,7 +97,7 @@ def pareto(
             numbers = [str(n) for n in study.variables if study[n].dtype.kind in "biuf" and n != "case"]
             raise ValueError(f"aim {name!r} is no number of the table; there are {numbers}")
         if aims.count(name) > 1:
-            raise ValueError(f"aim {name!r} is named twice; it can be minimised or maximised, once")
+            raise ValueError(f"aim {name!r} is named twice; it must be minimised or maximised, and only once")
     sign = np.array([1.0] * len(minimise) + [-1.0] * len(maximise))
     cost = np.stack([np.asarray(study[name].values, dtype=np.float64) for name in aims], axis=1) * sign
     valid = np.isfinite(cost).all(axis=1)

@@ -18,8 +18,7 @@ import scipy.linalg
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Channel, Part
-from bearingdyn.bearing import BallBearing, BearingKernel, LooseFit
-from bearingdyn.bearing.series import RIGID, RacewaySeries
+from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, LooseFit, RacewaySeries
 from bearingdyn.checks import number
 from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.material import Maxwell

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from bearingdyn.application import GRAVITY, GROUND, Application, Load, LooseJoint, Place, Plan
-from bearingdyn.bearing.series import RIGID
+from bearingdyn.bearing import RIGID
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System, factor
 from bearingdyn.system.held import check_held
 from bearingdyn.system.origin import noted

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import scipy.io
+import scipy
 
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
 from bearingdyn.fem.matrix_files.text_tables import existing

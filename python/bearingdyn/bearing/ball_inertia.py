@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.minimum import minimum
+from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.checks import number, require, vector
 from bearingdyn.types import Array
 
@@ -93,13 +93,18 @@ class Running:
         require(
             not flaws, "bearing", self.bearing, "it must have neither waviness, defects nor unequal balls"
         )
-        number("speed", self.speed, "the inner-ring speed in rad/s must be finite")
+        number("speed", self.speed, "it must be a finite speed in rad/s")
         require(self.control in ("outer", "inner"), "control", self.control, 'it must be "outer" or "inner"')
 
     def balls(self, q: ArrayLike, angle: float = 0.0) -> Balls:
         """Loads, contact angles and inertia forces of the balls with the inner ring at q (6,), m and rad.
 
-        Raises ValueError on a wrong shape, ArithmeticError if a ball finds no balance.
+        Raises
+        ------
+        ValueError
+            On a wrong shape.
+        ArithmeticError
+            If a ball finds no balance.
         """
         psi, I, _ = self._grooves(self.bearing.relative(q), angle)
         b = self._balance(I)
@@ -193,7 +198,7 @@ class Running:
     def _grooves(self, z: Array, angle: float) -> tuple[Array, Array, Array]:
         """Azimuths (Z,), inner groove centres from the outer, (2, Z) axial and radial, and rows on z."""
         brg = self.bearing
-        start = brg.angle0 + number("angle", angle, "the cage angle in rad must be finite")
+        start = brg.angle0 + number("angle", angle, "it must be a finite angle in rad")
         psi = start + 2 * math.pi * np.arange(brg.Z) / brg.Z
         c, s, one, no = np.cos(psi), np.sin(psi), np.ones(brg.Z), np.zeros(brg.Z)
         rows = np.array([[no, no, one, c, s], [c, s, no, no, no]])  # (2, 5, Z)

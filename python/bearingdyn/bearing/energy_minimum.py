@@ -25,7 +25,7 @@ _TOLERANCE = 1e-12
 
 
 class NoBalance(ArithmeticError):
-    """No balance was found; z (n,) is where the search ended."""
+    """No equilibrium was found; z (n,) is where the search ended."""
 
     def __init__(self, message: str, z: Array) -> None:
         super().__init__(message)

@@ -22,14 +22,17 @@ class WavinessSpectrum:
     amplitude
         At the reference order, m.
     exponent
-        How fast waves shrink with their order; 1 to 2 is said of measured races, which is unverified.
+        Rate at which waves shrink with their order; 1 to 2 is reported for measured races (unverified).
     order
         Reference order, ≥ 1.
     scatter
         "none": each wave has the amplitude of the law; "rayleigh": it is Rayleigh-distributed with the law as
         its root mean square, as that of a Gaussian surface is.
 
-    Raises ValueError naming the field, its value and what would be right.
+    Raises
+    ------
+    ValueError
+        Naming the field, its value and what would be right.
     """
 
     amplitude: float
@@ -38,7 +41,7 @@ class WavinessSpectrum:
     scatter: Literal["none", "rayleigh"] = "none"
 
     def __post_init__(self) -> None:
-        nonnegative("spectrum.amplitude", self.amplitude, "in m, must be zero or positive, and finite")
+        nonnegative("spectrum.amplitude", self.amplitude, "it must be zero or positive, and finite, in m")
         number("spectrum.exponent", self.exponent)
         whole = isinstance(self.order, int) and self.order >= 1
         require(whole, "spectrum.order", self.order, "it must be a whole number of waves, one or more")
@@ -69,13 +72,16 @@ class WavinessSpectrum:
         orders
             Whole numbers ≥ 1.
         seed
-            ≥ 0. Surfaces that are to differ need seeds that do.
+            ≥ 0. Different surfaces need different seeds.
         direction
             Of a race's waves.
         Z
             Number of balls, for body "ball": each ball gets a surface of its own.
 
-        Raises ValueError naming the field, its value and what would be right.
+        Raises
+        ------
+        ValueError
+            Naming the field, its value and what would be right.
         """
         require(body in BODIES, "body", body, f"it must be one of {BODIES}")
         require(isinstance(seed, int) and seed >= 0, "seed", seed, "it must be a whole number, zero or more")
@@ -99,32 +105,76 @@ class WavinessSpectrum:
 def diameter_scatter(Z: int, deviation: float, seed: int) -> tuple[float, ...]:
     """Deviations of Z ball diameters, m, normal with the standard deviation given: `oversize` of BallBearing.
 
-    Raises ValueError for a Z or seed that is no whole number, or a negative deviation.
+    Parameters
+    ----------
+    Z
+        Number of balls.
+    deviation
+        Standard deviation of a diameter, m.
+    seed
+        Whole number ≥ 0; the same seed gives the same balls.
+
+    Raises
+    ------
+    ValueError
+        For a Z or seed that is no whole number, or a negative deviation.
     """
     require(isinstance(Z, int) and Z >= 1, "Z", Z, "it must be a whole number of balls")
     require(isinstance(seed, int) and seed >= 0, "seed", seed, "it must be a whole number, zero or more")
-    sigma = nonnegative("deviation", deviation, "in m, must be zero or positive, and finite")
+    sigma = nonnegative("deviation", deviation, "it must be zero or positive, and finite, in m")
     return tuple(float(x) for x in sigma * np.random.default_rng(seed).standard_normal(Z))
 
 
 def spall(body: Body, angle: float, length: float, depth: float, *, ball: int = 1) -> Pit:
-    """A flaked patch with a flat bottom, `length` along the rolling direction and `depth` deep, m.
+    """A flaked patch with a flat bottom, `length` along the rolling direction and `depth` deep.
 
-    A ball drops to the bottom if the spall is long enough, 2√(Dw depth) and more; arguments as `Pit`.
+    A ball drops to the bottom if the spall is long enough, 2√(Dw depth) or more.
+
+    Parameters
+    ----------
+    body
+        "inner", "outer" or "ball".
+    angle
+        Of its centre on the body, rad, as in `Pit`.
+    length
+        Along the rolling direction, m.
+    depth
+        Into the surface, m.
+    ball
+        Which ball carries it, from 1.
     """
     return Pit(body, angle, length, depth, ball)
 
 
 def dent(body: Body, angle: float, width: float, particle: float, *, ball: int = 1) -> Pit:
-    """The dent of a hard round particle of the diameter `particle`, `width` across, m; arguments as `Pit`.
+    """The dent of a hard round particle of the diameter `particle`, `width` across.
 
     As deep as the cap of that sphere, (particle − √(particle² − width²))/2. The rim around it is left out.
 
-    Raises ValueError if the dent is wider than the particle.
+    Parameters
+    ----------
+    body
+        "inner", "outer" or "ball".
+    angle
+        Of its centre on the body, rad, as in `Pit`.
+    width
+        Across, m.
+    particle
+        Diameter of the particle, m.
+    ball
+        Which ball carries it, from 1.
+
+    Raises
+    ------
+    ValueError
+        If the dent is wider than the particle.
     """
-    positive("width", width, "in m, must be positive and finite")
+    positive("width", width, "it must be positive and finite, in m")
     require(
-        width <= positive("particle", particle), "width", width, f"exceeds the particle of {particle!r} m"
+        width <= positive("particle", particle),
+        "width",
+        width,
+        f"it must not exceed the particle, {particle!r} m",
     )
     # without the difference of nearly equal numbers
     depth = width**2 / (2 * (particle + math.sqrt(particle**2 - width**2)))

@@ -1,4 +1,4 @@
-"""Answers at rest: who carries the load, at which angle and pressure; the stiffness over a passage."""
+"""Which balls carry the load: forces, contact angles and pressures of all contacts, at rest or at speed."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import STATIC_PRESSURE, BallBearing
+from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.bearing.running import Running
-from bearingdyn.checks import number, positive, require
+from bearingdyn.checks import number, positive
 from bearingdyn.notice import warn
 from bearingdyn.types import Array
 
@@ -74,7 +74,7 @@ def load_distribution(
         On a wrong shape, or where a ball runs beyond the shoulder: the axial load is more than it can hold.
     """
     if shoulder is not None:
-        positive("shoulder", shoulder, "the height of the shoulder in metres must be positive and finite")
+        positive("shoulder", shoulder, "it must be positive and finite, in m")
     if isinstance(bearing, Running):
         brg, b = bearing.bearing, bearing.balls(q, angle)
         psi, Q_i, Q_o, a_i, a_o = b.azimuth, b.Q_i, b.Q_o, b.alpha_i, b.alpha_o
@@ -128,58 +128,3 @@ def _check_shoulder(
     if reach[j] > edge:
         text = f"{where}, the ellipse ends at {math.degrees(reach[j]):.3g}°, {limit} and cuts it"
         warn(text, BearingWarning)
-
-
-@dataclass(frozen=True, eq=False)
-class Passage:
-    """Equilibria under one load while the cage turns by one ball spacing."""
-
-    angle: Array
-    """(n,) cage angle, rad."""
-    displacement: Array
-    """(n, 6) of the inner ring, m and rad."""
-    stiffness: Array
-    """(n, 6, 6) tangent at each equilibrium, N/m, N and N m."""
-
-    @property
-    def mean_displacement(self) -> Array:
-        """(6,) mean over the passage, m and rad."""
-        return np.asarray(self.displacement.mean(axis=0))
-
-    @property
-    def mean_stiffness(self) -> Array:
-        """(6, 6) mean over the passage, N/m, N and N m."""
-        return np.asarray(self.stiffness.mean(axis=0))
-
-
-def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Passage:
-    """Equilibria under a load (6,), N and N m, at n cage angles over one ball spacing.
-
-    The mean of equally spaced values of a periodic function: it converges fast unless balls come and go.
-
-    Raises
-    ------
-    ValueError
-        If n is not a positive whole number, on a wrong load, or for a bearing with waviness, defects or
-        unequal balls, which does not repeat after a ball spacing.
-    ArithmeticError
-        If no equilibrium is found.
-    """
-    require(isinstance(n, int) and n >= 1, "n", n, "it must be a whole number of positions, one or more")
-    brg = bearing.bearing if isinstance(bearing, Running) else bearing
-    smooth = not (brg.waviness or brg.defects or brg.oversize)
-    require(smooth, "bearing", brg, "it must have neither waviness, defects nor unequal balls")
-    angle = 2 * math.pi / brg.Z * np.arange(n) / n
-    q = np.array([bearing.displacement(load, float(a)) for a in angle])
-    K = np.array([bearing.stiffness(place, float(a)) for place, a in zip(q, angle, strict=True)])
-    return Passage(angle, q, K)
-
-
-def without_spin(stiffness: ArrayLike) -> Array:
-    """(…, 5, 5) over (x, y, z, θx, θy) of a stiffness (…, 6, 6): a bearing holds no rotation about its axis.
-
-    Raises ValueError if the last two axes are not 6 long.
-    """
-    K = np.asarray(stiffness, dtype=np.float64)
-    require(K.shape[-2:] == (6, 6), "stiffness", K.shape, "the last two axes must be 6 long")
-    return K[..., :5, :5]

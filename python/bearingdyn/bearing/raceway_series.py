@@ -1,4 +1,4 @@
-"""Which Fourier coefficients in the azimuth a race's groove-centre displacement has."""
+"""The Fourier series, in the azimuth, of the displacement of a race's groove centre: which terms it has."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ class RacewaySeries:
     Each term is (axial, order, sine): coefficient k multiplies cos or sin (sine 0 or 1) of order·ψ in the
     radial (axial 0) or axial (1) displacement of the groove centre, m.
 
-    Raises ValueError for a term named twice, an order below 0, a sine of order 0, or axial before radial.
+    Raises
+    ------
+    ValueError
+        For a term named twice, an order below 0, a sine of order 0, or axial before radial.
     """
 
     terms: tuple[tuple[int, int, int], ...]
@@ -27,12 +30,14 @@ class RacewaySeries:
         terms = tuple((int(a), int(n), int(s)) for a, n, s in self.terms)
         object.__setattr__(self, "terms", terms)
         if len(set(terms)) != len(terms) or not terms:
-            raise ValueError(f"terms is {terms}; name each coefficient once, at least one")
+            raise ValueError(f"terms is {terms}; it must name at least one coefficient, and each once")
         for axial, order, sine in terms:
             if axial not in (0, 1) or sine not in (0, 1) or order < 0 or (order == 0 and sine):
-                raise ValueError(f"terms has {(axial, order, sine)}; give (0 or 1, order >= 0, 0 or 1)")
+                raise ValueError(
+                    f"terms has {(axial, order, sine)}; each must be (0 or 1, order >= 0, 0 or 1)"
+                )
         if any(a[0] > b[0] for a, b in pairwise(terms)):
-            raise ValueError("terms must list all radial coefficients before the axial ones")
+            raise ValueError(f"terms is {terms}; it must list all radial coefficients before the axial ones")
 
     @classmethod
     def up_to(cls, order: int) -> RacewaySeries:
@@ -44,7 +49,13 @@ class RacewaySeries:
         return len(self.terms)
 
     def index(self, axial: int, order: int, sine: int) -> int:
-        """Place of a term. Raises ValueError when it is not there."""
+        """Place of a term.
+
+        Raises
+        ------
+        ValueError
+            When it is not there.
+        """
         return self.terms.index((axial, order, sine))
 
     @property

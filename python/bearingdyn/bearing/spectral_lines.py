@@ -24,7 +24,10 @@ def fault_lines(
     contact_angle
         Of the loaded state, rad; None: nominal.
 
-    Raises ValueError if harmonics is no positive whole number or speed is not finite.
+    Raises
+    ------
+    ValueError
+        If harmonics is no positive whole number or speed is not finite.
 
     Examples
     --------
@@ -72,7 +75,10 @@ def waviness_lines(
     contact_angle
         Of the loaded state, rad; None: nominal.
 
-    Raises ValueError for an odd order of a ball, or a value that is no positive whole number.
+    Raises
+    ------
+    ValueError
+        For an odd order of a ball, or a value that is no positive whole number.
     """
     _whole("multiples", multiples)
     for n in ball_orders:

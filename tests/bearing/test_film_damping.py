@@ -1,0 +1,45 @@
+"""Damping from a table whose first value is not zero, in contacts that only the film presses."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from bearingdyn.bearing import BallBearing, TabulatedDamping
+
+FILM, C = 2e-6, (10.0, 30.0)  # m, N s/m
+TABLE = (2e-6, 8e-6)  # m
+
+
+# z of the inner ring, m, and the c that the table gives there: held below and above, linear between
+@pytest.mark.parametrize("z", [-1e-6, 1e-6, 12e-6, 40e-6])
+def test_ends_of_a_damping_table_are_held(z: float) -> None:
+    """Axially, F = Z sin α (κ(δ + film)^{3/2} + c(δ) δ̇) with c below the table its first value."""
+    free = 0.4
+    ball = BallBearing(
+        8, 12.303e-3, 52e-3, 0.52, 0.53, contact_angle=free, film=FILM, damping=TabulatedDamping(TABLE, C)
+    )
+    A = 0.05 * ball.Dw  # (fi + fo − 1) Dw
+    length = math.hypot(A * math.sin(free) + z, A * math.cos(free))
+    sine, delta = (A * math.sin(free) + z) / length, length - A
+    c = float(np.interp(delta, TABLE, C))
+    q, velocity = np.array([0, 0, z, 0, 0, 0]), np.array([0, 0, 1e-3, 0, 0, 0])
+    press = ball.kappa * (delta + FILM) ** 1.5
+    assert press > 0  # the film carries, below zero indentation too
+    # round-off of δ, a difference of millimetres, in its film
+    assert ball.force(q)[2] == pytest.approx(8 * sine * press, rel=1e-8)
+    assert ball.force(q, velocity=velocity)[2] == pytest.approx(
+        8 * sine * (press + c * sine * 1e-3), rel=1e-8
+    )
+    assert ball.damping_matrix(q)[2, 2] == pytest.approx(8 * c * sine**2, rel=1e-8)
+
+
+def test_the_table_covers_all_three_cases() -> None:
+    """The z above lie below the table (one with δ < 0), within it and beyond it."""
+    deltas = [
+        math.hypot(0.05 * 12.303e-3 * math.sin(0.4) + z, 0.05 * 12.303e-3 * math.cos(0.4)) - 0.05 * 12.303e-3
+        for z in (-1e-6, 1e-6, 12e-6, 40e-6)
+    ]
+    assert -FILM < deltas[0] < 0 < deltas[1] < TABLE[0] < deltas[2] < TABLE[1] < deltas[3]
