@@ -1,4 +1,4 @@
-"""Warnings that point at the line of the user's program, from however deep inside the package."""
+"""Every class of warning, and `warn`, which points at the user's line from however deep inside."""
 
 from __future__ import annotations
 
@@ -6,6 +6,14 @@ import sys
 import warnings
 
 _OWN = __name__.partition(".")[0]
+
+
+class Notice(UserWarning):
+    """A number rests on something that the program doubts; the base of all warnings of this package.
+
+    Every class below says in its docstring what it doubts, and in the paragraphs "When:" and "Remedy:" when
+    it is raised and what helps. The documentation's table is made from them.
+    """
 
 
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
