@@ -94,7 +94,7 @@ lint: $(VENV)/package $(VENV)/lint $(COMPILERS:%=$(BUILD)/%/build.ninja)
 # The slow tests, and VERIFICATION.md anew: case, source, expected, computed, error.
 verify: $(VENV)/package $(VENV)/test $(VENV)/docs
 	$(PY) -m pytest -m slow
-	$(PY) tests/verification.py
+	PYTHONPATH=examples:benchmarks $(PY) tests/verification.py
 
 # The documentation, in build/docs; a warning is an error. The notebooks are run where they changed: a minute or two.
 .PHONY: docs

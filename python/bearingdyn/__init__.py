@@ -16,102 +16,126 @@ SUBPACKAGES = {
     "plot": "plot",
     "study": "study",
 }
-# the stub beside this file says the same to type checkers
+# public names by what they are about, with the room of each; the stub beside this file says the same
 PUBLIC = {
-    "analysis": (
-        "Equilibrium",
-        "ball_channels",
-        "campbell",
-        "contact_statistics",
-        "dissipation",
-        "energy_shares",
-        "envelope_spectrum",
-        "equilibrium",
-        "frequency_response",
-        "mode_shapes",
-        "mode_surfaces",
-        "modes",
-        "orbit",
-        "order_spectrum",
-        "radiated_power",
-        "shaft_angle",
-        "spectrum",
-        "track_orders",
-        "transient",
-        "transients",
-        "unbalance_response",
-        "waterfall",
-    ),
-    "application": ("Application",),
-    "bearing": (
-        "BallBearing",
-        "ConstantDamping",
-        "LoadDamping",
-        "LooseFit",
-        "Pit",
-        "TabulatedDamping",
-        "Waviness",
-    ),
-    "cms": ("FullModel", "Superelement", "reduction_error"),
-    "core": ("Interrupted", "Scheme", "SolverError"),
-    "fem": (
-        "MM_TONNE",
-        "SolidMesh",
-        "Units",
-        "block_with_bore",
-        "box_mesh",
-        "o_ring_mesh",
-        "read_matrices",
-        "read_mesh",
-        "read_nodes",
-        "ring_mesh",
-    ),
-    "material": (
-        "STEEL",
-        "DMAData",
-        "Elastic",
-        "FractionalZener",
-        "MasterCurve",
-        "Maxwell",
-        "PowerLaw",
-        "TabulatedModulus",
-        "fit_maxwell",
-        "master_curve",
-        "read_dma",
-        "sample_dma_path",
-    ),
-    "parts": (
-        "Cylinder",
-        "Disc",
-        "EndFace",
-        "Feet",
-        "FlexibleBearing",
-        "FlexibleRing",
-        "Groove",
-        "Housing",
-        "Imported",
-        "Layer",
-        "Line",
-        "MeshNodes",
-        "NodeSet",
-        "Patch",
-        "Region",
-        "Revolved",
-        "RigidBody",
-        "RigidSurface",
-        "Ring",
-        "Section",
-        "Shaft",
-        "Solid",
-        "Where",
-        "at_radius",
-        "damping_sample",
-        "quadrilaterals",
-    ),
-    "results": ("open_result", "save"),
+    "material": {
+        "material": (
+            "STEEL",
+            "DMAData",
+            "Elastic",
+            "FractionalZener",
+            "MasterCurve",
+            "Maxwell",
+            "PowerLaw",
+            "TabulatedModulus",
+            "fit_maxwell",
+            "master_curve",
+            "read_dma",
+            "sample_dma_path",
+        ),
+    },
+    "bearing": {
+        "bearing": (
+            "BallBearing",
+            "ConstantDamping",
+            "LoadDamping",
+            "LooseFit",
+            "Pit",
+            "TabulatedDamping",
+            "Waviness",
+        ),
+    },
+    "part": {
+        "parts": (
+            "Cylinder",
+            "Disc",
+            "EndFace",
+            "Feet",
+            "FlexibleBearing",
+            "FlexibleRing",
+            "Groove",
+            "Housing",
+            "Imported",
+            "Layer",
+            "Line",
+            "MeshNodes",
+            "NodeSet",
+            "Patch",
+            "Region",
+            "Revolved",
+            "RigidBody",
+            "RigidSurface",
+            "Ring",
+            "Section",
+            "Shaft",
+            "Solid",
+            "Where",
+            "at_radius",
+            "damping_sample",
+            "quadrilaterals",
+        ),
+        "fem": (
+            "MM_TONNE",
+            "SolidMesh",
+            "Units",
+            "block_with_bore",
+            "box_mesh",
+            "o_ring_mesh",
+            "read_matrices",
+            "read_mesh",
+            "read_nodes",
+            "ring_mesh",
+        ),
+        "cms": (
+            "FullModel",
+            "Superelement",
+            "reduction_error",
+        ),
+    },
+    "application": {
+        "application": ("Application",),
+    },
+    "analysis": {
+        "analysis": (
+            "Equilibrium",
+            "ball_channels",
+            "campbell",
+            "contact_statistics",
+            "dissipation",
+            "energy_shares",
+            "envelope_spectrum",
+            "equilibrium",
+            "frequency_response",
+            "mode_shapes",
+            "mode_surfaces",
+            "modes",
+            "orbit",
+            "order_spectrum",
+            "radiated_power",
+            "shaft_angle",
+            "spectrum",
+            "track_orders",
+            "transient",
+            "transients",
+            "unbalance_response",
+            "waterfall",
+        ),
+        "core": (
+            "Interrupted",
+            "Scheme",
+            "SolverError",
+        ),
+    },
+    "result": {
+        "results": (
+            "open_result",
+            "save",
+        ),
+    },
 }
+_HOME = {name: home for homes in PUBLIC.values() for home, names in homes.items() for name in names}
 
-__all__ = sorted(name for names in PUBLIC.values() for name in names)
+__all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> object:
@@ -120,11 +144,10 @@ def __getattr__(name: str) -> object:
         return import_module(f"{__name__}.results").versions()["bearingdyn"]
     if name in SUBPACKAGES:
         return import_module(f"{__name__}.{SUBPACKAGES[name]}")
-    for home, names in PUBLIC.items():
-        if name in names:
-            value: object = getattr(import_module(f"{__name__}.{home}"), name)
-            globals()[name] = value
-            return value
+    if name in _HOME:
+        value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+        globals()[name] = value
+        return value
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import pytest
 
 # Rooms in this style throughout; docs/conf.py lists those that are not yet.
-ROOMS = ("bearing", "bearing.catalogue", "plot", "results", "study")
+ROOMS = ("application", "bearing", "bearing.catalogue", "plot", "results", "study")
 SECTION = re.compile(r"^(\w+)\n(-{3,})\n(.*?)(?=^\w+\n-{3,}\n|\Z)", re.MULTILINE | re.DOTALL)
 # NumPy's own order (numpydoc's format, sections)
 ORDER = [
