@@ -38,10 +38,14 @@ class Packable(Protocol):
 
 
 class SolverError(RuntimeError):
-    """A march that could not go on: `report` says where, `partial` holds what was computed up to then.
+    """A march that could not go on.
 
-    report: a Report, with step, t in s and residual relative to the largest bearing force.
-    partial: a Dataset as `transient` returns it.
+    Attributes
+    ----------
+    report
+        Where it stopped: a Report, with step, t in s and residual relative to the largest bearing force.
+    partial
+        What was computed up to then, a Dataset as `transient` returns it.
     """
 
     def __init__(self, message: str, report: Report, partial: object = None) -> None:
@@ -54,9 +58,12 @@ class SolverError(RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """A march ended by the user. `partial` holds what was computed up to then.
+    """A march ended by the user.
 
-    partial: a Dataset as `transient` returns it; `resume=` goes on from there.
+    Attributes
+    ----------
+    partial
+        What was computed up to then, a Dataset as `transient` returns it; `resume=` goes on from there.
     """
 
     def __init__(self, message: str, partial: object = None) -> None:
@@ -188,7 +195,27 @@ class Report:
 def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Array, tau: Array) -> Array:
     """Deviatoric stress (nt, m) of a material point under a strain rate (nt, m) linear between samples.
 
-    dt in s, one number or (nt − 1,); G in Pa and tau in s, (N,). From e = 0 and S = 0; paper eq (9).
+    It starts from e = 0 and S = 0.
+
+    Parameters
+    ----------
+    rate
+        Strain rate, 1/s.
+    dt
+        Between samples, s: one number or (nt − 1,).
+    G0, eta0
+        Relaxed modulus, Pa, and viscosity of the dashpot, Pa s.
+    G, tau
+        Moduli (N,), Pa, and relaxation times (N,), s, of the branches.
+
+    Returns
+    -------
+    numpy.ndarray
+        Deviatoric stress, Pa.
+
+    References
+    ----------
+    Paper, eq (9) without its volumetric part.
     """
     steps = np.broadcast_to(np.asarray(dt, dtype=np.float64), (max(len(rate) - 1, 0),))
     return _core.maxwell_stress(rate, steps, G0, eta0, G, tau)
@@ -203,7 +230,24 @@ def bearing_force(
     shaft_angle: float = 0.0,
     shaft_speed: float = 0.0,
 ) -> tuple[Array, Array, Array, Array]:
-    """Force g (n,) = +∇V on a bearing's coefficients, tangents dg/dz, dg/dż (n, n), ball loads (Z,) in N."""
+    """Force of a bearing on its raceways' coefficients, its tangents, and the load of each ball.
+
+    Parameters
+    ----------
+    kernel
+        The bearing, as `BearingKernel` packs it.
+    z, z_rate
+        Coefficients (n,) of the raceways, inner minus outer, m and rad, and their rates.
+    angle, cage_speed
+        Azimuth of the first ball, rad, and speed of the cage, rad/s.
+    shaft_angle, shaft_speed
+        Of the shaft, rad and rad/s, by which waves and pits turn.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        g (n,) = +∇V, dg/dz (n, n), dg/dż (n, n), and the loads of the balls (Z,), N.
+    """
     return _core.bearing_force(kernel.packed(), z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)
 
 
@@ -217,9 +261,25 @@ def march(
     start: bool = False,
     progress: Progress | None = None,
 ) -> tuple[Array, Array, Report]:
-    """March a state; returns the record (rows, channels), the new state and the report, whatever its status.
+    """March a state, and say how far it came, whatever the status.
 
-    With `start`, the acceleration is first made to satisfy the equation of motion.
+    Parameters
+    ----------
+    model, state
+        What is marched, and from where.
+    stepping
+        Step, speed, audit and scheme.
+    steps, decimate
+        How many steps, and every how many a row is kept.
+    start
+        Whether the acceleration is first made to satisfy the equation of motion.
+    progress
+        Told of the steps done and of all there are, every 0.05 s.
+
+    Returns
+    -------
+    tuple
+        The record (rows, channels), the new state, and the report.
     """
     record, new_state, report = model.march(
         state=state, steps=steps, decimate=decimate, scheme=stepping.packed(), start=start, progress=progress
@@ -238,20 +298,59 @@ def harmonic(
     speed: float = 0.0,
     progress: Progress | None = None,
 ) -> Complex:
-    """Complex response (frequencies, outputs, inputs) to unit forces; paper eq (20).
+    """Complex response (frequencies, outputs, inputs) to unit forces.
 
-    omega (f,) rad/s; modulus (f, layers) G*(ω) in Pa; bearing_K, bearing_C (coefficients, coefficients)
-    linearised bearings; force (inputs, n); row (outputs, n). Raises ArithmeticError where the dynamic
-    stiffness is singular.
+    Parameters
+    ----------
+    model
+        What responds.
+    omega
+        Angular frequencies (f,), rad/s.
+    modulus
+        G*(ω) of the layers (f, layers), Pa.
+    bearing_K, bearing_C
+        Linearised bearings (coefficients, coefficients), N/m and N s/m.
+    force, row
+        Forces (inputs, n) and rows of the outputs (outputs, n).
+    speed
+        Of the shaft, rad/s, for the gyroscopic and circulatory forces.
+    progress
+        Told of the frequencies done and of all there are.
+
+    Returns
+    -------
+    numpy.ndarray
+        The response, m/N and its like.
+
+    Raises
+    ------
+    ArithmeticError
+        Where the dynamic stiffness is singular.
+
+    References
+    ----------
+    Paper, eq (20).
     """
     return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress)
 
 
 def time_of(model: Model, state: Array) -> float:
-    """Time of a state, s."""
+    """Time of a state, s.
+
+    Parameters
+    ----------
+    model, state
+        The state, and the model it is of.
+    """
     return float(model.unpack(state)[0])
 
 
 def energies(model: Model, state: Array) -> dict[str, float]:
-    """What the audit of a march integrated, J: the names of ENERGIES."""
+    """What the audit of a march integrated, J, by the names of ENERGIES.
+
+    Parameters
+    ----------
+    model, state
+        The state, and the model it is of.
+    """
     return model.unpack(state)[4]
