@@ -36,12 +36,12 @@ class Grid:
     @cached_property
     def X(self) -> Array:
         """(nx,)."""
-        return (np.arange(self.nx) - self.origin) * self.dx
+        return np.asarray((np.arange(self.nx) - self.origin) * self.dx)
 
     @cached_property
     def Y(self) -> Array:
         """(ny,)."""
-        return np.arange(self.ny) * self.dy
+        return np.asarray(np.arange(self.ny) * self.dy)
 
     @cached_property
     def weights(self) -> Array:

@@ -27,11 +27,11 @@ class Flooding:
 
     @classmethod
     def around(cls, groups: Groups, Hc: float, gap: float | None) -> Flooding:
-        """Oil up to a gap of `gap` hc in front and 0.4 `gap` at the sides; None for the customary extent.
+        """Oil up to a gap of `gap` hc in front, 0.4 `gap` beside; None for the customary extent.
 
-        Customary are distances such as X = −4.5 and |Y| = 3 for M = 20, L = 10, D = 1 (C. H. Venner, A. A.
-        Lubrecht 2000), gaps of 19 and 7.5 hc. A long ellipse has the wedge of a line contact, which needs 75 hc
-        for half a per cent, and an isoviscous film carries load far from the centre.
+        Customary are distances such as X = −4.5 and |Y| = 3 for M = 20, L = 10, D = 1 (C. H. Venner,
+        A. A. Lubrecht 2000), gaps of 19 and 7.5 hc. A long ellipse has the wedge of a line contact, which needs
+        75 hc for half a per cent, and an isoviscous film carries load far from the centre.
         """
         if gap is None:
             isoviscous = math.exp(-groups.L / 2)
@@ -50,7 +50,7 @@ class Flooding:
     @staticmethod
     def pitch(error: float, Hc: float) -> float:
         """Δx/a at which a central film Hc errs by about `error`, relative."""
-        return math.sqrt(error / _ERROR) * Hc ** (2 / 3)
+        return float(math.sqrt(error / _ERROR) * Hc ** (2 / 3))
 
     def grid(self, groups: Groups, pitch: float, levels: int) -> Grid:
         """Coarsest grid whose refinement, `levels` times over, has the pitch Δx/a or less."""

@@ -13,7 +13,7 @@ _TOLERANCE = 1e-9
 
 
 def quasi_static(equations: Reynolds, state: State) -> tuple[float, float]:
-    """K0 over Hertz' stiffness and C0, with c = C0 (F/δ_dry)(a/um): the two first terms in iΩ of `stiffness`."""
+    """K0 over Hertz' stiffness and C0 of c = C0 (F/δ_dry)(a/um): the first terms in iΩ of `stiffness`."""
     grid, oil, H = equations.grid, equations.oil, state.H
     system = Linearised(equations, state.P, H, state.free)
     weights = grid.weights[state.free]

@@ -1,4 +1,4 @@
-"""The linearised equations: GMRES with the full deflection, preconditioned by a sparse LU of the local one."""
+"""The linearised equations: GMRES with the full deflection, preconditioned by an LU of the local one."""
 
 from __future__ import annotations
 
@@ -113,5 +113,9 @@ def gmres(
 
 def factor(matrix: Any) -> Any:
     """LU of a sparse matrix."""
-    return scipy.sparse.linalg.splu(scipy.sparse.csc_array(matrix), permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0, options=dict(SymmetricMode=True))
+    return scipy.sparse.linalg.splu(
+        scipy.sparse.csc_array(matrix),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options=dict(SymmetricMode=True),
+    )

@@ -26,7 +26,7 @@ class NegativeFilm(ArithmeticError):
 
 @dataclass(frozen=True)
 class State:
-    """One solution: pressures P and films H (ny, nx), H0 the film without elastic deflection at the centre."""
+    """One solution: pressures P and films H (ny, nx), H0 the centre's film without its deflection."""
 
     P: Array
     H: Array

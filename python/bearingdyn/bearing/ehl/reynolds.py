@@ -1,7 +1,7 @@
 """Reynolds' equation on the grid: residual and the sparse parts of its Jacobian.
 
-−∂X(ε ∂X P) − k² ∂Y(ε ∂Y P) + ∂X(ρ̄H) + ∂T(ρ̄H) = 0 with ε = ρ̄H³/(η̄λ), by balances over cells: the fluidity of a
-face is the logarithmic mean of its nodes (exact for ε exponential in P), the wedge is third-order upwind-biased.
+−∂X(ε ∂X P) − k² ∂Y(ε ∂Y P) + ∂X(ρ̄H) + ∂T(ρ̄H) = 0 with ε = ρ̄H³/(η̄λ), by balances over cells: the fluidity
+of a face is the logarithmic mean of its nodes (exact for ε exponential in P), the wedge third-order upwind.
 """
 
 from __future__ import annotations
@@ -77,14 +77,16 @@ class Reynolds:
 
     def _fluidity(self, P: Array, H: Array) -> Array:
         rho, _ = self.oil.relative_density(P)
-        return np.log(rho) + 3 * np.log(H) - self.oil.log_viscosity(P)[0] - np.log(self.groups.speed)
+        log_eta, _ = self.oil.log_viscosity(P)
+        return np.asarray(np.log(rho) + 3 * np.log(H) - log_eta - np.log(self.groups.speed))
 
     def jacobian(self, P: Array, H: Array, rate: complex = 0.0) -> tuple[Any, Any]:
-        """Sparse ∂f/∂P at fixed H and ∂f/∂H at fixed P, (n, n) each, of f + rate·ρ̄H; rows of inner nodes hold."""
+        """Sparse ∂f/∂P and ∂f/∂H of f + rate·ρ̄H, the other fixed, (n, n); rows of inner nodes hold."""
         rho, rho_P = self.oil.relative_density(P)
         eps, eps_P = self._fluidity(P, H), rho_P / rho - self.oil.log_viscosity(P)[1]
         dx, dy, k2 = self.grid.dx, self.grid.dy, self.groups.k**2
-        by_P, by_H = {}, {}
+        by_P: dict[int, Any] = {}
+        by_H: dict[int, Any] = {}
         size, n = P.shape, P.size
 
         def add(of: dict[int, Any], offset: int, where: Any, values: Any) -> None:

@@ -22,7 +22,6 @@ from bearingdyn.bearing.lubricant import dimensionless_film
 
 _M, _L, _D = (0.5, 2e4), (0.0, 30.0), (0.01, 1.0)  # solved without failure in between
 _COARSEST = 17  # nodes of a square grid
-_LARGEST = 400_000  # nodes of one half of the contact
 _LEVELS = 3  # refinements from the grid that starts at Hertz to the finest
 
 # Two grids of pitch 2Δ and Δ differ by (2^p − 1) errors of the finer. The order p seen is 1.7 to 2.3.
@@ -59,7 +58,7 @@ class Level:
         K0, C0 = harmonic.quasi_static(self.equations, self.state)
         return Figures(
             Hc=groups.moes * float(H[0, self.equations.grid.origin]),
-            Hmin=groups.moes * least(H),
+            Hmin=groups.moes * _least(H),
             H0=groups.moes * (self.state.H0 + groups.approach),
             K0=K0,
             C0=C0,
@@ -92,7 +91,7 @@ class Steady:
 
     @cached_property
     def error(self) -> Figures:
-        """Estimated relative errors of `figures` by the grid, from the two finest grids; NaN with one grid only."""
+        """Relative errors of `figures` by the grid, estimated from the two finest; NaN with one grid only."""
         if len(self.levels) < 2:
             return Figures(*(5 * [math.nan]))
         part = _EXTRAPOLATED if self.extrapolated else _FINER
@@ -166,11 +165,9 @@ class Steady:
         asked = np.asarray(Omega, dtype=complex)
         require(bool(np.isfinite(asked).all()), "Omega", Omega, "frequencies ωa/um must be finite")
         used = self.levels[-2:] if self.extrapolated else self.levels[-1:]
-        found = [
-            np.array([harmonic.stiffness(v.equations, v.state, x) for x in asked.ravel()]) for v in used
-        ]
+        found = [np.array([harmonic.stiffness(v.equations, v.state, x) for x in asked.ravel()]) for v in used]
         best = found[-1] + (found[-1] - found[0]) / 3  # nothing is added where there is one level
-        return best.reshape(asked.shape)
+        return np.asarray(best.reshape(asked.shape))
 
 
 def steady(
@@ -185,6 +182,7 @@ def steady(
     accuracy: float = 0.01,
     alpha: float = 2.2e-8,
     eta0: float = 0.04,
+    nodes: int = 400_000,
 ) -> Steady:
     """Steady film of a smooth, isothermal, fully flooded point contact with a Newtonian oil.
 
@@ -199,17 +197,19 @@ def steady(
     viscosity, density
         Laws of the oil over pressure.
     grid
-        "auto" sizes the grid by `accuracy` and extrapolates from it and one of twice its pitch. An odd number n
+        "auto" sizes the grid by `accuracy` and extrapolates from it and one of twice its pitch. A number n
         takes n × n nodes on the whole contact and extrapolates nothing.
     inlet
-        Gap at which the oil begins, over hc, with 0.4 of it at the sides. Left out, the extent is the customary
-        one; oil that reaches further (100) adds some 1 % to the film of a circular contact, lowers 1 − K0 by no
-        more than .01 and adds 3 to 7 % to C0 at M = 100 to 20.
+        Gap at which the oil begins, over hc, with 0.4 of it at the sides. Left out, the extent is that of
+        published solutions. Oil that reaches further (100) adds some 1 % to the film of a circular contact and,
+        at M = 20 to 100, 7 to 3 % to C0, and takes .01 to 0 from K0; a narrow contact hardly changes.
     accuracy
         Relative error of the central film that "auto" aims at.
     alpha, eta0
-        Pressure–viscosity coefficient, 1/Pa, and viscosity, Pa s: Roelands' and Dowson and Higginson's laws know
-        absolute pressures. Without effect for "barus" with "incompressible".
+        Pressure–viscosity coefficient, 1/Pa, and viscosity, Pa s: Roelands' and Dowson and Higginson's laws
+        know absolute pressures. Without effect for "barus" with "incompressible".
+    nodes
+        Most nodes on one half of the contact; a finer grid is refused.
 
     Returns
     -------
@@ -224,7 +224,8 @@ def steady(
 
     References
     ----------
-    C. H. Venner, A. A. Lubrecht, Multilevel Methods in Lubrication, 2000; H. Moes, Lubrication and Beyond, 2000.
+    C. H. Venner, A. A. Lubrecht, Multilevel Methods in Lubrication, 2000.
+    H. Moes, Lubrication and Beyond, 2000.
     """
     _within("M", positive("M", M), _M)
     _within("L", nonnegative("L", L), _L)
@@ -246,15 +247,17 @@ def steady(
 
     if grid == "auto":
         first = flooding.grid(groups, flooding.pitch(aim / 2, compressed), _LEVELS)
-        nodes = first.nx * first.ny * 4**_LEVELS
-        remedy = f"needs some {nodes:.1e} nodes, more than {_LARGEST:.0e}: ask for less or take a smaller M"
-        require(nodes <= _LARGEST, "accuracy", accuracy, remedy)
+        needed = first.nx * first.ny * 4**_LEVELS
+        remedy = f"needs some {needed:.1e} nodes here: ask for less, or allow more than nodes = {nodes}"
+        require(needed <= nodes, "accuracy", accuracy, remedy)
         levels = _cascade(groups, oil, first, _LEVELS, compressed)
         return Steady(groups.M, groups.L, groups.D, levels, extrapolated=True)
     n = int(grid) if isinstance(grid, int | np.integer) else 0
-    remedy = 'give "auto", or nodes along each side such as 65 or 129: one more than a multiple of four, 17 or more'
+    remedy = 'give "auto", or nodes along a side such as 65 or 129: a multiple of four and one, 17 or more'
     require(n >= _COARSEST and n % 4 == 1, "grid", grid, remedy)
-    require(n * (n + 1) // 2 <= _LARGEST, "grid", grid, "is too large: give 893 or less")
+    require(
+        n * (n + 1) // 2 <= nodes, "grid", grid, f"is too large for nodes = {nodes}: give less or allow more"
+    )
     halvings = 1
     while (n - 1) % 2 ** (halvings + 2) == 0 and (n - 1) // 2 ** (halvings + 1) >= _COARSEST - 1:
         halvings += 1
@@ -317,7 +320,7 @@ def _whole(half: Array) -> Array:
     return np.concatenate([half[:0:-1], half])
 
 
-def least(H: Array) -> float:
+def _least(H: Array) -> float:
     """Least of a surface (ny, nx), by the parabolas through its least node and its neighbours."""
     j, i = np.unravel_index(int(H.argmin()), H.shape)
     best = float(H[j, i])
