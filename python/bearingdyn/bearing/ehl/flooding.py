@@ -27,11 +27,11 @@ class Flooding:
 
     @classmethod
     def around(cls, groups: Groups, Hc: float, gap: float | None) -> Flooding:
-        """Oil up to a gap of `gap` hc in front, 0.4 `gap` beside; None for the customary extent.
+        """Oil up to a gap of `gap` hc in front, 0.4 `gap` beside; None: the customary extent.
 
         Customary are distances such as X = −4.5 and |Y| = 3 for M = 20, L = 10, D = 1 (C. H. Venner,
-        A. A. Lubrecht 2000), gaps of 19 and 7.5 hc. A long ellipse has the wedge of a line contact, which needs
-        75 hc for half a per cent, and an isoviscous film carries load far from the centre.
+        A. A. Lubrecht 2000), gaps of 19 and 7.5 hc. A long ellipse has the wedge of a line contact, which
+        needs 75 hc for half a per cent, and an isoviscous film carries load far from the centre.
         """
         if gap is None:
             isoviscous = math.exp(-groups.L / 2)

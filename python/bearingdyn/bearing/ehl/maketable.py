@@ -1,7 +1,7 @@
 """Make the table of lubricated contacts: python -m bearingdyn.bearing.ehl.maketable table.csv
 
-A line is written as soon as its point is solved, and what is there is not solved again: stopped, it is started
-anew with the same command. Several processes may share the work: `1/4 table.csv` is the first of four.
+A line is written as soon as its point is solved, and what is there is not solved again: stopped, it is
+started anew with the same command. Several processes may share the work: `1/4 table.csv` is the first of four.
 """
 
 from __future__ import annotations

@@ -201,8 +201,8 @@ def steady(
         takes n × n nodes on the whole contact and extrapolates nothing.
     inlet
         Gap at which the oil begins, over hc, with 0.4 of it at the sides. Left out, the extent is that of
-        published solutions. Oil that reaches further (100) adds some 1 % to the film of a circular contact and,
-        at M = 20 to 100, 7 to 3 % to C0, and takes .01 to 0 from K0; a narrow contact hardly changes.
+        published solutions. Oil that reaches further (100) adds some 1 % to the film of a circular contact
+        and, at M = 20 to 100, 7 to 3 % to C0, and takes .01 to 0 from K0; a narrow contact hardly changes.
     accuracy
         Relative error of the central film that "auto" aims at.
     alpha, eta0
