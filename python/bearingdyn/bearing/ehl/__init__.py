@@ -4,8 +4,8 @@ Reynolds' equation of an isothermal, fully flooded, Newtonian film between elast
 elliptic, rolling along the minor axis (D = Rx/Ry ≤ 1).
 """
 
-from bearingdyn.bearing.ehl.march import March, march
-from bearingdyn.bearing.ehl.solve import LubricatedContact, solve
-from bearingdyn.bearing.ehl.steady import Figures, Level, Steady, steady
+from bearingdyn.bearing.ehl.film import Figures, Level, Steady, steady
+from bearingdyn.bearing.ehl.motion import March, march
+from bearingdyn.bearing.ehl.physical import LubricatedContact, solve
 
 __all__ = ["Figures", "Level", "LubricatedContact", "March", "Steady", "march", "solve", "steady"]

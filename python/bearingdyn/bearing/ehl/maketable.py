@@ -1,7 +1,7 @@
 """Make the table of lubricated contacts: python -m bearingdyn.bearing.ehl.maketable table.csv
 
 A line is written as soon as its point is solved, and what is there is not solved again: stopped, it is
-started anew with the same command. Several processes may share the work: `1/4 table.csv` is the first of four.
+started anew with the same command. Several processes may share the work: `1/4 table.csv` is one of four.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from bearingdyn.bearing.ehl import harmonic
-from bearingdyn.bearing.ehl.steady import Figures, Steady, steady
+from bearingdyn.bearing.ehl.film import Figures, Steady, steady
 
 M = (2.0, 7.0, 27.0, 100.0, 370.0, 1360.0, 5000.0)
 L = (0.0, 2.5, 5.0, 10.0, 15.0, 20.0)

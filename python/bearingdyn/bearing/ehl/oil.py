@@ -26,10 +26,15 @@ class Oil:
     density: Density
     piezo: float
     """α p_h."""
-    pressure: float
-    """p_h, Pa."""
+    alpha: float
+    """α, 1/Pa."""
     eta0: float
     """η0, Pa s."""
+
+    @property
+    def pressure(self) -> float:
+        """p_h, Pa."""
+        return self.piezo / self.alpha
 
     def log_viscosity(self, P: Array) -> tuple[Array, Array]:
         """ln η/η0 and its derivative by P."""

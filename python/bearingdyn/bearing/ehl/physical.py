@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.bearing.checks import positive, require
 from bearingdyn.bearing.ehl import harmonic
+from bearingdyn.bearing.ehl.film import Steady, steady
 from bearingdyn.bearing.ehl.groups import scales
 from bearingdyn.bearing.ehl.oil import Array, Density, Viscosity
-from bearingdyn.bearing.ehl.steady import Steady, steady
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.lubricant import Lubricant
 

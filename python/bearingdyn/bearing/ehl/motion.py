@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.bearing.checks import number, positive, require
+from bearingdyn.bearing.ehl.film import Steady
 from bearingdyn.bearing.ehl.groups import LOAD
 from bearingdyn.bearing.ehl.newton import Border, newton
 from bearingdyn.bearing.ehl.oil import Array
-from bearingdyn.bearing.ehl.steady import Steady
 
 
 @dataclass(frozen=True, repr=False)
@@ -44,7 +44,10 @@ def march(
     load: Callable[[float], float] | float = 1.0,
     velocity: float = 0.0,
 ) -> March:
-    """Follow the film from a steady state, on its finest grid, by the second-order backward formula (BDF2).
+    """Follow the film from a steady state, on its finest grid.
+
+    Both are of second order: the backward formula (BDF2) for the film, which forgets, and the average
+    acceleration for the ball, which takes no energy from it.
 
     Parameters
     ----------
@@ -95,14 +98,16 @@ def march(
     grid, groups = equations.grid, equations.groups
     dry = groups.approach
 
-    # δ = −H0; the ball: mass·1.5 δ″/dry = load − ∫∫P/LOAD
+    # δ = −H0; the ball: inertia·δ″ = load − ∫∫P/LOAD
     inertia = (
         0.0 if mass is None else 1.5 * positive("mass", mass, "must be positive, over K_Hertz (a/um)²") / dry
     )
     q0 = q1 = equations.carried(state.P, state.H)
-    d0, v0 = -state.H0, v * dry
-    d1, v1 = d0 - h * v0, v0
     P0 = P1 = state.P
+    d0, v0 = -state.H0, v * dry
+    d1, a0 = d0 - h * v0, 0.0
+    if mass is not None:
+        a0 = (number("load(0)", load(0.0) if callable(load) else load) - 1) / inertia
     rest = d0
     rows = [(d0 / dry, v, 1.0, float(state.H[0, grid.origin]), float(state.H.min()), 0)]
     for k in range(1, steps + 1):
@@ -112,10 +117,8 @@ def march(
             border = Border(load=-target, mass=1.0, force=0.0)
         else:
             pushed = number(f"load({T:g})", load(T) if callable(load) else load)
-            known = (3 * (d1 - 4 * d0) / (2 * h) + v1 - 4 * v0) / (2 * h)
-            border = Border(
-                load=LOAD * (pushed - inertia * known), mass=-LOAD * inertia * 9 / (4 * h * h), force=1.0
-            )
+            known = 4 / h**2 * (d0 + h * v0) + a0
+            border = Border(load=LOAD * (pushed + inertia * known), mass=-LOAD * inertia * 4 / h**2)
         history = (q1 - 4 * q0) / (2 * h)
         guess = np.maximum(2 * P0 - P1, 0.0)
         H0 = state.H0 + (state.H0 + d1)
@@ -130,7 +133,12 @@ def march(
         q1, q0 = q0, equations.carried(state.P, state.H)
         P1, P0 = P0, state.P
         d2, d1, d0 = d1, d0, -state.H0
-        v1, v0 = v0, (3 * d0 - 4 * d1 + d2) / (2 * h)
+        if mass is None:
+            v0 = (3 * d0 - 4 * d1 + d2) / (2 * h)
+        else:
+            a1 = a0
+            a0 = 4 / h**2 * (d0 - d1 - h * v0) - a1
+            v0 += h / 2 * (a1 + a0)
         force = float((grid.weights * state.P).sum()) / LOAD
         rows.append(
             (d0 / dry, v0 / dry, force, float(state.H[0, grid.origin]), float(state.H.min()), state.steps)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,6 +23,7 @@ from bearingdyn.bearing.lubricant import dimensionless_film
 
 _M, _L, _D = (0.5, 2e4), (0.0, 30.0), (0.01, 1.0)  # solved without failure in between
 _COARSEST = 17  # nodes of a square grid
+_THICK = (4.0, 2.0, 1.0, 0.5, 0.2)  # L on the way from Hertz to an oil that is thin under pressure
 _LEVELS = 3  # refinements from the grid that starts at Hertz to the finest
 
 # Two grids of pitch 2Δ and Δ differ by (2^p − 1) errors of the finer. The order p seen is 1.7 to 2.3.
@@ -238,8 +240,7 @@ def steady(
     if inlet is not None:
         require(positive("inlet", inlet) >= 5, "inlet", inlet, "the oil must begin at a gap of 5 hc or more")
     groups = Groups(float(M), float(L), float(D))
-    piezo = groups.piezo
-    oil = Oil(viscosity, density, piezo, piezo / positive("alpha", alpha), positive("eta0", eta0))
+    oil = Oil(viscosity, density, groups.piezo, positive("alpha", alpha), positive("eta0", eta0))
     require(eta0 > 6.4e-5, "eta0", eta0, "must exceed 6.31e-5 Pa s for Roelands' law (give Pa s, not mPa s)")
     expected = dimensionless_film(M, max(L, 1e-6), D) / groups.moes
     flooding = Flooding.around(groups, expected, inlet)
@@ -280,25 +281,46 @@ def _cascade(groups: Groups, oil: Oil, first: Grid, halvings: int, Hc: float) ->
     grid = first
     for k in range(halvings + 1):
         equations = Reynolds(grid, groups, oil)
-        if levels:
-            before = levels[-1]
-            P = prolonged(before.state.P)
-            centre = float(before.state.H[0, before.equations.grid.origin])
-        else:
-            P = np.sqrt(np.maximum(0, 1 - grid.X**2 - grid.Y[:, None] ** 2))
-            centre = Hc
-        P *= LOAD / float((grid.weights * P).sum())
-        H = equations.film(P, 0.0)
-        # Hertz' film is flat up to the grid's error: the least of it must not be negative
-        H0 = max(centre - float(H[0, grid.origin]), 0.3 * centre - float(H.min()))
         try:
-            levels.append(Level(equations, newton(equations, P, H0, Border())))
+            if levels:
+                before = levels[-1]
+                centre = float(before.state.H[0, before.equations.grid.origin])
+                P, H0 = _laid(equations, prolonged(before.state.P), centre)
+                state = newton(equations, P, H0, Border())
+            else:
+                state = _begun(equations, Hc)
+            levels.append(Level(equations, state))
         except ArithmeticError:
             if k == halvings:
                 raise
             levels = []  # too coarse: the next grid begins anew
         grid = grid.refined()
     return tuple(levels)
+
+
+def _begun(equations: Reynolds, Hc: float) -> State:
+    """The solution from Hertz' pressure; if need be by way of oils that pressure thickens more."""
+    grid, groups = equations.grid, equations.groups
+    P, H0 = _laid(equations, np.sqrt(np.maximum(0, 1 - grid.X**2 - grid.Y[:, None] ** 2)), Hc)
+    try:
+        return newton(equations, P, H0, Border())
+    except ArithmeticError:
+        if _THICK[0] <= groups.L:
+            raise
+    for L in _THICK:
+        if groups.L < L:
+            thicker = dataclasses.replace(groups, L=L)
+            oil = dataclasses.replace(equations.oil, piezo=thicker.piezo)
+            state = newton(dataclasses.replace(equations, groups=thicker, oil=oil), P, H0, Border())
+            P, H0 = state.P, state.H0
+    return newton(equations, P, H0, Border())
+
+
+def _laid(equations: Reynolds, P: Array, Hc: float) -> tuple[Array, float]:
+    """The pressures scaled to the load, and H0 so that the film at the centre is Hc, or positive all over."""
+    P = P * (LOAD / float((equations.grid.weights * P).sum()))
+    H = equations.film(P, 0.0)
+    return P, max(Hc - float(H[0, equations.grid.origin]), 0.3 * Hc - float(H.min()))
 
 
 def prolonged(P: Array) -> Array:
