@@ -51,8 +51,8 @@ def mourier() -> list[tuple[str, float, float, float]]:
     beyond = (found.X > 0.5) & (found.X < 1.1)
     # 2 % asked; digitised from a figure: 208 to 209 and 172 to 175
     return [
-        ("film at the centre (nm)", 208.5, found.Hc * unit, 0.02),
-        ("least film of the centre line (nm)", 173.5, float(line[beyond].min()), 0.02),
+        ("Mourier: film at the centre (nm)", 208.5, found.Hc * unit, 0.02),
+        ("Mourier: least film of the centre line (nm)", 173.5, float(line[beyond].min()), 0.02),
     ]
 
 
