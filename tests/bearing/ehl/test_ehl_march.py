@@ -107,7 +107,7 @@ def test_nothing_moves_without_a_push(contact: ehl.Steady) -> None:
         ({"dt": 0.1, "steps": 1}, "approach, mass = "),
         ({"dt": 0.1, "steps": 1, "mass": -1.0}, "mass = -1"),
         ({"dt": 0.1, "steps": 1, "approach": lambda T: 1.0}, r"approach\(0\) = 1.0"),
-        ({"dt": 0.1, "steps": 1, "mass": 1.0, "load": lambda T: math.nan}, r"load\(0.1\) = nan"),
+        ({"dt": 0.1, "steps": 1, "mass": 1.0, "load": lambda T: math.nan}, r"load\(0\) = nan"),
     ],
 )
 def test_bad_input_is_named(contact: ehl.Steady, options: dict, message: str) -> None:

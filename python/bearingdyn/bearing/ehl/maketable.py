@@ -63,8 +63,8 @@ def main(arguments: list[str]) -> int:
     lines = path.read_text(encoding="utf-8").splitlines()[1:]
     done = {tuple(float(x) for x in line.split(",")[:3]) for line in lines}
     todo = [x for x in itertools.product(M, L, D) if x not in done]
-    # the middle of the table first, what bearings need, and the heaviest loads last, which cost most
-    todo.sort(key=lambda x: (x[0] == M[-1], abs(np.log(x[0] / 370)) + abs(x[1] - 10) / 5))
+    # the middle of the table first, what bearings need, and what costs most last
+    todo.sort(key=lambda x: (x[0] == M[-1] or x[1] == 0, abs(np.log(x[0] / 370)) + abs(x[1] - 10) / 5))
     for where in todo[part - 1 :: parts]:
         line = ",".join(f"{x:.7g}" for x in (*where, *point(*where)))
         with path.open("a", encoding="utf-8") as file:
