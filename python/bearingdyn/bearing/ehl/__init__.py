@@ -7,5 +7,17 @@ elliptic, rolling along the minor axis (D = Rx/Ry ≤ 1).
 from bearingdyn.bearing.ehl.film import Figures, Level, Steady, steady
 from bearingdyn.bearing.ehl.motion import March, march
 from bearingdyn.bearing.ehl.physical import LubricatedContact, solve
+from bearingdyn.bearing.ehl.table import Lookup, lookup
 
-__all__ = ["Figures", "Level", "LubricatedContact", "March", "Steady", "march", "solve", "steady"]
+__all__ = [
+    "Figures",
+    "Level",
+    "Lookup",
+    "LubricatedContact",
+    "March",
+    "Steady",
+    "lookup",
+    "march",
+    "solve",
+    "steady",
+]

@@ -15,12 +15,11 @@ import numpy as np
 
 from bearingdyn.bearing.ehl import harmonic
 from bearingdyn.bearing.ehl.film import Figures, Steady, steady
+from bearingdyn.bearing.ehl.table import OMEGA
 
 M = (2.0, 3.7, 7.0, 14.0, 27.0, 52.0, 100.0, 192.0, 370.0, 709.0, 1360.0, 2607.0, 5000.0)
 L = (0.0, 2.5, 5.0, 10.0, 15.0, 20.0)
-D = (0.02, 0.07, 0.25, 1.0)
-OMEGA = (0.25, 0.5, 1.0, 2.0, 4.0)
-"""Frequencies ωa/um at which the shape of K and C is kept."""
+D = (0.02, 0.037, 0.07, 0.13, 0.25, 0.5, 1.0)
 ACCURACY = (0.02, 0.05)
 """What `steady` is asked for; the second where the first needs too many nodes."""
 _NODES = 100_000
@@ -64,7 +63,7 @@ def main(arguments: list[str]) -> int:
     done = {tuple(float(x) for x in line.split(",")[:3]) for line in lines}
     todo = [x for x in itertools.product(M, L, D) if x not in done]
     # the middle of the table first, what bearings need, and what costs most last
-    todo.sort(key=lambda x: (x[0] > 1500 or x[1] == 0, abs(np.log(x[0] / 370)) + abs(x[1] - 10) / 5))
+    todo.sort(key=lambda x: (x[0] > 1300 or x[1] == 0, abs(np.log(x[0] / 370)) + abs(x[1] - 10) / 5))
     for where in todo[part - 1 :: parts]:
         line = ",".join(f"{x:.7g}" for x in (*where, *point(*where)))
         with path.open("a", encoding="utf-8") as file:
