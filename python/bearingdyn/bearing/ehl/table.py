@@ -62,7 +62,8 @@ def lookup(M: float, L: float, D: float) -> Lookup:
     Notes
     -----
     Against a dozen new solutions between its nodes: from M = 100 on .5 % of Hc, 1 % of H0, 3 % of Hmin, .002
-    of K0, 2.5 % of C0. Below, where a narrow contact begins to be lost, 3 % of the films, .13 of K0, 14 % of C0.
+    of K0, 2.5 % of C0. Below, where a narrow contact begins to be lost, 3 % of the films, .13 of K0 and 14 %
+    of C0.
     """
     splines = _splines()
     place = (
