@@ -101,7 +101,11 @@ def test_a_part_that_holds_itself_takes_no_gravity():
     class Held:
         def superelement(self) -> Superelement:
             return Superelement(
-                np.eye(6), np.zeros((6, 6)), 1e6 * np.eye(6), np.zeros((6, 6)), {"a": np.arange(6)}
+                M=np.eye(6),
+                C=np.zeros((6, 6)),
+                G=np.zeros((6, 6)),
+                K=1e6 * np.eye(6),
+                interfaces={"a": np.arange(6)},
             )
 
     app = Application()

@@ -280,14 +280,13 @@ C_WORDS = {
 # Tables that name words of C for a meaning that C does not know: (module, list of words): the reason.
 MAY_NAME_WORDS = {
     (
-        "bearingdyn.system.arrays",
+        "bearingdyn.application.place",
         "CHANNEL_KINDS",
     ): "what the place of a structure can be asked for, and its units",
     (
         "bearingdyn.analysis.harmonic",
         "CHANNEL_KINDS",
     ): "the units of a response",
-    ("bearingdyn.plot.motion", "CHANNEL_KINDS"): "the units of a response",
     ("bearingdyn.bearing.ball_bearing", "PIT_KINDS"): "how far each body turns as the balls go round",
     ("bearingdyn.runfile", "REPORT_FIELDS"): "what files of version 1 hold, which will not change",
 }

@@ -137,10 +137,10 @@ def test_a_file_of_version_1_is_read_and_not_gone_on_from(start: bd.Equilibrium,
         block += chunk.rows.tobytes() + chunk.state.tobytes()
         text += struct.pack("<QI", len(block), zlib.crc32(block)) + block
     old.write_bytes(text)
-    known, changes = bd.load(old), ("made_at",)
+    known, changes = bd.open_result(old), ("made_at",)
     assert same(new, known)
     assert {k: v for k, v in known.attrs.items() if k not in changes} == {
-        k: v for k, v in bd.load(path).attrs.items() if k not in changes
+        k: v for k, v in bd.open_result(path).attrs.items() if k not in changes
     }
     with pytest.raises(ValueError, match="earlier version"):
         bd.transient(start, stream=old, **ARGUMENTS)

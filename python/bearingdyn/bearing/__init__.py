@@ -1,5 +1,8 @@
 """Ball bearings: internal geometry, Hertz contact, lubricant film, and the force law between the rings."""
 
+from importlib import import_module
+from types import ModuleType
+
 from bearingdyn.bearing import catalogue
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Balls, Running
@@ -72,3 +75,10 @@ __all__ = [
     "waviness_lines",
     "without_spin",
 ]
+
+
+def __getattr__(name: str) -> ModuleType:
+    """The lubricated contact's room, loaded when it is first asked for."""
+    if name != "ehl":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return import_module("bearingdyn.bearing.ehl")

@@ -156,7 +156,10 @@ class BearingKernel:
     def packed(self) -> dict[str, object]:
         """The fields by name, as the core parses them (bd_bearing_data).
 
-        Raises ValueError unless all radial coefficients come before the axial ones.
+        Raises
+        ------
+        ValueError
+            Unless all radial coefficients come before the axial ones.
         """
         axial = np.asarray(self.axial)
         ordered = not np.any(np.diff(axial) < 0)

@@ -9,9 +9,11 @@ from bearingdyn.material.identification import fit_dense, fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.reading import ReadingError, read_dma, sample_dma_path
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
+from bearingdyn.material.superposition import LIMIT as KK_LIMIT
 from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, master_curve, suspects
 
 __all__ = [
+    "KK_LIMIT",
     "STEEL",
     "WLF",
     "Arrhenius",

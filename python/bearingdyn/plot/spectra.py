@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.material import DMAData, MasterCurve, Maxwell, kk_ratio, suspects
-from bearingdyn.material.superposition import LIMIT
+from bearingdyn.material import KK_LIMIT, DMAData, MasterCurve, Maxwell, kk_ratio, suspects
 from bearingdyn.plot.frame import COLOURS, colour, finish, new_axes, some, style
 from bearingdyn.plot.material import letter_of, temperature_bar, temperature_colour, temperature_scale
 from bearingdyn.types import Array, Complex
@@ -45,7 +44,7 @@ def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
             look = temperature_colour(scale, float(dma.temperature[index].mean()))
             ax.loglog(dma.frequency[index], ratio[index], color=look, marker=".", markersize=3, linewidth=0.8)
         ax.axhline(1.0, color="0.5", linewidth=0.7, zorder=0)
-        ax.axhline(LIMIT, color="0.5", linewidth=0.7, linestyle=":", zorder=0)
+        ax.axhline(KK_LIMIT, color="0.5", linewidth=0.7, linestyle=":", zorder=0)
         if flagged.any():
             crossed = flagged & np.isfinite(ratio)
             ax.plot(

@@ -1,0 +1,88 @@
+"""The lubricated contact in motion (reference page §4.3)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from bearingdyn.bearing import ehl
+from bearingdyn.bearing.ehl.groups import scales
+from bearingdyn.bearing.hertz import PointContact
+from verified.row import INDEPENDENT, Row, rows
+
+_BARUS = {"viscosity": "barus", "density": "incompressible"}
+CASES: dict[str, tuple[tuple[float, ...], dict[str, Any]]] = {
+    "10 isoviscous": ((10, 0), {}),
+    "20 rd": ((20, 10), {}),
+    "20 bi": ((20, 10), _BARUS),
+    "100 rd": ((100, 10), {}),
+    "100 bi": ((100, 10), _BARUS),
+    "500 rd, D = .03": ((500, 10, 0.03), {}),
+}
+TABLE = {
+    "10 isoviscous": (1.611, 1.182, 0.831, 0.277),
+    "20 rd": (4.171, 2.824, 0.941, 0.194),
+    "20 bi": (4.803, 2.960, 0.955, 0.202),
+    "100 rd": (3.844, 2.058, 0.979, 0.0695),
+    "100 bi": (4.618, 2.206, 0.983, 0.0757),
+    "500 rd, D = .03": (4.916, 4.157, 0.974, 0.1205),
+}
+"""Hc, Hmin, K0, C0."""
+OMEGA = {
+    0.02: (0.0695, 0.979),
+    0.5: (0.0600, 0.988),
+    1.0: (0.0382, 1.006),
+    2.0: (0.0059, 1.013),
+    4.0: (0.0140, 1.012),
+    8.0: (0.0082, 1.024),
+}
+"""C and K over Hertz at ωa/um, M = 100, L = 10."""
+
+
+def mourier() -> list[tuple[str, float, float, float]]:
+    """Plateau and exit of the film simulated by Mourier et al. (2006), nm: case, theirs, here, tolerance."""
+    contact, F = PointContact(12.5e-3, 12.5e-3, 55e9), 15.0
+    M, L, D = scales(contact, F, 0.18, 0.25, 2.2e-8)
+    found = ehl.steady(M, L, D, alpha=2.2e-8, eta0=0.25)
+    unit = 12.5e-3 * math.sqrt(0.25 * 0.18 / (110e9 * 12.5e-3)) * 1e9
+    line = found.film[len(found.Y) // 2] * unit
+    beyond = (found.X > 0.5) & (found.X < 1.1)
+    # 2 % asked; digitised from a figure: 208 to 209 and 172 to 175
+    return [
+        ("Mourier: film at the centre (nm)", 208.5, found.Hc * unit, 0.02),
+        ("Mourier: least film of the centre line (nm)", 173.5, float(line[beyond].min()), 0.02),
+    ]
+
+
+def lubricated_contact() -> list[Row]:
+    """Film, stiffness and damping of the steady contact, over frequency, and a published film."""
+    found: list[Row] = []
+    names = ("Hc", "Hmin", "K0", "C0")
+    tolerances = (5e-3, 5e-3, 1e-3, 2e-2)
+    for case, (arguments, laws) in CASES.items():
+        figures = ehl.steady(*arguments, **laws).figures._asdict()
+        for name, tolerance, expected in zip(names, tolerances, TABLE[case], strict=True):
+            label = f"lubricated contact, M = {case}: {name}"
+            found += rows(
+                "§4.3",
+                tolerance,
+                "what was asked; the reference errs 0.2 %",
+                INDEPENDENT,
+                [(label, expected, figures[name])],
+            )
+    answers = ehl.steady(100, 10).stiffness(np.array(list(OMEGA)))
+    for k, (Omega, (C, K)) in zip(answers, OMEGA.items(), strict=True):
+        label = f"lubricated contact, M = 100, L = 10, ωa/um = {Omega:g}"
+        found += rows("§4.3", 3e-3, "what was asked", INDEPENDENT, [(f"{label}: K", K, k.real)])
+        found += rows("§4.3", 2e-2, "what was asked", INDEPENDENT, [(f"{label}: C", C, 1.5 * k.imag / Omega)])
+    for label, expected, computed, tolerance in mourier():
+        found += rows(
+            "§4.3",
+            tolerance,
+            "digitised from a figure",
+            "N. Mourier et al. 2006",
+            [(label, expected, computed)],
+        )
+    return found
