@@ -14,7 +14,6 @@ from bearingdyn import core, inputs, runfile
 from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.application import Application
-from bearingdyn.bearing import ConstantDamping
 from bearingdyn.checks import number, numbers, positive, require, whole
 from bearingdyn.results import inputs_of
 from bearingdyn.system import System
@@ -310,21 +309,11 @@ class March:
             )
             raise core.SolverError(
                 f"{report.text} in step {report.steps + 1} at t = {report.t:.6g} s (residual "
-                f"{report.residual:.3g} of the largest bearing force{worst}); {self._remedy()}",
+                f"{report.residual:.3g} of the largest bearing force{worst}); try a smaller dt",
                 report,
                 result,
             )
         return result
-
-    def _remedy(self) -> str:
-        """What helps where a march cannot go on."""
-        dampings = [getattr(term.bearing, "damping", None) for term in self.system.bearings]
-        if any(isinstance(d, ConstantDamping) and d.c > 0 for d in dampings):
-            return (
-                "a constant contact damping makes the force jump where a ball loses contact: give "
-                "damping=bd.LoadDamping(...) or bd.TabulatedDamping(...), or try a smaller dt"
-            )
-        return "try a smaller dt"
 
 
 def system_hash(system: System) -> str:
