@@ -46,7 +46,9 @@ def transient(
         found first. System: the march starts at zero.
     speed
         Speed of the shaft, rad/s: one number, or (times in s, speeds), linear between and held outside. Cage,
-        unbalance and gyroscopic forces follow it; rotating loads also push along with its rate.
+        unbalance and gyroscopic forces follow it; rotating loads also push along with its rate. The shaft's
+        angle is ∫Ω dt from t = 0, where it is 0, wherever the times lie. The scheme is of second order in dt
+        through knots on and between steps.
     dt, steps
         Time step in s, and how many steps are recorded.
     record
