@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import core, inputs, runfile
 from bearingdyn.analysis.channels import channel_of
+from bearingdyn.analysis.coarseness import warn_if_coarse
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.application import Application
 from bearingdyn.checks import number, numbers, positive, require, whole
@@ -99,7 +100,9 @@ class March:
             if isinstance(source, Equilibrium)
             else (source, np.zeros(source.n))
         )
-        system.check_speed(float(np.abs(drive[1]).max()) if isinstance(drive, tuple) else drive)
+        fastest = float(np.abs(drive[1]).max()) if isinstance(drive, tuple) else drive
+        system.check_speed(fastest)
+        warn_if_coarse(system, fastest, dt)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
         return cls(system=system, modal=modal, T=T, x=x, stepping=stepping, **counts)
