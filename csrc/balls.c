@@ -8,6 +8,7 @@
 
 #include "bearing.h"
 #include "ehl.h"
+#include "grazing.h"
 #include "lanes.h"
 
 /* Rows of a tangent worked on at once: as many as a rigid ring has. */
@@ -119,6 +120,8 @@ void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work
     indent(bearing, work, z, z_rate, cage_speed);
     BD_NAMED(bd_ehl_contacts)(&data->contact, bearing->balls, work->delta, work->rate, work->force,
                               work->stiffness, work->damping);
+    if (work->holds)
+        bd_held_contacts(&data->contact, data->n_balls, work);
 
     for (int first = 0; first < coefs; first += BD_WIDTH) {
         const double *phi = work->phi_ball + first;

@@ -13,7 +13,7 @@ static const double no_ball = -1e6;
 size_t bd_bearing_work_size(const bd_bearing_data *data)
 {
     size_t balls = (size_t)BD_PADDED(data->n_balls), coefs = (size_t)BD_PADDED(data->n_coefs);
-    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + 16 * balls;
+    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + 19 * balls;
 }
 
 size_t bd_bearing_constants(const bd_bearing_data *data)
@@ -59,11 +59,12 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
     size_t balls = (size_t)bearing->balls, coefs = (size_t)bearing->coefs;
     size_t by_ball = (size_t)bearing->data.n_coefs * balls;
     double **parts[] = {
-        &work->sine_a,    &work->cosine_a,     &work->delta,        &work->rate,
-        &work->turn,      &work->tilt,         &work->turning,      &work->force,
-        &work->stiffness, &work->damping,      &work->shift_X,      &work->shift_Y,
-        &work->shift,     &work->shift_X_rate, &work->shift_Y_rate, &work->shift_rate};
+        &work->sine_a,     &work->cosine_a, &work->delta,  &work->rate,         &work->turn,
+        &work->tilt,       &work->turning,  &work->force,  &work->stiffness,    &work->damping,
+        &work->shift_X,    &work->shift_Y,  &work->shift,  &work->shift_X_rate, &work->shift_Y_rate,
+        &work->shift_rate, &work->place,    &work->inside, &work->pull};
 
+    work->holds = false;
     work->phi = memory;
     work->dphi = work->phi + by_ball;
     work->phi_ball = work->dphi + by_ball;

@@ -29,6 +29,9 @@ struct bd_bearing_work {
     double *shift_X, *shift_Y, *shift; /* (balls) of imperfections: groove centres, indentation */
     double *shift_X_rate, *shift_Y_rate, *shift_rate;
     double *force, *stiffness, *damping; /* (balls) */
+    /* (balls) a ball at the jump of its force (grazing.h): its place, the force in the jump, and what moves it */
+    double *place, *inside, *pull;
+    bool holds; /* whether the three count */
 };
 
 /* Doubles of the constant arrays (spacing and absent), and their fill. */

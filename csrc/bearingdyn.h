@@ -333,7 +333,7 @@ typedef long long bd_count;
     X(bd_count, iterations, sum) /* evaluations of the bearings */                                 \
     X(bd_count, refreshes, sum)  /* of Newton's matrix */                                          \
     X(bd_count, refactors, sum)  /* of S, because the speed moved: counted by the caller */        \
-    X(bd_count, grazing, sum)    /* steps that ended on position alone: a film opens or closes */  \
+    X(bd_count, grazing, sum)    /* steps in which balls were held where their film opens */       \
     X(double, t, last)           /* at the end */                                                  \
     X(double, residual, last)    /* of the last step, relative */                                  \
     X(int, bearing, last)        /* with the largest residual, -1 without */

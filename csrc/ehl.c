@@ -1,28 +1,13 @@
 #include "ehl.h"
 
+#include "damping_table.h"
 #include "lanes.h"
-
-/* c(delta) and its slope from a table, ends held. */
-static double table_damping(const bd_contact *contact, double delta, double *slope)
-{
-    const double *x = contact->table_delta, *c = contact->table_c;
-    int last = contact->n_table - 1;
-    *slope = 0.0;
-    if (!(delta > x[0])) /* NaN too, lest the search below run off the table */
-        return c[0];
-    if (delta >= x[last])
-        return c[last];
-    int i = 0;
-    while (delta > x[i + 1])
-        i++;
-    *slope = (c[i + 1] - c[i]) / (x[i + 1] - x[i]);
-    return c[i] + *slope * (delta - x[i]);
-}
 
 /* Given:    n contacts (whole lanes): indentation delta and its rate
  * Returned: force     F = max(0, kappa (delta+h0)^1.5 + c(delta) rate), 0 where delta + h0 <= 0
  *           stiffness dF/ddelta at fixed rate, damping dF/drate; all zero where F is clipped
- * Notes:    a film cannot pull, hence the clip
+ * Notes:    a film cannot pull, hence the clip. Where c > 0 at the film's edge F jumps there; newton.c finds the force
+ *           inside the jump (grazing.h)
  * Reference: paper eq (1). */
 void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *restrict delta,
                                const double *restrict rate, double *restrict force,
@@ -50,7 +35,7 @@ void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *r
         case BD_DAMPING_TABLE:
             for (int j = 0; j < BD_WIDTH; j++) {
                 double slope_j;
-                c[j] = table_damping(contact, d[j], &slope_j);
+                c[j] = bd_table_damping(contact, d[j], &slope_j);
                 slope[j] = slope_j;
             }
             c = LANES_WHERE(touching, c);

@@ -138,7 +138,7 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         const double t = bd_clock_time(&state.clock, 1);
 
         /* the structure without its bearings */
-        work->turn = bd_turn_at(&work->profile, t);
+        work->turn = bd_turn_at(&work->profile, t, 0.5 * dt, 0.5 * dt);
         bd_load_factors(model, work, t);
         work->kernels->predict(model, work, &state);
 

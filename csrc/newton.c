@@ -3,20 +3,24 @@
  * by Newton's iteration with a matrix that is kept from step to step while it serves. */
 #include "newton.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "dense.h"
+#include "grazing.h"
 #include "kernels.h"
 
 /* A frozen Newton matrix that needs more evaluations than this is replaced. */
 enum { PATIENCE = 3 };
-/* From here on corrections are halved, and a step may end on position alone: a constant c makes the
- * force jump where a film opens, and inside that jump no force balances exactly. */
+/* From here on corrections are halved; where a ball hops across the jump of its force, balls are held instead. */
 enum { GRAZING = 10 };
-/* Share of the largest bearing displacement to which the position must then be known. */
-static const double grazing_tolerance = 1e-7;
+/* Corrections with held balls: so many in which all that must move do, then one ball at a time (the first, which
+ * comes to an end where W is a P-matrix: Murty 1974). */
+enum { TOGETHER = 20, HELD = 400 };
+/* A position is known to so many times its rounding error. */
+static const double rounding = 16.0 * DBL_EPSILON;
 
 void bd_turn_bearings(const bd_model *model, bd_work *work)
 {
@@ -81,19 +85,51 @@ static void measure(const bd_model *model, const bd_work *work, double *residual
     *scale = largest;
 }
 
-/* Is the position settled although the force is not: the last correction moved no coefficient. */
-static bool position_settled(const bd_model *model, const bd_work *work)
+/* Holds the balls of every bearing, whose tangents were taken at the last evaluation.
+ * Returned: whether any force can jump */
+static bool hold_balls(const bd_model *model, bd_work *work)
 {
-    const size_t m = (size_t)model->coefs;
-    double largest_move = 0.0, largest = 0.0;
-    for (size_t k = 0; k < m; k++) {
-        double move = 0.0;
-        for (size_t c = 0; c < m; c++)
-            move += work->W[c * m + k] * (work->force[c] - work->guess[c]);
-        largest_move = fmax(largest_move, fabs(work->in_x * move));
-        largest = fmax(largest, fabs(work->z[k]));
+    bool any = false;
+    for (int b = 0; b < model->n_bearings; b++) {
+        const size_t at = (size_t)model->bearing_slot[b], m = (size_t)model->coefs;
+        bd_hold(&model->bearings[b], &work->bearings[b], work->W + at * m + at, m, work->in_x);
+        any = any || work->bearings[b].holds;
     }
-    return largest_move <= grazing_tolerance * largest;
+    return any;
+}
+
+static void release_balls(const bd_model *model, bd_work *work)
+{
+    for (int b = 0; b < model->n_bearings; b++)
+        work->bearings[b].holds = false;
+}
+
+/* Held balls after an evaluation: moves those whose place is wrong by more than a force `least`, all `together` or one
+ * when the rest has settled; lets what edges push follow once the forces balance.
+ * Returned: whether nothing was left to do; else the forces are to be evaluated anew */
+static bool hold(const bd_model *model, bd_work *work, double least, double residual, bool together)
+{
+    double slip = 0.0;
+    int moved = 0;
+    for (int b = 0; b < model->n_bearings; b++)
+        slip = fmax(slip, bd_edge_slip(&model->bearings[b], &work->bearings[b]));
+    const bool balanced = residual <= least, settled = balanced && slip <= least;
+    for (int b = 0; b < model->n_bearings && (together || (settled && moved == 0)); b++)
+        moved += bd_regrip(&model->bearings[b], &work->bearings[b], least, together);
+    for (int b = 0; b < model->n_bearings && balanced && moved == 0 && !settled; b++)
+        bd_follow_edges(&model->bearings[b], &work->bearings[b]);
+    return settled && moved == 0;
+}
+
+/* The force that the rounding of the position makes on an edge. */
+static double noise(const bd_model *model, const bd_work *work)
+{
+    double pull = 0.0, largest = 0.0;
+    for (int b = 0; b < model->n_bearings; b++)
+        pull = fmax(pull, bd_largest_pull(&model->bearings[b], &work->bearings[b]));
+    for (int k = 0; pull > 0.0 && k < model->coefs; k++)
+        largest = fmax(largest, fabs(work->z[k]));
+    return rounding * largest * pull;
 }
 
 /* The bearing with the largest residual, or the first whose residual is not a number. */
@@ -115,16 +151,16 @@ static int worst_bearing(const bd_model *model, const bd_work *work)
     return worst;
 }
 
-bd_status bd_solve_bearings(const bd_model *model, bd_work *work, bd_state *state,
-                            bd_report *report)
+static bd_status iterate(const bd_model *model, bd_work *work, bd_state *state, bd_report *report)
 {
     const bd_scheme *scheme = &work->scheme;
     const size_t m = (size_t)model->coefs;
     const double *inverse = state->inverse;
-    bool fresh = state->clock.inverse_set;
+    bool fresh = state->clock.inverse_set, holds = false;
+    int limit = scheme->max_iterations, held = 0;
 
-    for (int iteration = 0; iteration < scheme->max_iterations; iteration++) {
-        double residual, scale;
+    for (int iteration = 0; iteration < limit; iteration++) {
+        double residual, scale, slip = 0.0;
         work->kernels->displace(model, work);
         bd_force_bearings(model, work);
         report->iterations++;
@@ -134,10 +170,16 @@ bd_status bd_solve_bearings(const bd_model *model, bd_work *work, bd_state *stat
             report->bearing = worst_bearing(model, work);
             return BD_NOT_FINITE;
         }
-        const bool balanced = residual <= scheme->tolerance * scale;
-        const bool grazes = !balanced && iteration >= GRAZING && position_settled(model, work);
-        const bool converged = balanced || grazes;
-        report->grazing += grazes;
+        double least = scheme->tolerance * scale;
+        bool converged = residual <= least;
+        if (holds) {
+            least = fmax(least, noise(model, work));
+            converged = hold(model, work, least, residual, held++ < TOGETHER);
+            if (!converged) {
+                bd_force_bearings(model, work);
+                measure(model, work, &residual, &scale);
+            }
+        }
         if (!converged && (!fresh || iteration >= PATIENCE)) {
             if (refresh(model, work)) {
                 report->bearing = worst_bearing(model, work);
@@ -147,10 +189,15 @@ bd_status bd_solve_bearings(const bd_model *model, bd_work *work, bd_state *stat
             fresh = true;
             report->refreshes++;
         }
+        if (!converged && iteration == GRAZING) {
+            holds = hold_balls(model, work);
+            limit += holds ? HELD : 0;
+        }
         if (residual > 0.0 && fresh)
-            work->kernels->correct(model, work, iteration < GRAZING ? 1.0 : 0.5, inverse);
+            work->kernels->correct(model, work, iteration < GRAZING || holds ? 1.0 : 0.5, inverse);
         if (converged) {
-            if (inverse == work->inverse) {
+            report->grazing += holds && noise(model, work) > 0.0;
+            if (inverse == work->inverse && !holds) {
                 memcpy(state->inverse, work->inverse, m * m * sizeof *inverse);
                 state->clock.inverse_set = true;
             }
@@ -159,4 +206,12 @@ bd_status bd_solve_bearings(const bd_model *model, bd_work *work, bd_state *stat
     }
     report->bearing = worst_bearing(model, work);
     return BD_NO_CONVERGENCE;
+}
+
+bd_status bd_solve_bearings(const bd_model *model, bd_work *work, bd_state *state,
+                            bd_report *report)
+{
+    const bd_status status = iterate(model, work, state, report);
+    release_balls(model, work);
+    return status;
 }

@@ -115,7 +115,7 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
 
     const double t = state.clock.origin;
     double *force = work->loss; /* free here */
-    work->turn = bd_turn_at(&work->profile, t);
+    work->turn = bd_turn_at(&work->profile, t, 0.0, 0.5 * scheme->dt);
     bd_load_factors(model, work, t);
     observe_state(model, work, &state);
     residual(model, work, &state, force);

@@ -16,6 +16,17 @@ class Notice(UserWarning):
     """
 
 
+class CoarseStep(Notice):
+    """The time step does not follow something that drives the march.
+
+    When: a wave of a bearing, the passage of its balls, a pit, an unbalance, a harmonic or a sampled load has
+    fewer than twenty steps a period, at the highest speed of the profile.
+
+    Remedy: march with the dt that the warning names, or leave out what is that fast; `check_step=True` says
+    how far off the record is.
+    """
+
+
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Warn at the nearest caller that is not of this package.
 

@@ -137,7 +137,7 @@ def test_march_is_the_twins(name: str, beta: float, gamma: float, speed: twin.Sp
     record, state, report = core.march(model, model.state(t, x, v), scheme, 80, 3, start=True)
     assert report.status == 0, report.text
     expected, s = twin.march(
-        system, twin.start(system, speed, t, x, v), dt, 80, 3, beta=beta, gamma=gamma, speed=speed
+        system, twin.start(system, speed, t, x, v, dt), dt, 80, 3, beta=beta, gamma=gamma, speed=speed
     )
     assert_same(record, expected)
     got = model.unpack(state)

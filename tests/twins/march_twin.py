@@ -62,21 +62,17 @@ Speed = float | tuple[Any, Any]
 """rad/s: constant, or (times, values), linear between and held outside"""
 
 
-def turn_at(speed: Speed, t: float) -> Turn:
-    """Ω, Ω̇ (that of the interval to the right of a knot) and ∫Ω dt, which is Ω(t₀) t₀ at the first knot."""
+def turn_at(speed: Speed, t: float, before: float, after: float) -> Turn:
+    """Ω, its mean rate from t − before to t + after, and ∫Ω dt from t = 0."""
     if not isinstance(speed, tuple):
         return Turn(speed, 0.0, speed * t)
     times, values = (np.asarray(s, float) for s in speed)
-    now = np.interp(t, times, values)
-    if not times[0] <= t < times[-1] or len(times) == 1:
-        rate = 0.0
-    else:
-        k = int(np.searchsorted(times, t, side="right")) - 1
-        rate = (values[k + 1] - values[k]) / (times[k + 1] - times[k])
-    # the trapezoidal rule is exact on the knots up to t; before the first knot the speed is held
-    knots = np.append(times[times < t], t) if t > times[0] else np.array([times[0], t])
-    angle = values[0] * times[0] + np.trapezoid(np.interp(knots, times, values), knots)
-    return Turn(now, rate, angle)
+    now, left, right = np.interp([t, t - before, t + after], times, values)
+    # the trapezoidal rule is exact between knots; outside them the speed is held
+    low, high = sorted((0.0, t))
+    knots = np.concatenate([[low], times[(times > low) & (times < high)], [high]])
+    angle = np.sign(t) * np.trapezoid(np.interp(knots, times, values), knots)
+    return Turn(now, (right - left) / (before + after), angle)
 
 
 def force(system: System, turn: Turn, t: float) -> np.ndarray:
@@ -120,9 +116,9 @@ def structure_matrices(system: System, turn: Turn) -> tuple[np.ndarray, np.ndarr
     return C, system.K + turn.speed * system.N + turn.rate * system.G
 
 
-def start(system: System, speed: Speed, t: float, x: np.ndarray, v: np.ndarray) -> State:
+def start(system: System, speed: Speed, t: float, x: np.ndarray, v: np.ndarray, dt: float) -> State:
     """Relaxed branches, and the acceleration that satisfies the equation of motion."""
-    turn = turn_at(speed, t)
+    turn = turn_at(speed, t, 0.0, dt / 2)
     C, K = structure_matrices(system, turn)
     rest = force(system, turn, t) - C @ v - K @ x
     for (_, B), (g, *_) in zip(system.bearings, bearings(system, turn, x, v), strict=True):
@@ -134,7 +130,7 @@ def start(system: System, speed: Speed, t: float, x: np.ndarray, v: np.ndarray) 
 def step(system: System, s: State, dt: float, beta: float, gamma: float, speed: Speed) -> State:
     """One step of Newmark's scheme, by Newton's method on a."""
     t = s.t + dt
-    turn = turn_at(speed, t)
+    turn = turn_at(speed, t, dt / 2, dt / 2)
     C_now, K_now = structure_matrices(system, turn)
     x_old = s.x + dt * s.v + (0.5 - beta) * dt**2 * s.a
     v_old = s.v + (1 - gamma) * dt * s.a
@@ -169,9 +165,9 @@ def step(system: System, s: State, dt: float, beta: float, gamma: float, speed: 
     return State(t, x, v, a, stress)
 
 
-def observe(system: System, s: State, speed: Speed) -> np.ndarray:
+def observe(system: System, s: State, speed: Speed, dt: float) -> np.ndarray:
     """One row of the record, (channels,)."""
-    found = bearings(system, turn_at(speed, s.t), s.x, s.v)
+    found = bearings(system, turn_at(speed, s.t, dt / 2, dt / 2), s.x, s.v)
     row = []
     for kind, weights, bearing, index in system.channels:
         if kind in ("displacement", "velocity", "acceleration"):
@@ -202,7 +198,7 @@ def march(
     for n in range(1, steps + 1):
         s = step(system, s, dt, beta, gamma, speed)
         if (done + n) % decimate == 0:
-            rows.append(observe(system, s, speed))
+            rows.append(observe(system, s, speed, dt))
     return np.array(rows).reshape(len(rows), len(system.channels)), s
 
 

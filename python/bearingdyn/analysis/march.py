@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import core, inputs, runfile
 from bearingdyn.analysis.channels import channel_of
+from bearingdyn.analysis.coarseness import warn_if_coarse
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.application import Application
-from bearingdyn.bearing import ConstantDamping
 from bearingdyn.checks import number, numbers, positive, require, whole
 from bearingdyn.results import inputs_of
 from bearingdyn.system import System
@@ -100,7 +100,9 @@ class March:
             if isinstance(source, Equilibrium)
             else (source, np.zeros(source.n))
         )
-        system.check_speed(float(np.abs(drive[1]).max()) if isinstance(drive, tuple) else drive)
+        fastest = float(np.abs(drive[1]).max()) if isinstance(drive, tuple) else drive
+        system.check_speed(fastest)
+        warn_if_coarse(system, fastest, dt)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
         return cls(system=system, modal=modal, T=T, x=x, stepping=stepping, **counts)
@@ -310,21 +312,11 @@ class March:
             )
             raise core.SolverError(
                 f"{report.text} in step {report.steps + 1} at t = {report.t:.6g} s (residual "
-                f"{report.residual:.3g} of the largest bearing force{worst}); {self._remedy()}",
+                f"{report.residual:.3g} of the largest bearing force{worst}); try a smaller dt",
                 report,
                 result,
             )
         return result
-
-    def _remedy(self) -> str:
-        """What helps where a march cannot go on."""
-        dampings = [getattr(term.bearing, "damping", None) for term in self.system.bearings]
-        if any(isinstance(d, ConstantDamping) and d.c > 0 for d in dampings):
-            return (
-                "a constant contact damping makes the force jump where a ball loses contact: give "
-                "damping=bd.LoadDamping(...) or bd.TabulatedDamping(...), or try a smaller dt"
-            )
-        return "try a smaller dt"
 
 
 def system_hash(system: System) -> str:

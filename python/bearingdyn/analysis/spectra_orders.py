@@ -25,14 +25,21 @@ def shaft_angle(result: xarray.Dataset) -> Array:
     times, speeds = speed_profile(result)
     if speeds.size == 1:
         return np.asarray(speeds[0] * t)
-    # as in the core: the first speed holds before the profile, the last after it
+    # as in the core: the first speed holds before the profile, the last after it; the angle is 0 at t = 0
+    angle = _turned(times, speeds, t)
+    start = _turned(times, speeds, np.zeros(1))[0] if times[0] < 0 else -speeds[0] * times[0]
+    return np.asarray(angle - start)
+
+
+def _turned(times: Array, speeds: Array, t: Array) -> Array:
+    """∫Ω dt from the first knot to t (n,), rad."""
     at = np.concatenate([[0.0], np.cumsum(0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times))])
     k = np.clip(np.searchsorted(times, t, side="right") - 1, 0, times.size - 2)
     inside = np.clip(t, times[0], times[-1]) - times[k]
     slope = (speeds[k + 1] - speeds[k]) / (times[k + 1] - times[k])
     angle = at[k] + speeds[k] * inside + 0.5 * slope * inside**2
     angle += speeds[0] * np.minimum(t - times[0], 0.0) + speeds[-1] * np.maximum(t - times[-1], 0.0)
-    return np.asarray(angle + speeds[0] * times[0])
+    return np.asarray(angle)
 
 
 def order_spectrum(

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.analysis.channels import channel_of
+from bearingdyn.analysis.coarseness import STEP_ERROR_MADE, step_error
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.application import Application
@@ -34,6 +35,7 @@ def transient(
     resume: xarray.Dataset | None = None,
     stream: str | os.PathLike[str] | None = None,
     audit: bool = False,
+    check_step: bool = False,
     scheme: core.Scheme | None = None,
     progress: core.Progress | None = None,
 ) -> xarray.Dataset:
@@ -46,9 +48,14 @@ def transient(
         found first. System: the march starts at zero.
     speed
         Speed of the shaft, rad/s: one number, or (times in s, speeds), linear between and held outside. Cage,
-        unbalance and gyroscopic forces follow it; rotating loads also push along with its rate.
+        unbalance and gyroscopic forces follow it; rotating loads also push along with its rate. The shaft's
+        angle is ∫Ω dt from t = 0, where it is 0, wherever the times lie. The scheme is of second order in dt
+        through knots on and between steps.
     dt, steps
-        Time step in s, and how many steps are recorded.
+        Time step in s, and how many steps are recorded. What drives the march needs twenty steps a period:
+        `CoarseStep` warns of a wave, a passage, a pit or a load that has fewer. What answers counts as well:
+        a frequency ω comes out (ωΔt)²/12 short, and 2.5 µs leave 1 % of the velocities to 4.7 kHz and 6 % to
+        9.4 kHz in the example motor.
     record
         Channels: "shaft.left.y" (displacement), "shaft.left.y.velocity", "….acceleration"; of a bearing:
         "left.loaded" (number of loaded balls), "left.ball3" (load of one ball, counted from 1),
@@ -70,6 +77,11 @@ def transient(
     audit
         Whether energies and works are integrated; they become attributes "energy_…", J, NaN where a march
         that diverged made them overflow.
+    check_step
+        Whether 2000 steps beyond the end are marched twice, with dt and with dt/2 (6000 steps in all), to
+        estimate what dt leaves: attribute `step_error`, one number per channel, relative to its own rms about
+        its mean, and `step_error_made`, which says how. Phases of free swings that part within the stretch
+        count; what had built up before it does not.
     scheme
         β, γ, tolerance, iterations and instruction set.
     progress
@@ -141,7 +153,12 @@ def transient(
         header=facts if stream is None else {**facts, "digest": march.digest(state)},
     )
     energies = march.energies(model, state) if audit else {}
-    result = march_dataset(facts, rows, state, report, {f"energy_{k}": v for k, v in energies.items()})
+    error: dict[str, Any] = {}
+    if check_step and report.status == 0:
+        error = {"step_error": step_error(model, state, march.stepping), "step_error_made": STEP_ERROR_MADE}
+    result = march_dataset(
+        facts, rows, state, report, {f"energy_{k}": v for k, v in energies.items()} | error
+    )
     return march.ended(result, report)
 
 

@@ -20,6 +20,10 @@ KernelFields: TypeAlias = tuple[Law, float, Array]
 class ConstantDamping:
     """c(δ) = c, N s/m: the paper's harmonic case (30 N s/m). The force jumps where contact is lost.
 
+    At the edge of the film, δ + h0 = 0, the law is taken in its set-valued sense: F is any force in
+    [0, c dδ/dt] there, and a step of a march that ends in the jump finds the one that balances. A table with
+    c > 0 at that place is treated likewise.
+
     Raises
     ------
     ValueError
