@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.application import QUANTITIES, RATES, Channel
 from bearingdyn.types import Array
+from bearingdyn.writing import write_whole
 
 if TYPE_CHECKING:
     import xarray
@@ -78,13 +78,7 @@ def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
     names = [name for f in functions for name in (f.response, f.reference) if name]
     nodes = list(dict.fromkeys(_node(name)[0] for name in names))
     lines = [line for f in functions for line in _dataset_58(f, dim, abscissa, nodes, data.attrs)]
-    target = Path(path)
-    scratch = target.with_name(target.name + ".part")
-    try:
-        scratch.write_text("\n".join(lines) + "\n", encoding="ascii")
-        scratch.replace(target)
-    finally:
-        scratch.unlink(missing_ok=True)
+    write_whole(path, ("\n".join(lines) + "\n").encode("ascii"))
     return nodes
 
 

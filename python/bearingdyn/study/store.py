@@ -6,7 +6,6 @@ import dataclasses
 import functools
 import json
 import logging
-import os
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from typing import Any
 from bearingdyn import inputs
 from bearingdyn.results import versions
 from bearingdyn.study.cases import Case, Parameters
+from bearingdyn.writing import write_whole
 
 log = logging.getLogger(__name__)
 
@@ -75,6 +75,4 @@ class Store:
         """Keep a case; the file is there whole or not at all."""
         path = self._path(case.parameters)
         kept = {**self._key(case.parameters), "values": dict(case.values), "error": case.error}
-        scratch = path.with_suffix(f".{os.getpid()}.part")
-        scratch.write_text(json.dumps(kept, indent=1), encoding="utf-8")
-        scratch.replace(path)
+        write_whole(path, json.dumps(kept, indent=1).encode())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import os
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,6 +14,7 @@ import scipy.sparse
 
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
 from bearingdyn.fem.matrix_files.text_tables import existing
+from bearingdyn.writing import write_whole
 
 
 def _from_arrays(arrays: Mapping[str, Any], name: str, path: Path) -> Any:
@@ -83,4 +86,7 @@ def write_npz(path: str | Path, model: FEMatrices) -> None:
         numbers = row if model.nodes is None else model.nodes[row]
         arrays["labels"] = np.stack([numbers, direction + 1], axis=1)
         arrays["internal"] = np.array(model.n - row.size)
-    np.savez(path, **arrays)
+    made = io.BytesIO()
+    np.savez(made, **arrays)
+    place = os.fspath(path)
+    write_whole(place if place.endswith(".npz") else place + ".npz", made.getbuffer())
