@@ -98,6 +98,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
     ValueError
         If the file does not exist, is no netCDF-4 file, or lacks the group.
     """
+    import h5netcdf  # noqa: F401  # so that its absence is not taken for a damaged file
     import xarray
 
     if runfile.is_run(path):
@@ -107,7 +108,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
             found = _complex(data.load())
     except FileNotFoundError:
         raise ValueError(f"{os.fspath(path)}: no such file") from None
-    except (OSError, KeyError) as error:
+    except Exception as error:  # the layers under it raise whatever the damage of a file leads to
         place = f"group {group!r} of " if group else ""
         raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}") from None
     if not group and not found.variables and groups(path):
@@ -140,7 +141,7 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
     try:
         with h5netcdf.File(path, "r") as file:
             return sorted(file.groups)
-    except OSError as error:
+    except Exception as error:  # as in open_result
         raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
 
 

@@ -49,9 +49,10 @@ def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
     """Write every function of a frequency response or a transient as one ASCII dataset 58; SI units.
 
     Ordinates keep twelve digits. The abscissa keeps six, as the format has it. An evenly spaced one is its
-    first value and its increment, so that six digits scale it by 5e-6 at most and no two points coincide; the
-    increment stands with all its digits in the second text line. Another is written value by value. Places are numbered as nodes from 1
-    in the order they first appear; the names of response and reference stand in full in the first text line.
+    first value and its increment, so six digits scale it by 5e-6 at most and no two points coincide; the
+    increment stands with all its digits in the second text line. Another is written value by value. Places
+    are numbered as nodes from 1 in the order they first appear; the names of response and reference stand in
+    full in the first text line.
 
     Parameters
     ----------
@@ -104,8 +105,8 @@ def _check_abscissa(dim: str, abscissa: Array) -> None:
     if same.size:
         at = abscissa[same[0]]
         raise ValueError(
-            f"{dim} has points at {at!r} and {abscissa[same[0] + 1]!r}, which the six digits of dataset 58 do "
-            f"not tell apart, and is not evenly spaced; interpolate the result to even spacing"
+            f"{dim} has points at {at!r} and {abscissa[same[0] + 1]!r}, which the six digits of dataset 58 "
+            f"do not tell apart, and is not evenly spaced; interpolate the result to even spacing"
         )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.fem.abaqus_input import blocks, node
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
 from bearingdyn.fem.matrix_files.text_tables import (
     Form,
     existing,
@@ -65,7 +65,7 @@ def read_abaqus(
         for path, A in zip(files, (K, M), strict=True):
             rows_fit(path, int(A[1].max()) + 1, len(A[2]))
         both = [symmetric_from(index[:, 0], index[:, 1], value, n) for _, index, value in (K, M)]
-        return check_matrices(both[0], both[1], points, **check)
+        return checked_files(files, both[0], both[1], points, **check)
     labels, place = np.unique(np.vstack([K[0], M[0]]), axis=0, return_inverse=True)
     place = place.ravel()
     matrices: list[scipy.sparse.csr_matrix] = []
@@ -75,7 +75,7 @@ def read_abaqus(
         own = place[begin : begin + len(label)]
         begin += len(label)
         matrices.append(symmetric_from(own[index[:, 0]], own[index[:, 1]], value, len(labels)))
-    return check_matrices(matrices[0], matrices[1], points, labels=labels, **check)
+    return checked_files(files, matrices[0], matrices[1], points, labels=labels, **check)
 
 
 def _entries(path: Path) -> tuple[Index | None, Index, Array]:

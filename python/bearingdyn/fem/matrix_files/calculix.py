@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
 from bearingdyn.fem.matrix_files.text_tables import Form, existing, symmetric_from, triples
 
 ENTRIES = Form(
@@ -61,7 +61,7 @@ def read_calculix(
                 f"{path} has rows up to {max(row.max(), column.max()) + 1}, while {dof} names {len(labels)}"
             )
         matrices.append(symmetric_from(row, column, value, len(labels)))
-    return check_matrices(matrices[0], matrices[1], points, labels=labels, **check)
+    return checked_files([sti, mas], matrices[0], matrices[1], points, labels=labels, **check)
 
 
 def _labels(path: Path) -> np.ndarray:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -114,8 +115,8 @@ def check_matrices(
         (n, n) dense or sparse, symmetric, in the file's units; one triangle alone is refused.
     points
         (k, 3) positions of the nodes, or node number -> position, in the file's unit of length. With points,
-        K must not resist rigid motion (relative force up to 5e-6, what six digits leave), M must carry the same mass in all three
-        directions, and density and speed of sound must be those of a solid.
+        K must not resist rigid motion (relative force up to 5e-6, what six digits leave), M must carry the
+        same mass in all three directions, and density and speed of sound must be those of a solid.
     labels
         (n, 2) node number and direction 1...6 of each coordinate; they are put in rising order. None: there
         are three coordinates to a point, x, y, z, or six.
@@ -151,6 +152,16 @@ def check_matrices(
         )
     _check_pivots(model)
     return model
+
+
+def checked_files(
+    files: Sequence[str | Path], K: Any, M: Any, points: Points | None, **check: Any
+) -> FEMatrices:
+    """`check_matrices` of what was read from files; its errors name them."""
+    try:
+        return check_matrices(K, M, points, **check)
+    except ValueError as error:
+        raise ValueError(f"{' and '.join(dict.fromkeys(str(f) for f in files))}: {error}") from None
 
 
 def _sparse(name: str, value: Any) -> scipy.sparse.csr_matrix:

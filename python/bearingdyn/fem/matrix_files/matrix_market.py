@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 import numpy as np
 import scipy.sparse
 
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
 from bearingdyn.fem.matrix_files.text_tables import Form, both_triangles, existing, rows_fit, table, triples
 
 BANNER = b"%%matrixmarket"
@@ -54,7 +54,7 @@ def read_matrix_market(
         check_matrices does.
     """
     files = [existing(stiffness), existing(mass)]
-    return check_matrices(_read(files[0]), _read(files[1]), points, **check)
+    return checked_files(files, _read(files[0]), _read(files[1]), points, **check)
 
 
 def _read(path: Path) -> Any:
@@ -62,8 +62,8 @@ def _read(path: Path) -> Any:
         words = stream.readline(LONGEST_LINE).lower().decode("ascii", "replace").split()
         if len(words) != 5 or words[0].encode() != BANNER or words[1] != "matrix":
             raise ValueError(
-                f"{path}, line 1 is {' '.join(words)[:80]!r}; a MatrixMarket file begins with '%%MatrixMarket "
-                "matrix coordinate real symmetric', or 'array' and 'general' in their places"
+                f"{path}, line 1 is {' '.join(words)[:80]!r}; a MatrixMarket file begins with "
+                "'%%MatrixMarket matrix coordinate real symmetric', or 'array' and 'general' in their places"
             )
         layout, field, symmetry = words[2:]
         if field == "pattern":
@@ -128,7 +128,8 @@ def _array(path: Path, stream: BinaryIO, n: int, symmetry: str, line: int) -> An
     value = table(path, stream, COLUMN, line)[:, 0]
     if len(value) != needed:
         raise ValueError(
-            f"{path} has {len(value)} numbers where {n} rows of a {symmetry!r} array are {needed}; export again"
+            f"{path} has {len(value)} numbers where {n} rows of a {symmetry!r} array are {needed}; "
+            "export again"
         )
     if symmetry == "general":
         return value.reshape(n, n).T

@@ -18,7 +18,7 @@ from typing import IO, Any
 import numpy as np
 import scipy.sparse
 
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
 from bearingdyn.fem.matrix_files.text_tables import existing
 from bearingdyn.writing import write_whole
 
@@ -47,8 +47,8 @@ def _arrays(path: Path) -> dict[str, Any]:
                     raise ValueError(f"{name} is encrypted; write the archive without a password")
                 if entry.file_size > max(SMALL, MOST_PACKED * entry.compress_size):
                     raise ValueError(
-                        f"{name} unpacks from {entry.compress_size} to {entry.file_size} bytes; write K and M "
-                        "in compressed rows"
+                        f"{name} unpacks from {entry.compress_size} to {entry.file_size} bytes; "
+                        "write K and M in compressed rows"
                     )
                 with archive.open(entry) as stream:
                     found[name] = _one(name, stream, entry.file_size)
@@ -127,7 +127,7 @@ def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FE
             raise ValueError(f"{p} has internal of shape {arrays['internal'].shape}; it must be one number")
         check.setdefault("internal", arrays["internal"].item())
     points = arrays.get("points") if points is None else points
-    return check_matrices(_from_arrays(arrays, "K", p), _from_arrays(arrays, "M", p), points, **check)
+    return checked_files([p], _from_arrays(arrays, "K", p), _from_arrays(arrays, "M", p), points, **check)
 
 
 def write_npz(path: str | Path, model: FEMatrices) -> None:
