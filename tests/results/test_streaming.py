@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import resource
 import signal
 import struct
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import time
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +22,7 @@ import xarray
 
 import bearingdyn as bd
 from bearingdyn import runfile
+from bearingdyn.cli import main
 
 RECORD = ["rotor.centre.y", "rotor.centre.y.velocity", "ball.loaded"]
 ARGUMENTS = {"speed": 300.0, "dt": 5e-6, "settle": 1000, "steps": 9000, "record": RECORD, "decimate": 3}
@@ -129,7 +132,8 @@ def test_a_file_of_version_1_is_read_and_not_gone_on_from(start: bd.Equilibrium,
     data = path.read_bytes()
     at = len(runfile.MAGIC)
     length, _ = struct.unpack_from("<QI", data, at)
-    text = b"bearingdyn run 1\n" + data[at : at + 12 + length]
+    header = data[at + 12 : at + 12 + length]
+    text = b"bearingdyn run 1\n" + struct.pack("<QI", length, zlib.crc32(header)) + header
     for chunk in runfile.read(path)[1]:
         r = chunk.report
         counts = (r.steps, r.iterations, r.refreshes, r.refactors, r.grazing)
@@ -234,3 +238,203 @@ def test_many_marches_at_once_are_the_marches_one_by_one(start: bd.Equilibrium) 
         assert same(result, bd.transient(**case))
     with pytest.raises(ValueError, match="dt"):
         bd.transients([{**cases[0], "dt": -1.0}, cases[1]])
+
+
+def whole_run(start: bd.Equilibrium, folder: Path) -> tuple[bytes, xarray.Dataset]:
+    path = folder / "whole.bdrun"
+    plain = bd.transient(start, stream=path, **ARGUMENTS)
+    return path.read_bytes(), plain
+
+
+def finished(path: Path, plain: xarray.Dataset) -> int:
+    """Rows a damaged file still holds, each as it was; 0 where the file says clearly why it holds none."""
+    try:
+        found = bd.open_result(path)
+    except ValueError as error:
+        said = str(error)
+    else:
+        said = ""
+    if said:
+        assert re.search("no finished chunk|header of the run is damaged|cannot be read", said)
+        return 0
+    rows = found["record"].values
+    assert found.attrs["complete"] == int(len(rows) == len(plain["record"]))
+    assert np.array_equal(rows, plain["record"].values[: len(rows)])
+    return len(rows)
+
+
+def ends(path: Path) -> list[int]:
+    """Where each finished chunk of a sound file ends, the header first."""
+    data, at, found = path.read_bytes(), len(runfile.MAGIC), []
+    while at < len(data):
+        at += 12 + struct.unpack_from("<QI", data, at)[0]
+        found.append(at)
+    return found
+
+
+@pytest.mark.parametrize("damage", ["zeros", "cut"])
+@pytest.mark.parametrize("times", [6, pytest.param(50, marks=pytest.mark.slow)])
+def test_zeros_or_an_end_where_a_power_cut_left_them_lose_nothing_finished(
+    start: bd.Equilibrium, tmp_path: Path, damage: str, times: int
+) -> None:
+    data, plain = whole_run(start, tmp_path)
+    bounds = ends(tmp_path / "whole.bdrun")
+    rng = np.random.default_rng(3)
+    for k in range(times):
+        # places anywhere, and each bound of a block, where a tail of zeros looks like a block of length 0
+        cut = int(rng.integers(0, len(data))) if k % 2 else bounds[k // 2 % len(bounds)]
+        path = tmp_path / f"{damage}{k}.bdrun"
+        path.write_bytes(data[:cut] + (bytes(int(rng.integers(1, 50_000))) if damage == "zeros" else b""))
+        rows = finished(path, plain)
+        chunks = max(sum(bound <= cut for bound in bounds) - 1, 0)
+        assert rows >= (max(chunks - 2, 0) * 700) // 3  # two chunks of settling have no rows
+        if cut > bounds[0]:
+            assert len(runfile.read(path)[1]) >= chunks
+        assert same(plain, bd.transient(start, stream=path, **ARGUMENTS))
+        assert path.read_bytes() == data
+
+
+def test_a_block_that_was_moved_is_none(start: bd.Equilibrium, tmp_path: Path) -> None:
+    """Two chunks of one length change places: each is sound in itself, and none at the other's place."""
+    data, _ = whole_run(start, tmp_path)
+    bounds = ends(tmp_path / "whole.bdrun")
+    a, b, c = bounds[4:7]
+    moved = tmp_path / "moved.bdrun"
+    moved.write_bytes(data[:a] + data[b:c] + data[a:b] + data[c:])
+    assert len(runfile.read(moved)[1]) == 4
+
+
+def as_version(data: bytes, magic: bytes) -> bytes:
+    """The blocks of a file with the CRC of versions 1 and 2, of the bytes alone."""
+    at, text = len(runfile.MAGIC), magic
+    while at < len(data):
+        length, _ = struct.unpack_from("<QI", data, at)
+        block = data[at + 12 : at + 12 + length]
+        text += struct.pack("<QI", length, zlib.crc32(block)) + block
+        at += 12 + length
+    return text
+
+
+def test_a_file_of_version_2_is_read_and_gone_on_from(start: bd.Equilibrium, tmp_path: Path) -> None:
+    data, plain = whole_run(start, tmp_path)
+    old = as_version(data, b"bearingdyn run 2\n")
+    path = tmp_path / "old.bdrun"
+    path.write_bytes(old)
+    assert same(plain, bd.open_result(path))
+    path.write_bytes(old[: len(old) // 2] + bytes(1000))
+    assert same(plain, bd.transient(start, stream=path, **ARGUMENTS))
+    assert path.read_bytes() == old
+
+
+def test_a_second_writer_is_refused_and_a_dead_one_does_not_lock(
+    start: bd.Equilibrium, tmp_path: Path
+) -> None:
+    path = tmp_path / "run.bdrun"
+    process = child(path)
+    try:
+        assert process.stdout is not None
+        process.stdout.readline()
+        while not (path.exists() and path.stat().st_size > 10_000):
+            assert process.poll() is None
+            time.sleep(0.005)
+        process.send_signal(signal.SIGSTOP)  # at work, and not in a hurry
+        with pytest.raises(OSError, match=r"another march writes this run now.*run\.bdrun"):
+            bd.transient(start, stream=path, **ARGUMENTS)
+        assert bd.open_result(path).attrs["complete"] == 0  # reading is free
+    finally:
+        process.kill()
+        process.wait()
+    assert same(bd.transient(start, **ARGUMENTS), bd.transient(start, stream=path, **ARGUMENTS))
+
+
+def test_two_writers_of_one_process_do_not_write_one_file(tmp_path: Path) -> None:
+    path, header = tmp_path / "run.bdrun", {
+        "channels": [], "units": [], "speed": [[0.0], [1.0]], "dt": 1.0, "decimate": 1, "settle": 0,
+        "steps": 1,
+    }  # fmt: skip
+    first = runfile.Writer(path, header)
+    with pytest.raises(OSError, match="another march writes this run now"):
+        runfile.Writer(path, header)
+    first.close()
+    runfile.Writer(path, header).close()
+
+
+@pytest.mark.parametrize(
+    ("harm", "message"),
+    [
+        (lambda p: p.unlink(), "was removed"),
+        (lambda p: os.truncate(p, 5000), "was changed.*now there are 5000"),
+        (lambda p: os.truncate(p, 0), "was changed.*now there are 0"),
+        (lambda p: p.write_bytes(bytes(p.stat().st_size)), "was changed"),
+        (lambda p: p.write_bytes(p.read_bytes() + b"more"), "was changed"),
+        (lambda p: (p.rename(p.with_suffix(".away")), p.write_bytes(b"x")), "was replaced"),
+    ],
+)
+def test_a_file_that_is_lost_under_a_march_ends_it_with_an_error(
+    start: bd.Equilibrium, tmp_path: Path, harm: Callable[[Path], object], message: str
+) -> None:
+    path = tmp_path / "run.bdrun"
+    done = False
+
+    def progress(fraction: float, *_: object) -> None:
+        nonlocal done
+        if not done and runfile.is_run(path) and len(runfile.read(path)[1]) > 5:
+            done = True
+            harm(path)
+
+    with pytest.raises(OSError, match=message):
+        bd.transient(start, stream=path, progress=progress, **ARGUMENTS)
+    assert done
+
+
+def test_odd_content_behind_a_valid_checksum_is_refused_by_name(tmp_path: Path) -> None:
+    path = tmp_path / "run.bdrun"
+    facts = {
+        "channels": ["a"], "units": ["m"], "speed": [[0.0], [1.0]], "dt": 1e-5, "decimate": 1, "settle": 0,
+        "steps": 10,
+    }  # fmt: skip
+    state = np.array([0.0, 1.0, 1e-5, 0.0])
+    counts = json.dumps({"steps": 1}).encode().ljust(16)
+
+    def chunk(front: tuple[int, int, int], *parts: bytes) -> bytes:
+        return struct.pack("<3Q", *front) + b"".join(parts)
+
+    row = np.zeros(1).tobytes()
+    good = chunk((1, 4, 16), counts, row, state.tobytes())
+    for header, blocks, message in (
+        ([1], [], "a header that is none of a run: it is"),
+        ({**facts, "channels": 5}, [], "channels is 5"),
+        ({**facts, "units": []}, [], "1 channels have 0 units"),
+        ({**facts, "dt": "1"}, [], "dt is '1'"),
+        ({**facts, "decimate": 0}, [good], "decimate is 0"),
+        ({**facts, "speed": [[0.0], [1.0, 2.0]]}, [good], "speed is"),
+        ({**facts, "steps": 10**40}, [good], "steps is"),
+        (facts, [good, b"x"], r"chunk 1 is none of a run: it has 1 bytes"),
+        (facts, [chunk((2**60, 4, 16), counts, row, state.tobytes())], "do not fill 80 bytes"),
+        (facts, [chunk((1, 4, 16), b"[" * 16, row, state.tobytes())], "chunk 0 is none of a run"),
+        (facts, [chunk((1, 4, 16), b'{"steps":"9"}   ', row, state.tobytes())], "it counts"),
+        (facts, [chunk((1, 4, 16), b'{"loops":1}     ', row, state.tobytes())], "it counts"),
+        (facts, [chunk((1, 4, 16), counts, row, np.full(4, np.nan).tobytes())], "which is no time"),
+        (facts, [chunk((1, 4, 16), counts, row, np.full(4, 1e300).tobytes())], "which is no time"),
+    ):
+        data = runfile.MAGIC
+        for block in (json.dumps(header).encode(), *blocks):
+            place = struct.pack("<QQ", len(data), len(block))
+            data += struct.pack("<QI", len(block), zlib.crc32(place + block)) + block
+        path.write_bytes(data)
+        with pytest.raises(ValueError, match=rf"run\.bdrun.*{message}"):
+            bd.open_result(path)
+
+
+def test_show_says_what_a_run_file_holds(start: bd.Equilibrium, tmp_path: Path, capsys) -> None:
+    path = tmp_path / "x.run"
+    bd.transient(start, stream=path, **ARGUMENTS)
+    assert main(["show", str(path)]) == 0
+    said = capsys.readouterr().out
+    assert "time 3000, channel 3" in said
+    assert "complete = 1" in said
+    assert main(["show", "--json", str(path)]) == 0
+    assert json.loads(capsys.readouterr().out)["groups"][""]["attrs"]["steps"] == 9000
+    path.write_bytes(path.read_bytes()[: ends(path)[0]])
+    assert main(["show", str(path)]) == 2
+    assert "holds no finished chunk yet" in capsys.readouterr().err

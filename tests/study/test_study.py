@@ -10,7 +10,9 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+import types
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
@@ -50,7 +52,9 @@ def dies(case):
 
 
 class Counter:
-    """Counts its calls, and fails from the given one on."""
+    """Counts its calls, and fails from the given one on; all of them are one function to a store."""
+
+    told_as = "Counter"
 
     def __init__(self, fail_at=math.inf):
         self.calls = 0
@@ -428,3 +432,146 @@ def test_bad_aims_are_refused(aims, message):
     table = study.table([study.Case({"w": 1.0}, {"a": 1.0})])
     with pytest.raises(ValueError, match=message):
         study.pareto(table, **aims)
+
+
+class Rig:
+    """A bench with a stiffness of its own."""
+
+    def __init__(self, k):
+        self.k = k
+
+    def run(self, case):
+        return {"f": math.sqrt(self.k / case["m"])}
+
+    def __call__(self, case):
+        return self.run(case)
+
+
+STIFFNESS = 100.0
+
+
+def by_default(case, k=100.0):
+    return {"f": math.sqrt(k / case["m"])}
+
+
+def with_global(case):
+    return {"f": math.sqrt(STIFFNESS / case["m"])}
+
+
+def through_another(case):
+    return with_global(case)
+
+
+def closed_over(k):
+    def run(case):
+        return {"f": math.sqrt(k / case["m"])}
+
+    return run
+
+
+def stored(function, folder):
+    with one_thread() as pool:
+        return study.sweep(function, [{"m": 1.0}], pool, store=folder)[0].values["f"]
+
+
+def retuned(k):
+    changed = types.FunctionType(by_default.__code__, globals(), "by_default", (k,))
+    changed.__module__, changed.__qualname__ = __name__, "by_default"
+    return changed
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda k: Rig(k).run,
+        Rig,
+        closed_over,
+        lambda k: functools.partial(by_default, k=k),
+        lambda k: functools.partial(Rig(k).run),
+        retuned,
+        lambda k: (
+            (lambda case: {"f": math.sqrt(100.0)}) if k == 100.0 else lambda case: {"f": math.sqrt(500.0)}
+        ),
+        lambda k: lambda case: Rig(k).run(case),
+    ],
+)
+def test_a_store_tells_apart_what_a_function_carries(tmp_path, make):
+    """ω = √(k/m) of two stiffnesses, asked for twice."""
+    for _ in range(2):
+        assert [stored(make(k), tmp_path) for k in (100.0, 500.0)] == [10.0, math.sqrt(500.0)]
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize("function", [with_global, through_another])
+def test_a_global_that_a_function_uses_counts(tmp_path, monkeypatch, function):
+    assert stored(function, tmp_path) == 10.0
+    monkeypatch.setitem(globals(), "STIFFNESS", 400.0)
+    assert stored(function, tmp_path) == 20.0
+
+
+def test_what_cannot_be_told_is_refused_with_the_remedy(tmp_path):
+    lock = threading.Lock()
+
+    def run(case):
+        with lock:
+            return {"f": 1.0}
+
+    with pytest.raises(ValueError, match=r"uses 'lock' from around it.*told_as.*leave store out"):
+        stored(run, tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_stored_key_is_compared(tmp_path, caplog):
+    assert stored(Rig(100.0), tmp_path) == 10.0
+    (path,) = tmp_path.iterdir()
+    kept = json.loads(path.read_text())
+    for change in (
+        {"parameters": {"m": 2.0}}, {"told": "0" * 32}, {"function": "other"}, {"version": "0"},
+        {"values": {"f": 10**400}}, {"values": 5},
+    ):  # fmt: skip
+        path.write_text(json.dumps({**kept, "values": {"f": -1.0}, **change}))
+        caplog.clear()
+        assert stored(Rig(100.0), tmp_path) == 10.0
+        assert "computed again" in caplog.text
+    path.write_text("[" * 100_000)
+    assert stored(Rig(100.0), tmp_path) == 10.0
+
+
+def leaves(case):
+    sys.exit("enough")
+
+
+def test_an_exit_in_a_case_fails_the_case():
+    with one_thread() as pool:
+        (case,) = study.sweep(leaves, [{"x": 1.0}], pool)
+    assert case.error == "SystemExit: enough"
+    assert study.sweep(leaves, [{"x": 1.0}])[0].error == "SystemExit: enough"
+
+
+def test_studies_in_threads_share_a_store(tmp_path):
+    cases = study.grid(m=[float(m) for m in range(1, 40)])
+
+    def whole(_):
+        with ThreadPoolExecutor(4) as pool:
+            return study.sweep(Rig(100.0), cases, pool, store=tmp_path)
+
+    with ThreadPoolExecutor(6) as pool:
+        first, *others = pool.map(whole, range(6))
+    assert all(other == first for other in others)
+    assert len(list(tmp_path.iterdir())) == 39  # no scratch file is left
+
+
+UNGUARDED = SCRIPT.replace('if __name__ == "__main__":', "if True:")
+
+
+def test_a_missing_guard_is_one_sentence(tmp_path):
+    script = tmp_path / "squares.py"
+    script.write_text(UNGUARDED)
+    run = subprocess.run(
+        [sys.executable, str(script), str(tmp_path / "store")], capture_output=True, text=True, timeout=60
+    )
+    assert run.returncode == 1
+    assert run.stderr.count("Traceback") == 1
+    assert run.stderr.splitlines()[-1].startswith(
+        f"ValueError: {script}, line 10 calls sweep outside `if __name__"
+    )

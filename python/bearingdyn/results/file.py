@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Mapping
 from datetime import UTC, datetime
@@ -12,6 +13,7 @@ import numpy as np
 
 from bearingdyn import runfile
 from bearingdyn.results.datasets import march_dataset, stamp
+from bearingdyn.writing import check_target, write_whole
 
 if TYPE_CHECKING:
     import xarray
@@ -23,7 +25,9 @@ PARTS = "part"
 def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
     """Write one Dataset, or several by name (as groups), to one netCDF-4 file.
 
-    The file is written under another name and then moved into place: a failure leaves no half-written file.
+    The file is made in memory, written under another name beside its place, and moved there when it is on the
+    disk: whatever fails, the file that was there before is intact. This takes as much memory again as the
+    results do.
 
     Other programs can open the file: a complex number is stored along a last axis of two, real and imaginary.
 
@@ -37,9 +41,10 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     Raises
     ------
     ValueError
-        If there is nothing to save.
+        If there is nothing to save, or something that is no Dataset.
     OSError
-        Where the place cannot be written.
+        Where the place cannot be written: its folder is missing, the disk is full, or it is no file but a
+        folder, a device or a pipe. It names the file.
 
     Examples
     --------
@@ -56,19 +61,21 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     >>> again.equals(found)
     True
     """
-    target = Path(path)
     groups = dict(results) if isinstance(results, Mapping) and not hasattr(results, "dims") else {"": results}
     if not groups:
-        raise ValueError(f"{target}: nothing to save; give at least one result")
-    scratch = target.with_name(target.name + ".part")
-    try:
-        for i, (name, data) in enumerate(groups.items()):
-            _plain(data).to_netcdf(
-                scratch, mode="w" if i == 0 else "a", group=name or None, engine="h5netcdf"
-            )
-        scratch.replace(target)
-    finally:
-        scratch.unlink(missing_ok=True)
+        raise ValueError(f"{os.fspath(path)}: nothing to save; give at least one result")
+    for name, data in groups.items():
+        what = f"results[{name!r}]" if name else "results"
+        if not hasattr(data, "to_netcdf") or not hasattr(data, "data_vars"):
+            raise ValueError(f"{what} is {data!r}; it must be a Dataset, as every analysis returns it")
+        if "/" in name:
+            raise ValueError(f"results has the name {name!r}; the name of a result must be without /")
+    check_target(path)
+    # in memory: HDF5 itself does not survive a disk that fills up under it
+    made = io.BytesIO()
+    for i, (name, data) in enumerate(groups.items()):
+        _plain(data).to_netcdf(made, mode="w" if i == 0 else "a", group=name or None, engine="h5netcdf")
+    write_whole(path, made.getbuffer())
 
 
 def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
@@ -91,6 +98,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
     ValueError
         If the file does not exist, is no netCDF-4 file, or lacks the group.
     """
+    import h5netcdf  # noqa: F401  # so that its absence is not taken for a damaged file
     import xarray
 
     if runfile.is_run(path):
@@ -100,7 +108,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
             found = _complex(data.load())
     except FileNotFoundError:
         raise ValueError(f"{os.fspath(path)}: no such file") from None
-    except (OSError, KeyError) as error:
+    except Exception as error:  # the layers under it raise whatever the damage of a file leads to
         place = f"group {group!r} of " if group else ""
         raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}") from None
     if not group and not found.variables and groups(path):
@@ -119,7 +127,7 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
     Returns
     -------
     list[str]
-        Sorted; empty for a file of one result.
+        Sorted; empty for a file of one result, and for a run file.
 
     Raises
     ------
@@ -128,10 +136,12 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
     """
     import h5netcdf
 
+    if runfile.is_run(path):
+        return []
     try:
         with h5netcdf.File(path, "r") as file:
             return sorted(file.groups)
-    except OSError as error:
+    except Exception as error:  # as in open_result
         raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.application import QUANTITIES, RATES, Channel
 from bearingdyn.types import Array
+from bearingdyn.writing import write_whole
 
 if TYPE_CHECKING:
     import xarray
@@ -27,6 +27,7 @@ AXES = {8: "response", 9: "force", 11: "response", 12: "response", 13: "force"}
 TIME_RESPONSE, FREQUENCY_RESPONSE = 1, 4
 REAL, COMPLEX = 4, 6  # double precision
 WIDTH = 80
+EVEN = 1e-3  # of its increment, by which a point of an evenly spaced abscissa may be off
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +48,11 @@ class _Function:
 def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
     """Write every function of a frequency response or a transient as one ASCII dataset 58; SI units.
 
-    Ordinates keep twelve digits. The abscissa keeps six, as the format has it: it is written as its first
-    value and increment where these say it exactly, else value by value. Places are numbered as nodes from 1
-    in the order they first appear; the names of response and reference stand in full in the first text line.
+    Ordinates keep twelve digits. The abscissa keeps six, as the format has it. An evenly spaced one is its
+    first value and its increment, so six digits scale it by 5e-6 at most and no two points coincide; the
+    increment stands with all its digits in the second text line. Another is written value by value. Places
+    are numbered as nodes from 1 in the order they first appear; the names of response and reference stand in
+    full in the first text line.
 
     Parameters
     ----------
@@ -66,7 +69,8 @@ def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
     Raises
     ------
     ValueError
-        For a Dataset that is neither, or has fewer than two points.
+        For a Dataset that is neither, has fewer than two points, or an abscissa that does not rise or whose
+        points six digits do not tell apart.
     OSError
         Where the place cannot be written.
     """
@@ -75,17 +79,35 @@ def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
     abscissa = np.asarray(data[dim].values, dtype=np.float64)
     if abscissa.size < 2:
         raise ValueError(f"the result has {abscissa.size} points along {dim}; dataset 58 needs two or more")
+    _check_abscissa(dim, abscissa)
     names = [name for f in functions for name in (f.response, f.reference) if name]
     nodes = list(dict.fromkeys(_node(name)[0] for name in names))
     lines = [line for f in functions for line in _dataset_58(f, dim, abscissa, nodes, data.attrs)]
-    target = Path(path)
-    scratch = target.with_name(target.name + ".part")
-    try:
-        scratch.write_text("\n".join(lines) + "\n", encoding="ascii")
-        scratch.replace(target)
-    finally:
-        scratch.unlink(missing_ok=True)
+    write_whole(path, ("\n".join(lines) + "\n").encode("ascii"))
     return nodes
+
+
+def _even(abscissa: Array) -> float:
+    """The increment of an evenly spaced abscissa; 0 for another."""
+    n = abscissa.size
+    step = (abscissa[-1] - abscissa[0]) / (n - 1)
+    off = float(np.abs(abscissa - (abscissa[0] + step * np.arange(n))).max())
+    return float(step) if off <= EVEN * step + 1e-14 * float(np.abs(abscissa).max()) else 0.0
+
+
+def _check_abscissa(dim: str, abscissa: Array) -> None:
+    if not (np.diff(abscissa) > 0).all():
+        raise ValueError(f"{dim} does not rise from point to point; sort the result by it and drop doubles")
+    if _even(abscissa):
+        return
+    kept = np.array([float(f"{value:.5e}") for value in abscissa])
+    same = np.flatnonzero(np.diff(kept) <= 0)
+    if same.size:
+        at = abscissa[same[0]]
+        raise ValueError(
+            f"{dim} has points at {at!r} and {abscissa[same[0] + 1]!r}, which the six digits of dataset 58 "
+            f"do not tell apart, and is not evenly spaced; interpolate the result to even spacing"
+        )
 
 
 def _functions(data: xarray.Dataset) -> Iterator[_Function]:
@@ -138,15 +160,15 @@ def _dataset_58(
     f: _Function, dim: str, abscissa: Array, nodes: list[str], attrs: dict[str, object]
 ) -> Iterator[str]:
     n = abscissa.size
-    rounded = np.array([float(f"{value:.5e}") for value in (abscissa[0], abscissa[1] - abscissa[0])])
-    grid = rounded[0] + rounded[1] * np.arange(n)
-    even = bool(np.abs(grid - abscissa).max() <= 1e-9 * np.abs(abscissa).max())
+    step = _even(abscissa)
+    even = step > 0
     is_complex = np.iscomplexobj(f.values)
 
     yield f"{-1:6d}"
     yield f"{58:6d}"
     yield _ascii(f"{f.response} / {f.reference}" if f.reference else f.response, WIDTH)
-    yield _ascii(f"{attrs.get('analysis', 'NONE')}, zero-to-peak, SI units", WIDTH)
+    spacing = f", {dim} from {float(abscissa[0])!r} by {step!r}" if even else ""
+    yield _ascii(f"{attrs.get('analysis', 'NONE')}, zero-to-peak, SI units{spacing}", WIDTH)
     yield _ascii(str(attrs.get("made_at", "NONE")), WIDTH)
     yield _ascii(str(attrs.get("made_by", "NONE")), WIDTH)
     yield _ascii(f"inputs {attrs.get('inputs_hash', 'not known')}", WIDTH)
@@ -157,7 +179,7 @@ def _dataset_58(
         return f"{_ascii(place, 10)}{node:10d}{direction:4d}"
 
     yield f"{f.kind:5d}{0:10d}{0:5d}{0:10d} {end(f.response)} {end(f.reference)}"
-    start = rounded if even else np.zeros(2)
+    start = (float(abscissa[0]), step) if even else (0.0, 0.0)
     kind = COMPLEX if is_complex else REAL
     yield f"{kind:10d}{n:10d}{int(even):10d}{start[0]:13.5e}{start[1]:13.5e}{0.0:13.5e}"
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 import json
 import logging
-import os
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,6 +14,7 @@ from typing import Any
 from bearingdyn import inputs
 from bearingdyn.results import versions
 from bearingdyn.study.cases import Case, Parameters
+from bearingdyn.writing import write_whole
 
 log = logging.getLogger(__name__)
 
@@ -32,27 +31,39 @@ def name_of(function: Callable[..., Any]) -> str:
 
 @dataclass(frozen=True)
 class Store:
-    """The cases of functions, by hash of the function's name and bound values, the version and parameters."""
+    """The cases of functions, by hash of what the function is, the version and the parameters.
+
+    Raises
+    ------
+    ValueError
+        For a function that holds or uses what cannot be told by its content.
+    """
 
     folder: Path
     function: Callable[..., Any]
 
     def __post_init__(self) -> None:
+        name = name_of(self.function)
+        try:
+            self._of_function  # noqa: B018  # now: a callable may change as it is called
+        except (ValueError, RecursionError) as error:
+            raise ValueError(
+                f"function {name} cannot be told by its content, and a store would mix up its results "
+                f"({error}); pass what it needs as parameters of the cases, give the object that holds it an attribute "
+                f"told_as, a text that says all its results depend on, or leave store out"
+            ) from None
         self.folder.mkdir(parents=True, exist_ok=True)
 
-    def _key(self, parameters: Parameters) -> dict[str, Any]:
-        f = self.function
-        bound: Any = None
-        if isinstance(f, functools.partial):
-            bound = [f.args, f.keywords]
-        elif dataclasses.is_dataclass(f):
-            bound = f
+    @functools.cached_property
+    def _of_function(self) -> dict[str, Any]:
         return {
-            "function": name_of(f),
-            **({} if bound is None else {"bound": inputs.describe(bound)}),
+            "function": name_of(self.function),
+            "told": inputs.fingerprint(self.function),
             "version": versions()["bearingdyn"],
-            "parameters": inputs.describe(parameters),
         }
+
+    def _key(self, parameters: Parameters) -> dict[str, Any]:
+        return {**self._of_function, "parameters": inputs.describe(parameters)}
 
     def _path(self, parameters: Parameters) -> Path:
         return self.folder / f"{inputs.fingerprint(self._key(parameters))}.json"
@@ -62,11 +73,15 @@ class Store:
         path = self._path(parameters)
         try:
             kept = json.loads(path.read_text(encoding="utf-8"))
+            key = json.loads(json.dumps(self._key(parameters)))
+            if {name: kept.get(name) for name in key} != key:
+                log.warning("%s holds another case than its name says; the case is computed again", path)
+                return None
             values = {str(k): float(v) for k, v in kept["values"].items()}
             error = kept["error"]
         except FileNotFoundError:
             return None
-        except (ValueError, KeyError, TypeError, AttributeError):
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
             log.warning("%s holds no finished case; the case is computed again", path)
             return None
         return Case(parameters, values, error if error is None else str(error))
@@ -75,6 +90,4 @@ class Store:
         """Keep a case; the file is there whole or not at all."""
         path = self._path(case.parameters)
         kept = {**self._key(case.parameters), "values": dict(case.values), "error": case.error}
-        scratch = path.with_suffix(f".{os.getpid()}.part")
-        scratch.write_text(json.dumps(kept, indent=1), encoding="utf-8")
-        scratch.replace(path)
+        write_whole(path, json.dumps(kept, indent=1).encode())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import logging
 import multiprocessing
 import os
@@ -19,6 +20,7 @@ from concurrent.futures import (
 from contextlib import contextmanager
 from numbers import Real
 from pathlib import Path
+from types import FrameType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -64,9 +66,11 @@ def sweep(
         Ctrl-C ends the study when the cases being computed are done.
     store
         Folder, made where missing: each finished case, a failed one too, is written there at once, as JSON
-        under the hash of the function's name and bound arguments, this package's version and the parameters,
-        and taken from there when the study is run again. The function's code is not part of the hash: when
-        it changes, take another folder.
+        under the hash of the function, this package's version and the parameters, and taken from there when
+        the study is run again. Of the function counts all that it is: its code and name, bound arguments, the
+        object it is a method of, defaults, enclosed variables and the global values and functions it uses;
+        of installed packages and modules it uses, their names alone: when these change, take another folder.
+        Several studies may share a folder, at the same time too.
     progress
         Called with (cases done, cases in all) after each; True draws a bar on standard error.
     retry
@@ -80,8 +84,9 @@ def sweep(
     Raises
     ------
     ValueError
-        Before any work: no cases, unequal names, a parameter that cannot be told by its content, a function
-        that other processes cannot import.
+        Before any work: no cases, unequal names, a parameter that cannot be told by its content, nor, with
+        a store, the function; a function that other processes cannot import; a script that calls `sweep`
+        outside ``if __name__ == "__main__":``.
     concurrent.futures.BrokenExecutor
         Where a worker of a pool of processes died. What was finished is in the store. A dask cluster computes
         the cases of a worker that died anew, and gives up a case that killed several.
@@ -131,7 +136,7 @@ def _attempt(function: Study, parameters: dict[str, Any]) -> tuple[dict[str, flo
         return {str(name): _real(str(name), value) for name, value in returned.items()}, None
     except KeyboardInterrupt:
         raise KeyboardInterrupt from None
-    except Exception as error:
+    except BaseException as error:  # sys.exit too ends the case, not the study
         return {}, f"{type(error).__name__}: {error}"
 
 
@@ -187,6 +192,7 @@ def _pool(executor: Executor | None, function: Study, cases: int) -> Iterator[Ex
         yield executor
         return
     _importable(function)
+    _check_guard()
     pool = ProcessPoolExecutor(
         min(cases, _processors(), MOST_WORKERS), mp_context=multiprocessing.get_context("spawn")
     )
@@ -231,3 +237,31 @@ def _importable(function: Study) -> None:
     typed_in = not hasattr(sys.modules["__main__"], "__file__")
     if getattr(function, "__module__", "") == "__main__" and typed_in:
         raise ValueError(f"function {name} was typed in, and other processes cannot import it; {remedy}")
+
+
+def _check_guard() -> None:
+    """A script that starts processes does so behind its guard: each of them runs the script once more."""
+    frame: FrameType | None = sys._getframe()
+    while frame is not None:
+        if (
+            frame.f_globals.get("__name__") in ("__main__", "__mp_main__")
+            and frame.f_code.co_name == "<module>"
+        ):
+            break
+        frame = frame.f_back
+    file = getattr(sys.modules["__main__"], "__file__", None)
+    if frame is None or file is None or frame.f_code.co_filename != file:
+        return
+    try:
+        tree = ast.parse(Path(file).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and "__name__" in ast.unparse(node.test):
+            before = node.lineno <= frame.f_lineno
+            if before and (frame.f_lineno <= (node.end_lineno or 0) or "!=" in ast.unparse(node.test)):
+                return
+    raise ValueError(
+        f'{file}, line {frame.f_lineno} calls sweep outside `if __name__ == "__main__":`, and each worker '
+        f"process runs the script up to there again; put the call below that line"
+    )

@@ -13,9 +13,24 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.fem.abaqus_input import blocks, node
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.text_tables import (
+    Form,
+    existing,
+    first_line,
+    rows_fit,
+    symmetric_from,
+    table,
+    triples,
+    whole,
+)
 from bearingdyn.types import Array, Index
+
+COORDINATE = "an Abaqus matrix has lines of row, column (they count from 1) and value, or of five columns"
+MATRIX_INPUT = (
+    "an Abaqus matrix has lines of node, direction, node, direction, all whole numbers, and value, numbers "
+    "with a point"
+)
 
 
 def read_abaqus(
@@ -47,8 +62,10 @@ def read_abaqus(
         raise ValueError(f"{files[0]} and {files[1]} are of different formats; write both in the same")
     if K[0] is None or M[0] is None:
         n = 1 + max(int(A[1].max()) for A in (K, M))
+        for path, A in zip(files, (K, M), strict=True):
+            rows_fit(path, int(A[1].max()) + 1, len(A[2]))
         both = [symmetric_from(index[:, 0], index[:, 1], value, n) for _, index, value in (K, M)]
-        return check_matrices(both[0], both[1], points, **check)
+        return checked_files(files, both[0], both[1], points, **check)
     labels, place = np.unique(np.vstack([K[0], M[0]]), axis=0, return_inverse=True)
     place = place.ravel()
     matrices: list[scipy.sparse.csr_matrix] = []
@@ -58,28 +75,31 @@ def read_abaqus(
         own = place[begin : begin + len(label)]
         begin += len(label)
         matrices.append(symmetric_from(own[index[:, 0]], own[index[:, 1]], value, len(labels)))
-    return check_matrices(matrices[0], matrices[1], points, labels=labels, **check)
+    return checked_files(files, matrices[0], matrices[1], points, labels=labels, **check)
 
 
 def _entries(path: Path) -> tuple[Index | None, Index, Array]:
     """Labels (l, 2) of node and direction, or None; row and column (e, 2) of each entry; values (e,)."""
-    with path.open(encoding="ascii", errors="replace") as stream:
-        first = next((line for line in stream if line.strip() and not line.lstrip().startswith("*")), "")
-    table = columns(path, "," if "," in first else None, (3, 5), "an Abaqus matrix")
-    value = table[:, -1]
-    if table.shape[1] == 3:
-        index = whole(path, table[:, :2]) - 1
-        if index.min() < 0:
-            raise ValueError(f"{path} has row or column {index.min() + 1}; they count from 1")
-        return None, index, value
-    at = whole(path, table[:, :4])
+    first = first_line(path, "*")
+    separator = "," if "," in first else ""
+    width = len(first.replace(",", " ").split())
+    if width == 3:
+        form = Form(("count", "count", "number"), separator, "*", COORDINATE)
+        with path.open("rb") as stream:
+            row, column, value = triples(path, stream, form)
+        return None, np.stack([row, column], axis=1), value
+    if width != 5:
+        raise ValueError(f"{path} has {width} columns of numbers; an Abaqus matrix has 3 or 5")
+    with path.open("rb") as stream:
+        numbers = table(path, stream, Form(("whole",) * 4 + ("number",), separator, "*", MATRIX_INPUT))
+    at = whole(path, numbers[:, :4])
     if at[:, [0, 2]].min() < 1:
         raise ValueError(
             f"{path} names node {at[:, [0, 2]].min()}, an internal variable of Abaqus (contact, a coupling, "
             "an incompressible element); export a model without"
         )
     labels, place = np.unique(at.reshape(-1, 2), axis=0, return_inverse=True)
-    return labels, place.reshape(-1, 2), value
+    return labels, place.reshape(-1, 2), numbers[:, -1]
 
 
 def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:

@@ -5,13 +5,20 @@ A line of .sti and .mas is row, column, value, of the upper triangle; a line of 
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.text_tables import Form, existing, symmetric_from, triples
+
+ENTRIES = Form(
+    ("count", "count", "number"), "", "*",
+    "a CalculiX matrix has lines of row, column (they count from 1) and value, numbers with a point",
+)  # fmt: skip
+LABEL = re.compile(rb"\d{1,18}\.[1-6]")
 
 
 def read_calculix(
@@ -47,21 +54,26 @@ def read_calculix(
     labels = _labels(dof)
     matrices: list[Any] = []
     for path in (sti, mas):
-        table = columns(path, None, (3,), "a CalculiX matrix")
-        index = whole(path, table[:, :2]) - 1
-        if index.min() < 0 or index.max() >= len(labels):
-            raise ValueError(f"{path} has rows up to {index.max() + 1}, while {dof} names {len(labels)}")
-        matrices.append(symmetric_from(index[:, 0], index[:, 1], table[:, 2], len(labels)))
-    return check_matrices(matrices[0], matrices[1], points, labels=labels, **check)
+        with path.open("rb") as stream:
+            row, column, value = triples(path, stream, ENTRIES)
+        if max(row.max(), column.max()) >= len(labels):
+            raise ValueError(
+                f"{path} has rows up to {max(row.max(), column.max()) + 1}, while {dof} names {len(labels)}"
+            )
+        matrices.append(symmetric_from(row, column, value, len(labels)))
+    return checked_files([sti, mas], matrices[0], matrices[1], points, labels=labels, **check)
 
 
 def _labels(path: Path) -> np.ndarray:
     """Node and direction of each row, (n, 2)."""
-    try:
-        pairs = [line.split(".") for line in path.read_text(encoding="ascii").split()]
-        labels = np.array([(int(node), int(direction)) for node, direction in pairs], dtype=np.intp)
-    except ValueError as error:
-        raise ValueError(f"{path} has a line that is not node.direction: {error}") from error
+    with path.open("rb") as stream:
+        text = stream.read()
+    lines = text.split()
+    wrong = next((k for k, line in enumerate(lines) if not LABEL.fullmatch(line)), None)
+    if wrong is not None:
+        shown = lines[wrong][:40].decode("ascii", "replace")
+        raise ValueError(f"{path}, entry {wrong + 1} is {shown!r}, which is not node.direction, such as 12.3")
+    labels = np.array([[int(part) for part in line.split(b".")] for line in lines], dtype=np.intp)
     if not labels.size:
         raise ValueError(f"{path} is empty; it must name node.direction of each row")
     return labels

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import positive
+from bearingdyn.checks import positive, whole
 from bearingdyn.fem.factors import pivots
 from bearingdyn.fem.matrix_files.units import SI, Units
 from bearingdyn.fem.rigid import rigid_body_residual, rigid_transfer
@@ -19,6 +20,7 @@ from bearingdyn.types import Array, Index
 
 Points = ArrayLike | Mapping[int, ArrayLike]
 
+SIX_DIGITS = 5e-6  # a number written with six digits differs by up to so much of itself
 SYMMETRY = 1e-6  # files often carry six digits or so: larger differences are errors, not round-off
 SUPPORT = 1e30  # N/m: programs that keep a support in the matrix write such a number on its diagonal
 EXPECTED = 0.05  # accepted difference from a mass the user states
@@ -113,8 +115,8 @@ def check_matrices(
         (n, n) dense or sparse, symmetric, in the file's units; one triangle alone is refused.
     points
         (k, 3) positions of the nodes, or node number -> position, in the file's unit of length. With points,
-        K must not resist rigid motion (relative force below 1e-6), M must carry the same mass in all three
-        directions, and density and speed of sound must be those of a solid.
+        K must not resist rigid motion (relative force up to 5e-6, what six digits leave), M must carry the
+        same mass in all three directions, and density and speed of sound must be those of a solid.
     labels
         (n, 2) node number and direction 1...6 of each coordinate; they are put in rising order. None: there
         are three coordinates to a point, x, y, z, or six.
@@ -152,11 +154,27 @@ def check_matrices(
     return model
 
 
+def checked_files(
+    files: Sequence[str | Path], K: Any, M: Any, points: Points | None, **check: Any
+) -> FEMatrices:
+    """`check_matrices` of what was read from files; its errors name them."""
+    try:
+        return check_matrices(K, M, points, **check)
+    except ValueError as error:
+        raise ValueError(f"{' and '.join(dict.fromkeys(str(f) for f in files))}: {error}") from None
+
+
 def _sparse(name: str, value: Any) -> scipy.sparse.csr_matrix:
-    A = scipy.sparse.csr_matrix(value)
-    if np.iscomplexobj(A):
-        raise ValueError(f"{name} is complex; a stiffness or mass matrix must be real")
-    A = scipy.sparse.csr_matrix(A, dtype=np.float64)
+    kind = getattr(value, "dtype", np.dtype(np.float64)).kind
+    if kind == "b":
+        raise ValueError(f"{name} holds truth values, a pattern without numbers; export its values")
+    try:
+        A = scipy.sparse.csr_matrix(value)
+        if np.iscomplexobj(A):
+            raise ValueError(f"{name} is complex; a stiffness or mass matrix must be real")
+        A = scipy.sparse.csr_matrix(A, dtype=np.float64)
+    except TypeError as error:
+        raise ValueError(f"{name} is no matrix of numbers: {error}") from None
     if A.shape[0] != A.shape[1] or A.shape[0] == 0:
         raise ValueError(f"{name} has shape {A.shape}; it must be square")
     if not np.isfinite(A.data).all():
@@ -205,7 +223,8 @@ def _positions(points: Points, numbers: Index | None) -> tuple[Array, Index | No
 def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, internal: int) -> FEMatrices:
     """The model with its coordinates in the order of nodes and directions."""
     n = k.shape[0]
-    if not 0 <= internal < n:
+    internal = whole("internal", internal, 0, remedy=f"it must be a number of coordinates below {n}")
+    if not internal < n:
         raise ValueError(f"internal is {internal}; it must be a number of coordinates below {n}")
     at_nodes = n - internal
     tail = np.stack([np.full(internal, -1), np.zeros(internal)], axis=1).astype(np.intp)
@@ -221,7 +240,7 @@ def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, int
             )
         place = np.stack(np.divmod(np.arange(at_nodes), per), axis=1).astype(np.intp)
         return FEMatrices(M=m, K=k, points=p, nodes=numbers, dofs=np.vstack([place, tail]))
-    given = np.asarray(labels, dtype=np.intp)
+    given = _whole_labels(labels)
     if given.shape != (at_nodes, 2):
         raise ValueError(f"labels has shape {given.shape}; it must be ({at_nodes}, 2): node and direction")
     wrong = given[(given[:, 1] < 1) | (given[:, 1] > 6)]
@@ -238,6 +257,19 @@ def _placed(k: Any, m: Any, points: Points | None, labels: ArrayLike | None, int
     positions = None if points is None else _positions(points, numbers)[0]
     dofs = np.vstack([np.stack([row.ravel(), ordered[:, 1] - 1], axis=1), tail]).astype(np.intp)
     return FEMatrices(M=m[order][:, order], K=k[order][:, order], points=positions, nodes=numbers, dofs=dofs)
+
+
+def _whole_labels(labels: ArrayLike) -> Index:
+    try:
+        numbers = np.asarray(labels, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError("labels must be whole numbers, of node and direction of each coordinate") from None
+    wrong = numbers[~((np.rint(numbers) == numbers) & (np.abs(numbers) < 2**53))]
+    if wrong.size:
+        raise ValueError(
+            f"labels has {wrong.flat[0]:g}; node and direction of each coordinate must be whole numbers"
+        )
+    return numbers.astype(np.intp)
 
 
 def _check_coordinates(model: FEMatrices) -> None:
@@ -306,7 +338,7 @@ def _check_free(model: FEMatrices) -> None:
     assert model.points is not None
     R = model.rigid_motion(model.points.mean(axis=0))
     residual = rigid_body_residual(model.K, R)
-    if not residual < 1e-6:
+    if not residual <= SIX_DIGITS:  # what six digits leave of the balance at worst
         raise ValueError(
             f"K resists rigid motion (relative force {residual:.2g}); export the model without supports, "
             "with coordinates in the order x, y, z of each of points"
@@ -317,7 +349,7 @@ def _check_mass(model: FEMatrices, expected: float | None) -> None:
     assert model.points is not None
     T = model.rigid_motion(model.points.mean(axis=0))[:, :3]
     mass = np.diag(T.T @ (model.M @ T))
-    if not np.ptp(mass) <= 1e-6 * mass.max():
+    if not np.ptp(mass) <= 2.0 * SIX_DIGITS * mass.max():  # each sum within SIX_DIGITS
         raise ValueError(f"M has the masses {mass.tolist()} kg along x, y, z; they must be equal")
     if expected is None:
         return
@@ -358,13 +390,26 @@ def _check_units(model: FEMatrices, sound: tuple[float, float]) -> None:
 
 
 def _check_pivots(model: FEMatrices) -> None:
-    """K is positive semi-definite, by its pivots.
+    """K is positive semi-definite, by its pivots, but for what the digits of its file make of rigid motion.
 
-    A millionth of its diagonal is added, which lifts rigid motions, and what six digits leave of them,
-    above zero.
+    Scaled to a unit diagonal, S with orthonormal rigid motions Q, an exact K has S Q = 0. Rounding leaves
+    e = ‖S Q‖, which is measured, and an S whose elastic part is positive semi-definite then has no eigenvalue
+    below −(1 + √5)/2 e, the least one of [[−e, −e], [−e, 0]]; rounding shifts the elastic part by about e
+    more. So 3 e, or a millionth if that is more, is added before the pivots are looked at. Where positions
+    are not known and the numbers have six digits or fewer, it is the bound of Weyl: 5e-6 times the largest
+    row sum of |S|.
     """
+    root = np.sqrt(model.K.diagonal())
+    S = scipy.sparse.csr_matrix(scipy.sparse.diags(1.0 / root) @ model.K @ scipy.sparse.diags(1.0 / root))
+    left = 0.0
+    if model.points is not None:
+        R = root[:, None] * model.rigid_motion(model.points.mean(axis=0))
+        u, sizes, _ = np.linalg.svd(R, full_matrices=False)
+        left = 3.0 * float(np.linalg.norm(S @ u[:, sizes > 1e-9 * sizes[0]], 2))
+    elif _of_six_digits(model.K.data):
+        left = SIX_DIGITS * float(abs(S).sum(axis=1).max())
     try:
-        pivot = pivots(model.K + SYMMETRY * scipy.sparse.diags(model.K.diagonal()))
+        pivot = pivots(S + max(left, SYMMETRY) * scipy.sparse.eye(model.n))
     except RuntimeError as error:
         raise ValueError(f"K is singular beyond rigid motion ({error}); check the export") from error
     negative = np.flatnonzero(~(pivot > 0))
@@ -373,3 +418,10 @@ def _check_pivots(model: FEMatrices) -> None:
             f"K is indefinite: {negative.size} negative pivots, one at {model.name(int(negative[0]))}; "
             "a stress-free structure has none: check signs, contact and preload of the export"
         )
+
+
+def _of_six_digits(values: Array) -> bool:
+    """Whether no number has more than six digits, to round-off; zeros say nothing."""
+    v = np.abs(values[values != 0])
+    mantissa = v * 10.0 ** (5.0 - np.floor(np.log10(v)))
+    return bool(np.all(np.abs(mantissa - np.rint(mantissa)) < 1e-3))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
 from bearingdyn.fem.matrix_files.text_tables import existing
 
 
@@ -66,4 +66,4 @@ def read_op4(
     K, M = named(first, names[0], path), named(other, names[1], path if mass_path is None else mass_path)
     if points is None and coordinates is not None:
         points = np.asarray(named(first, coordinates, path), dtype=np.float64)
-    return check_matrices(K, M, points, **check)
+    return checked_files([path, path if mass_path is None else mass_path], K, M, points, **check)

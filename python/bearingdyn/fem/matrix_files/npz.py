@@ -2,16 +2,76 @@
 
 from __future__ import annotations
 
+import io
+import lzma
+import math
+import os
+import re
+import struct
+import tokenize
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 import scipy.sparse
 
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
 from bearingdyn.fem.matrix_files.text_tables import existing
+from bearingdyn.writing import write_whole
+
+# what zipfile and NumPy raise for damage, which depends on where it is
+UNREADABLE = (
+    ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, lzma.LZMAError, NotImplementedError,
+    RuntimeError, TypeError, KeyError, struct.error, OverflowError, SyntaxError, tokenize.TokenError,
+    MemoryError,
+)  # fmt: skip
+
+USED = re.compile(r"[KM](_(data|indices|indptr|shape))?|points|labels|internal")
+# a dense matrix of zeros packs by 1000; small ones are let through, for large ones this is a trap or a waste
+MOST_PACKED, SMALL = 100, 200_000_000
+
+
+def _arrays(path: Path) -> dict[str, Any]:
+    """Arrays of the archive by name, each as large as its own header says, the others left where they are."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            found = {}
+            for entry in archive.infolist():
+                name = entry.filename.removesuffix(".npy")
+                if not USED.fullmatch(name):
+                    continue
+                if entry.flag_bits & 1:
+                    raise ValueError(f"{name} is encrypted; write the archive without a password")
+                if entry.file_size > max(SMALL, MOST_PACKED * entry.compress_size):
+                    raise ValueError(
+                        f"{name} unpacks from {entry.compress_size} to {entry.file_size} bytes; "
+                        "write K and M in compressed rows"
+                    )
+                with archive.open(entry) as stream:
+                    found[name] = _one(name, stream, entry.file_size)
+            if not found:
+                raise ValueError(f"it holds {archive.namelist()[:10]}, nothing of K and M")
+            return found
+    except UNREADABLE as error:
+        raise ValueError(f"{path} cannot be read as a NumPy archive (.npz): {error}") from None
+
+
+def _one(name: str, stream: IO[bytes], size: int) -> Any:
+    version = np.lib.format.read_magic(stream)
+    if version not in ((1, 0), (2, 0)):
+        raise ValueError(f"{name} is of NumPy's format {version}; 1.0 and 2.0 are read")
+    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    shape, fortran, dtype = read(stream)
+    if dtype.kind not in "biufc":
+        raise ValueError(f"{name} holds {dtype}, not numbers")
+    data = stream.read(size)
+    if math.prod(shape) * dtype.itemsize != len(data):
+        raise ValueError(f"{name} has {len(data)} bytes, which are not the shape {shape} of its header")
+    flat = np.frombuffer(data, dtype).copy()
+    return flat.reshape(shape[::-1]).T if fortran else flat.reshape(shape)
 
 
 def _from_arrays(arrays: Mapping[str, Any], name: str, path: Path) -> Any:
@@ -25,7 +85,13 @@ def _from_arrays(arrays: Mapping[str, Any], name: str, path: Path) -> Any:
         )
     data, indices, indptr, shape = (arrays[part] for part in parts)
     try:
-        A = scipy.sparse.csr_matrix((data, indices, indptr), shape=tuple(int(i) for i in shape))
+        for part in (indices, indptr, shape):
+            if part.dtype.kind not in "iu":
+                raise TypeError(f"indices, indptr and shape must be whole numbers, and one is {part.dtype}")
+        n, m = (int(i) for i in shape.ravel())
+        if len(indptr) != n + 1:  # before memory is taken for what the shape says
+            raise ValueError(f"shape says {n} rows, and indptr has {len(indptr)} numbers, not {n + 1}")
+        A = scipy.sparse.csr_matrix((data, indices, indptr), shape=(n, m))
         A.check_format(full_check=True)
     except (ValueError, TypeError) as error:
         raise ValueError(f"{path} holds no compressed rows in {', '.join(parts)}: {error}") from error
@@ -53,17 +119,15 @@ def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FE
         For a file that does not exist or is not such an archive, or where check_matrices does.
     """
     p = existing(path)
-    try:
-        with np.load(p, allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-    except (ValueError, OSError, EOFError, zipfile.BadZipFile, AttributeError, TypeError) as error:
-        raise ValueError(f"{p} cannot be read as a NumPy archive (.npz): {error}") from error
+    arrays = _arrays(p)
     if "labels" in arrays:
         check.setdefault("labels", arrays["labels"])
     if "internal" in arrays:
-        check.setdefault("internal", int(arrays["internal"]))
+        if arrays["internal"].size != 1:
+            raise ValueError(f"{p} has internal of shape {arrays['internal'].shape}; it must be one number")
+        check.setdefault("internal", arrays["internal"].item())
     points = arrays.get("points") if points is None else points
-    return check_matrices(_from_arrays(arrays, "K", p), _from_arrays(arrays, "M", p), points, **check)
+    return checked_files([p], _from_arrays(arrays, "K", p), _from_arrays(arrays, "M", p), points, **check)
 
 
 def write_npz(path: str | Path, model: FEMatrices) -> None:
@@ -83,4 +147,7 @@ def write_npz(path: str | Path, model: FEMatrices) -> None:
         numbers = row if model.nodes is None else model.nodes[row]
         arrays["labels"] = np.stack([numbers, direction + 1], axis=1)
         arrays["internal"] = np.array(model.n - row.size)
-    np.savez(path, **arrays)
+    made = io.BytesIO()
+    np.savez(made, **arrays)
+    place = os.fspath(path)
+    write_whole(place if place.endswith(".npz") else place + ".npz", made.getbuffer())

@@ -1,0 +1,536 @@
+"""Every reader against damaged files: seeded mutants of sound ones, read in a process of their own.
+
+The rule: a mutant is read, or refused by a ValueError or OSError that names the file, within 5 s of processor
+time and 1 GB of memory beyond what the process had; and the interpreter lives.
+
+    python tests/fuzz_readers.py            # all readers, 200 mutants each
+    python tests/fuzz_readers.py npz 10000  # one reader, more mutants
+
+A reader is added by one function that writes sound files into a folder and returns how they are read; see
+READERS. `python tests/fuzz_readers.py npz 1 4711` repeats mutant 4711 and shows the traceback.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import resource
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import traceback
+import warnings
+import zipfile
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+SECONDS, BYTES = 5.0, 1 << 30
+SEED = 20261129
+# what people and broken programs write for a number
+NUMBERS = [
+    b"1e400", b"-1", b"0", b"nan", b"inf", b"99999999999999999999", b"9" * 400, b"2,5", b"2.0D+08", b"", b"\0",
+    b"1e-400", b"0x10", b"1.5", b"1_0", b"-0", b"1e", b"2147483648", b"9223372036854775807", b"true", b'"a"',
+    b"[1]", b"{}", b"null", b"\xef\xbc\x91", b"1.0-100", b"1 2", b"1;2",
+]  # fmt: skip
+
+Mutate = Callable[[bytes], bytes]
+
+
+@dataclass(frozen=True)
+class Reader:
+    """How a damaged file is read.
+
+    Parameters
+    ----------
+    write
+        Writes sound files into a folder.
+    read
+        Reads them from there.
+    inside
+        Mutates what is behind a checksum or a packing: (sound file, mutation) -> file; by turns with the
+        plain mutation of the bytes.
+    names_file
+        Whether the reader knows a file, and must name it.
+    """
+
+    write: Callable[[Path], None]
+    read: Callable[[Path], Any]
+    inside: Callable[[bytes, Mutate], bytes] | None = None
+    names_file: bool = True
+
+
+# ---------------------------------------------------------------- mutations
+
+
+def mutated(data: bytes, rng: np.random.Generator) -> bytes:
+    """One to three random damages."""
+    for _ in range(int(rng.integers(1, 4))):
+        data = _damaged(data, rng)
+    return data
+
+
+def _damaged(data: bytes, rng: np.random.Generator) -> bytes:
+    n = len(data)
+    if n == 0:
+        return bytes(rng.integers(0, 256, int(rng.integers(0, 50)), dtype=np.uint8))
+    a, b = sorted(int(i) for i in rng.integers(0, n + 1, 2))
+    b = min(b, a + int(rng.integers(1, 200)))
+    kind = int(rng.integers(0, 14))
+    if kind == 0:
+        flipped = bytearray(data)
+        flipped[min(a, n - 1)] ^= 1 << int(rng.integers(0, 8))
+        return bytes(flipped)
+    if kind == 1:
+        return data[:a] + bytes(rng.integers(0, 256, b - a, dtype=np.uint8)) + data[b:]
+    if kind == 2:
+        return data[:a] + data[b:]
+    if kind == 3:
+        return data[:b] + data[a:b] * int(rng.integers(1, 5)) + data[b:]
+    if kind == 4:
+        return data[:a]
+    if kind == 5:
+        return data[:a] + bytes(n - a)
+    if kind == 6:
+        return data[:a] + bytes(int(rng.integers(1, 9))) + data[b:]
+    if kind in (7, 8, 9):
+        return _number_changed(data, rng)
+    lines = data.split(b"\n")
+    i, j = (int(k) for k in rng.integers(0, len(lines), 2))
+    if kind == 10:
+        lines[i], lines[j] = lines[j], lines[i]
+    elif kind == 11:
+        del lines[i]
+    elif kind == 12:
+        lines.insert(j, lines[i])
+    else:
+        whole = int(rng.integers(0, 5))
+        text = data.decode("latin-1")
+        return [data.replace(b"\n", b"\r\n"), b"\xef\xbb\xbf" + data, text.encode("utf-16"), data.upper(),
+                data.replace(b".", b",")][whole]  # fmt: skip
+    return b"\n".join(lines)
+
+
+def _number_changed(data: bytes, rng: np.random.Generator) -> bytes:
+    digits = np.flatnonzero(np.isin(np.frombuffer(data, np.uint8), np.frombuffer(b"0123456789", np.uint8)))
+    if not digits.size:
+        return data
+    a = b = int(rng.choice(digits))
+    part = b"0123456789.+-eEdD"
+    while a > 0 and data[a - 1] in part:
+        a -= 1
+    while b < len(data) and data[b] in part:
+        b += 1
+    return data[:a] + NUMBERS[int(rng.integers(0, len(NUMBERS)))] + data[b:]
+
+
+# ---------------------------------------------------------------- readers
+
+
+def _model() -> Any:
+    import bearingdyn as bd
+
+    mesh = bd.box_mesh([0.0, 0.05, 0.1], [0.0, 0.02], [0.0, 0.03])
+    full = bd.Solid(mesh, bd.STEEL, {"a": "x-"}, f_max=0).full_model()
+    return mesh, full.K.tocoo(), full.M.tocoo()
+
+
+def _coordinate(A: Any, first: str, name: str) -> bytes:
+    n = A.shape[0]
+    lower = A.row >= A.col
+    rows = zip(A.row[lower], A.col[lower], A.data[lower], strict=True)
+    text = f"{first}{n} {n} {int(lower.sum())}\n" if first else ""
+    return (text + "".join(f"{i + 1} {j + 1} {v:{name}}\n" for i, j, v in rows)).encode()
+
+
+def _matrix_market() -> Reader:
+    import bearingdyn as bd
+
+    mesh, K, M = _model()
+
+    def write(folder: Path) -> None:
+        for name, A in (("k.mtx", K), ("m.mtx", M)):
+            first = "%%MatrixMarket matrix coordinate real symmetric\n% by hand\n"
+            (folder / name).write_bytes(_coordinate(A, first, ".9e"))
+
+    return Reader(write, lambda f: bd.read_matrices(f / "k.mtx", f / "m.mtx", mesh.points))
+
+
+def _matrix_market_array() -> Reader:
+    import bearingdyn as bd
+
+    mesh, K, M = _model()
+
+    def write(folder: Path) -> None:
+        for name, A in (("k.mtx", K), ("m.mtx", M)):
+            n = A.shape[0]
+            values = "".join(f"{v:.9e}\n" for v in A.toarray().T.ravel())
+            (folder / name).write_text(f"%%MatrixMarket matrix array real general\n{n} {n}\n{values}")
+
+    return Reader(write, lambda f: bd.read_matrices(f / "k.mtx", f / "m.mtx", mesh.points))
+
+
+def _abaqus() -> Reader:
+    import bearingdyn as bd
+
+    mesh, K, M = _model()
+
+    def write(folder: Path) -> None:
+        for name, A in (("k.mtx", K), ("m.mtx", M)):
+            lower = A.row >= A.col
+            rows = zip(A.row[lower], A.col[lower], A.data[lower], strict=True)
+            (folder / name).write_text(
+                "".join(f"{i // 3 + 1},{i % 3 + 1}, {j // 3 + 1},{j % 3 + 1}, {v:.9e}\n" for i, j, v in rows)
+            )
+
+    return Reader(write, lambda f: bd.read_matrices(f / "k.mtx", f / "m.mtx", mesh.points))
+
+
+def _abaqus_coordinate() -> Reader:
+    import bearingdyn as bd
+
+    mesh, K, M = _model()
+
+    def write(folder: Path) -> None:
+        for name, A in (("k.mtx", K), ("m.mtx", M)):
+            (folder / name).write_bytes(_coordinate(A, "", ".9e"))
+
+    return Reader(write, lambda f: bd.read_matrices(f / "k.mtx", f / "m.mtx", mesh.points))
+
+
+def _calculix() -> Reader:
+    import bearingdyn as bd
+
+    mesh, K, M = _model()
+
+    def write(folder: Path) -> None:
+        for name, A in (("k.sti", K), ("k.mas", M)):
+            (folder / name).write_bytes(_coordinate(A, "", ".9e"))
+        (folder / "k.dof").write_text("".join(f"{i // 3 + 1}.{i % 3 + 1}\n" for i in range(K.shape[0])))
+
+    return Reader(write, lambda f: bd.read_matrices(f / "k.sti", points=mesh.points))
+
+
+def _npz() -> Reader:
+    import bearingdyn as bd
+
+    mesh, K, M = _model()
+
+    def write(folder: Path) -> None:
+        labels = [(i // 3 + 1, i % 3 + 1) for i in range(K.shape[0])]
+        parts = {f"K_{part}": getattr(K.tocsr(), part) for part in ("data", "indices", "indptr", "shape")}
+        np.savez_compressed(
+            folder / "m.npz", **parts, M=M.toarray(), points=mesh.points, labels=labels, internal=0
+        )
+
+    def inside(data: bytes, mutate: Mutate) -> bytes:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            held = {name: archive.read(name) for name in archive.namelist()}
+        name = sorted(held)[zlib.crc32(mutate(b"which")) % len(held)]
+        whole = held[name]
+        # the header of an array is where sizes and kinds stand
+        held[name] = mutate(whole[:128]) + whole[128:] if len(whole) % 2 else mutate(whole)
+        made = io.BytesIO()
+        with zipfile.ZipFile(made, "w") as archive:
+            for entry, content in held.items():
+                archive.writestr(entry, content)
+        return made.getvalue()
+
+    return Reader(write, lambda f: bd.read_matrices(f / "m.npz"), inside)
+
+
+def _op4() -> Reader:
+    from pyyeti.nastran import op4
+
+    import bearingdyn as bd
+
+    mesh, K, M = _model()
+
+    def write(folder: Path) -> None:
+        op4.write(str(folder / "m.op4"), {"KGG": K.toarray(), "MGG": M.toarray()}, binary=False)
+
+    return Reader(write, lambda f: bd.read_matrices(f / "m.op4", points=mesh.points))
+
+
+def _nodes() -> Reader:
+    from bearingdyn.fem import read_nodes
+
+    def write(folder: Path) -> None:
+        (folder / "n.inp").write_text(
+            "*HEADING\nx\n*NODE, NSET=all\n1, 0., 0., 1.\n2, 1., , 3.\n*NODE\n3, 1.5E-3, 2., 4.,\n"
+        )
+
+    return Reader(write, lambda f: read_nodes(f / "n.inp"))
+
+
+def _result(folder: Path) -> None:
+    import xarray
+
+    import bearingdyn as bd
+
+    t = np.linspace(0.0, 1.0, 50)
+    data = xarray.Dataset(
+        {"x": ("t", t, {"units": "m"}), "z": ("t", np.exp(1j * t))},
+        {"t": t, "name": ("t", [f"p{i}" for i in range(50)])},
+        {"inputs": "{}"},
+    )
+    bd.save({"a": data, "b": data.isel(t=slice(5))}, folder / "r.nc")
+
+
+def _netcdf() -> Reader:
+    from bearingdyn.results import groups, open_result
+
+    def read(folder: Path) -> None:
+        for name in groups(folder / "r.nc") or [""]:
+            open_result(folder / "r.nc", name)
+
+    return Reader(_result, read)
+
+
+def _show() -> Reader:
+    """The command says in one line what is wrong, and names the file, whatever is in it."""
+    import contextlib
+
+    from bearingdyn.cli import main
+
+    def read(folder: Path) -> None:
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said), contextlib.redirect_stdout(io.StringIO()):
+            code = main(["show", str(folder / "r.nc")])
+        if code:
+            raise ValueError(said.getvalue())
+
+    return Reader(_result, read)
+
+
+def _run() -> Reader:
+    import bearingdyn as bd
+    from bearingdyn import runfile
+    from bearingdyn.results import open_result
+
+    def write(folder: Path) -> None:
+        app = bd.Application()
+        app.add("m", bd.RigidBody(1.0, (1e-3, 1e-3, 1e-3)))
+        app.ground("m.centre", stiffness=[1e6] * 6)
+        (folder / "x.run").unlink(missing_ok=True)
+        bd.transient(app, speed=0.0, dt=1e-5, steps=60, record=["m.centre.y"], stream=folder / "x.run")
+
+    def inside(data: bytes, mutate: Mutate) -> bytes:
+        at, blocks = len(runfile.MAGIC), []
+        while at < len(data):
+            length = struct.unpack_from("<QI", data, at)[0]
+            blocks.append(data[at + 12 : at + 12 + length])
+            at += 12 + length
+        k = zlib.crc32(mutate(b"which")) % len(blocks)
+        front = mutate(blocks[k][:200])  # where sizes and counts stand
+        blocks[k] = front + blocks[k][200:]
+        made = runfile.MAGIC
+        for block in blocks:
+            place = struct.pack("<QQ", len(made), len(block))
+            made += struct.pack("<QI", len(block), zlib.crc32(place + block)) + block
+        return made
+
+    return Reader(write, lambda f: open_result(f / "x.run"), inside)
+
+
+def _store() -> Reader:
+    from bearingdyn.study.cases import Case
+    from bearingdyn.study.store import Store
+
+    case = Case({"x": 1.0, "name": "a"}, {"y": 2.0})
+
+    def write(folder: Path) -> None:
+        Store(folder, json.dumps).write(case)
+
+    return Reader(write, lambda f: Store(f, json.dumps).read(case.parameters))
+
+
+def _material() -> Reader:
+    import bearingdyn as bd
+
+    rubber = bd.Maxwell(1e6, [2e6, 1e6], [1e-3, 1e-2], K=2e9, density=1200.0)
+
+    def write(folder: Path) -> None:
+        (folder / "m.json").write_text(rubber.to_json())
+
+    def read(folder: Path) -> None:
+        bd.Maxwell.from_json((folder / "m.json").read_text(encoding="utf-8"))
+
+    return Reader(write, read, names_file=False)
+
+
+def _dma() -> Reader:
+    import bearingdyn as bd
+
+    rows = "".join(
+        f"{T},{f},{2e6 * (1 + f / 50 - T / 200):.4e},{3e5 * (1 + f / 100):.4e}\n"
+        for T in (-10, 0, 10, 20)
+        for f in (1.0, 3.0, 10.0, 30.0)
+    )
+
+    def write(folder: Path) -> None:
+        head = "Temperature (C),Frequency (Hz),Storage modulus G' (Pa),Loss modulus G'' (Pa)\n"
+        (folder / "d.csv").write_text(head + rows)
+
+    return Reader(write, lambda f: bd.read_dma(f / "d.csv"))
+
+
+def _abaqus_mesh() -> Reader:
+    import bearingdyn as bd
+
+    def write(folder: Path) -> None:
+        (folder / "m.inp").write_text(
+            "*HEADING\nblock\n*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+            "*ELEMENT, TYPE=C3D8, ELSET=all\n1,1,2,3,4,5,6,7,8\n*NSET, NSET=low, GENERATE\n1,4,1\n"
+            "*NSET, NSET=top\n5,6,\n7,8\n*ELSET, ELSET=e\n1\n*SURFACE, NAME=s\ne, S1\n"
+        )
+
+    return Reader(write, lambda f: bd.read_mesh(f / "m.inp"))
+
+
+def _gmsh() -> Reader:
+    import bearingdyn as bd
+
+    def write(folder: Path) -> None:
+        (folder / "m.msh").write_text(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+            '$PhysicalNames\n2\n3 1 "body"\n2 2 "low"\n$EndPhysicalNames\n'
+            "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n$Elements\n2\n1 2 2 2 1 1 2 3\n"
+            "2 4 2 1 1 1 2 3 4\n$EndElements\n"
+        )
+
+    return Reader(write, lambda f: bd.read_mesh(f / "m.msh"))
+
+
+READERS: dict[str, Callable[[], Reader]] = {
+    "matrix_market": _matrix_market,
+    "matrix_market_array": _matrix_market_array,
+    "abaqus_matrices": _abaqus,
+    "abaqus_coordinate": _abaqus_coordinate,
+    "calculix": _calculix,
+    "npz": _npz,
+    "op4": _op4,
+    "nodes": _nodes,
+    "netcdf": _netcdf,
+    "show": _show,
+    "run": _run,
+    "store": _store,
+    "material": _material,
+    "dma": _dma,
+    "abaqus_mesh": _abaqus_mesh,
+    "gmsh": _gmsh,
+}
+
+
+# ---------------------------------------------------------------- the run
+
+
+class TooLongError(BaseException):
+    """Beyond SECONDS; no reader may catch it."""
+
+
+def _alarm(*_: object) -> None:
+    raise TooLongError
+
+
+def sound_files(reader: Reader, folder: Path) -> dict[str, bytes]:
+    reader.write(folder)
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+
+
+def mutant(reader: Reader, files: dict[str, bytes], number: int) -> tuple[str, bytes]:
+    """Name and content of the damaged file of mutant `number`."""
+    rng = np.random.default_rng([SEED, number])
+    name = sorted(files)[int(rng.integers(0, len(files)))]
+    if reader.inside is not None and number % 2:
+        return name, reader.inside(files[name], lambda data: mutated(data, rng))
+    return name, mutated(files[name], rng)
+
+
+def trial(reader: Reader, folder: Path, files: dict[str, bytes], number: int) -> str:
+    """What mutant `number` did against the rule; empty where it did nothing."""
+    name, content = mutant(reader, files, number)
+    (folder / name).write_bytes(content)
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
+    try:
+        reader.read(folder)
+    except (ValueError, OSError) as error:
+        if reader.names_file and not any(known in str(error) for known in files):
+            return f"{type(error).__name__} names no file: {error!s:.200}"
+    except TooLongError:
+        return f"more than {SECONDS} s\n{traceback.format_exc(limit=-4)}"
+    except BaseException as error:
+        return f"{type(error).__name__}: {error!s:.200}\n{traceback.format_exc(limit=-3)}"
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        (folder / name).write_bytes(files[name])
+        for path in folder.iterdir():
+            if path.name not in files:
+                path.unlink()
+    return ""
+
+
+def child(name: str, first: int, last: int) -> None:
+    """Trials of a reader; a line with the number of each, and JSON after one that breaks the rule."""
+    warnings.simplefilter("ignore")
+    reader = READERS[name]()
+    signal.signal(signal.SIGPROF, _alarm)
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        files = sound_files(reader, folder)
+        reader.read(folder)  # the sound one must pass, and loads what is loaded late
+        used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (used + BYTES, resource.RLIM_INFINITY))
+        for number in range(first, last):
+            print(number, flush=True)
+            wrong = trial(reader, folder, files, number)
+            if wrong:
+                print(json.dumps([number, wrong]), flush=True)
+
+
+def fuzz(name: str, count: int, first: int = 0) -> list[tuple[int, str]]:
+    """Number and fault of each mutant of a reader that breaks the rule."""
+    faults: list[tuple[int, str]] = []
+    last = first + count
+    while first < last:
+        run = subprocess.run(
+            [sys.executable, __file__, "--child", name, str(first), str(last)],
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        lines = run.stdout.splitlines()
+        faults += [tuple(json.loads(line)) for line in lines if line.startswith("[")]
+        begun = [int(line) for line in lines if line.isdigit()]
+        if run.returncode == 0:
+            return faults
+        if not begun:
+            raise RuntimeError(f"reader {name} does not read its sound files:\n{run.stderr}")
+        faults.append((begun[-1], f"the process died ({run.returncode}): {run.stderr[-500:]}"))
+        first = begun[-1] + 1
+    return faults
+
+
+def main(argv: list[str]) -> int:
+    if argv[:1] == ["--child"]:
+        child(argv[1], int(argv[2]), int(argv[3]))
+        return 0
+    names = argv[:1] or list(READERS)
+    count = int(argv[1]) if len(argv) > 1 else 200
+    first = int(argv[2]) if len(argv) > 2 else 0
+    broken = 0
+    for name in names:
+        faults = fuzz(name, count, first)
+        broken += len(faults)
+        print(f"{name}: {count} mutants, {len(faults)} outside the rule", flush=True)
+        for number, fault in faults[:8]:
+            print(f"  {number}: {fault}")
+    return int(broken > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
