@@ -165,6 +165,9 @@ class Report:
     refreshes: int = 0
     refactors: int = 0
     grazing: int = 0
+    open_steps: int = 0
+    open_t: float = 0.0
+    open_bearing: int = -1
     t: float = 0.0
     residual: float = 0.0
     bearing: int = -1

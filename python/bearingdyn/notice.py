@@ -16,6 +16,19 @@ class Notice(UserWarning):
     """
 
 
+class OpenSideWarning(Notice):
+    """In a march, balls were pressed onto the side of an angular contact bearing that has no shoulder.
+
+    The motion computed from then on is that of a bearing with two shoulders.
+
+    When: a march in which a ball that carries (1 % of the largest ball load) stood beyond the bottom of its
+    groove, on the open side. The bearing, the first time and the number of steps are named.
+
+    Remedy: more preload, or the bearing hung the other way round, `bearing.mirrored()`; with shoulders on
+    both sides it has `open_side=None`.
+    """
+
+
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Warn at the nearest caller that is not of this package.
 

@@ -206,7 +206,9 @@ class Application:
             What is hung; of a pair, each row by itself.
         inner, outer
             Interfaces of the rings. outer may be "ground", or the raceway of a flexible ring,
-            "ring.raceway", made for this bearing's arm.
+            "ring.raceway", made for this bearing's arm. A ring turns with the shaft where its part does: one
+            with gyroscopic forces, as a Shaft or a rotating RigidBody, or connected to such a part. Where
+            neither is known to turn, the inner ring does. The bearing's `turning` says otherwise.
         offset
             How far along z the inner ring sits beyond where it is drawn, m: a spacer or nut that preloads
             two bearings against each other by displacement.

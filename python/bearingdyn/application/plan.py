@@ -178,6 +178,32 @@ class Plan:
                 return turning
             turning |= joined
 
+    def ring_speeds(self, joint: BearingJoint) -> tuple[float, float]:
+        """Speeds of inner and outer ring of a bearing over that of the shaft.
+
+        A ring turns where its part is known to turn. What the bearing says itself is taken as long as it does
+        not contradict; where nothing is known, the inner ring turns.
+
+        Raises
+        ------
+        ValueError
+            For a bearing that says of a ring another speed than that of the turning part it is hung on.
+        """
+        known = self.turning_parts()
+        turns = [end.part in known for end in (joint.inner, joint.outer)]
+        told = joint.bearing.turning
+        if told is None:
+            return (float(turns[0]), float(turns[1])) if any(turns) else joint.bearing.ring_speeds
+        for ring, end, turning, speed in zip(
+            ("inner", "outer"), (joint.inner, joint.outer), turns, joint.bearing.ring_speeds, strict=True
+        ):
+            if turning and speed != 1.0:
+                raise ValueError(
+                    f"bearing {joint.name!r}: turning is {told!r}, and its {ring} ring is hung on {end}, "
+                    f"which turns with the shaft; leave turning out, or hang the rings the other way round"
+                )
+        return joint.bearing.ring_speeds
+
     def check_joints(self) -> None:
         """Check that every interface and raceway is used or declared free.
 
