@@ -16,6 +16,17 @@ class Notice(UserWarning):
     """
 
 
+class FitWarning(Notice):
+    """Two neighbours at one interface hardly fit, by the radii and widths that are known of them.
+
+    When: radii 1 to 5 % apart (above, they are refused); a bearing or a bonded layer that has less than nine
+    tenths of its width on its seat; two interfaces joined that both face outwards, or both inwards.
+
+    Remedy: correct the dimension, or pass `fits=False` to `connect` or `bearing` where they are meant to
+    differ.
+    """
+
+
 class OpenSideWarning(Notice):
     """In a march, balls were pressed onto the side of an angular contact bearing that has no shoulder.
 

@@ -12,6 +12,7 @@ from bearingdyn.application.loads import Load
 from bearingdyn.application.place import GRAVITY, GROUND, Place
 from bearingdyn.application.rigid import arm, rigid_shapes
 from bearingdyn.cms import Raceway, Superelement
+from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.types import Array
 
 
@@ -138,6 +139,11 @@ class Plan:
     def raceway(self, place: Place) -> Raceway | None:
         """The raceway at a place; None where there is none."""
         return self.parts[place.part].raceways.get(place.name) if place.part in self.parts else None
+
+    def faces(self, place: Place) -> tuple[RoundFace, ...]:
+        """Cylinders that the part at a place offers there; none where it knows of none, or of the ground."""
+        source = self.sources.get(place.part)
+        return source.round_faces().get(place.name, ()) if isinstance(source, HasRoundFaces) else ()
 
     def check_raceway(self, joint: BearingJoint) -> None:
         """Check a new bearing against the raceway it is hung in, if it is hung in one.
