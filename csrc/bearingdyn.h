@@ -329,8 +329,9 @@ typedef struct bd_energy {
 } bd_energy;
 #undef BD_ENERGY_FIELD
 
-/* X(type, name, how it adds): of two marches, one after the other, a count is the sum of both and anything else the
- * last of both. A new counter is named here, counted where it happens, and typed in core.Report. */
+/* X(type, name, how it adds): of two marches, one after the other, a count is the sum of both; of the rest the last of
+ * both counts, or the first that is not negative. A new counter is named here, counted where it happens, and typed in
+ * core.Report. */
 typedef long long bd_count;
 #define BD_REPORT_LIST(X)                                                                          \
     X(bd_status, status, last)                                                                     \
@@ -340,8 +341,8 @@ typedef long long bd_count;
     X(bd_count, refactors, sum)  /* of S, because the speed moved: counted by the caller */        \
     X(bd_count, grazing, sum)    /* steps that ended on position alone: a film opens or closes */  \
     X(bd_count, open_steps, sum) /* with a ball pressed on a bearing's open side */                \
-    X(double, open_t, last)      /* at the first of them */                                        \
-    X(int, open_bearing, last)   /* the bearing of the first, -1 without */                        \
+    X(double, open_t, first)     /* at the first of them, -1 without */                            \
+    X(int, open_bearing, first)  /* whose it was, -1 without */                                    \
     X(double, t, last)           /* at the end */                                                  \
     X(double, residual, last)    /* of the last step, relative */                                  \
     X(int, bearing, last)        /* with the largest residual, -1 without */

@@ -140,7 +140,7 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
     const double dt = scheme->dt;
     long long rows = 0;
 
-    *report = (bd_report){.status = BD_OK, .bearing = -1, .open_bearing = -1};
+    *report = (bd_report){.status = BD_OK, .bearing = -1, .open_t = -1.0, .open_bearing = -1};
     if (!bd_clock_valid(&state.clock)) {
         report->status = BD_BAD_VALUE;
         return 0;

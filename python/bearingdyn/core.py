@@ -156,7 +156,7 @@ class Stepping:
 class Report:
     """Where and how a march ended (bd_report); the sum of two is that of one march after the other.
 
-    The fields are those of REPORT_FIELDS, which says of each whether it adds or the last one counts.
+    The fields are those of REPORT_FIELDS, which says of each whether it adds, or the first or the last one counts.
     """
 
     status: int = 0
@@ -166,7 +166,7 @@ class Report:
     refactors: int = 0
     grazing: int = 0
     open_steps: int = 0
-    open_t: float = 0.0
+    open_t: float = -1.0
     open_bearing: int = -1
     t: float = 0.0
     residual: float = 0.0
@@ -174,8 +174,13 @@ class Report:
 
     def __add__(self, later: Report) -> Report:
         mine, its = vars(self), vars(later)
-        added = {n: mine[n] + its[n] if how == "sum" else its[n] for n, how in REPORT_FIELDS.items()}
-        return Report(**added)
+
+        def both(a: float, b: float, how: str) -> float:
+            if how == "sum":
+                return a + b
+            return a if how == "first" and a >= 0 else b
+
+        return Report(**{n: both(mine[n], its[n], how) for n, how in REPORT_FIELDS.items()})
 
     @property
     def counts(self) -> dict[str, int]:

@@ -18,8 +18,8 @@ DOUBTFUL = 0.01
 """Of the radius: the tightest press fits (ISO 286, u to zc) and the loosest running fits (c11) of machine
 parts stay below it; a dimension rounded to a millimetre, or a sleeve left out, does not."""
 IMPOSSIBLE = 0.05
-"""Of the radius: nothing that is pressed, shrunk, glued or turned to size is that far off, and rubber is hardly
-squeezed more; a bearing of the next bore is. Of a bearing, whose bore and outside are standard, an overlap of
+"""Of the radius: nothing that is pressed, shrunk, glued or turned to size is that far off, rubber is hardly
+squeezed more, a bearing of the next bore is. Of a bearing, whose bore and outside are standard, an overlap of
 more than DOUBTFUL is impossible already; a gap may stand for a sleeve."""
 HALF = 0.4
 """Of a ring's width, on its seat: below a half the force at mid-width acts beside the seat; the tenth to
