@@ -76,6 +76,23 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
         *parts[i] = memory;
 }
 
+/* Of the largest ball load: a ball that only brushes the groove does not carry. */
+static const double carries = 0.01;
+
+bool bd_bearing_runs_off(const bd_bearing *bearing, const bd_bearing_work *work)
+{
+    const bd_bearing_data *data = &bearing->data;
+    double largest = 0.0, astray = 0.0;
+    if (data->shoulder == 0)
+        return false;
+    for (int j = 0; j < data->n_balls; j++) {
+        const bool open = (double)data->shoulder * work->sine_a[j] < -data->open_sine;
+        largest = fmax(largest, work->force[j]);
+        astray = open ? fmax(astray, work->force[j]) : astray;
+    }
+    return astray > carries * largest;
+}
+
 bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const double *z_rate,
                             double angle, double cage_speed, bd_turn shaft, double *g, double *K,
                             double *C, double *loads)

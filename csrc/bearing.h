@@ -44,6 +44,9 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
 /* Whether a bearing has no waves, pits or unequal balls; its shifts are then zero for ever. */
 bool bd_bearing_perfect(const bd_bearing *bearing);
 
+/* Whether a ball that carries is pressed on the side without a shoulder, after a force was worked out. */
+bool bd_bearing_runs_off(const bd_bearing *bearing, const bd_bearing_work *work);
+
 /* Shifts of all balls at the first ball's azimuth psi and the shaft's turn. */
 void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, double psi,
                           double cage_speed, bd_turn turn);

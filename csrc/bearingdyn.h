@@ -129,7 +129,7 @@ typedef struct bd_contact {
 /* ---------------------------------------------------------------- ball bearing (bearing.c) */
 
 #define BD_WAVE_LIST(X)                                                                            \
-    X(BD_WAVE_INNER_RADIAL, "inner_radial") /* of the inner race, which turns with the shaft */    \
+    X(BD_WAVE_INNER_RADIAL, "inner_radial") /* of a race, which turns with its ring */             \
     X(BD_WAVE_INNER_AXIAL, "inner_axial")                                                          \
     X(BD_WAVE_OUTER_RADIAL, "outer_radial")                                                        \
     X(BD_WAVE_OUTER_AXIAL, "outer_axial")                                                          \
@@ -169,13 +169,18 @@ typedef struct bd_bearing_data {
     double e0;        /* x0^2 + y0^2 - A^2, formed without cancellation */
     bd_contact contact;
     double cage_ratio; /* cage speed over shaft speed */
-    double angle0;     /* azimuth of the first ball at zero shaft angle */
-    double spin_ratio; /* spin of a ball about its own axis over shaft speed */
+    double inner_ratio,
+        outer_ratio; /* speed of each ring over shaft speed: its waves and pits turn so */
+    double angle0;   /* azimuth of the first ball at zero shaft angle */
+    double
+        spin_ratio; /* spin of a ball about its own axis over shaft speed, < 0 where the outer ring is faster */
     double ball_diameter, inner_radius, outer_radius; /* of a ball; of the races where balls run */
     int n_waves, n_pits;
     const bd_wave *waves;
     const bd_pit *pits;
     const double *oversize; /* (n_balls) diameter of each ball beyond the nominal, or NULL */
+    int shoulder; /* +1, -1: axial load on the inner ring is borne towards +z, -z only; 0: both ways */
+    double open_sine; /* sine of the contact angle on the open side from which a ball runs off */
 } bd_bearing_data;
 
 typedef struct bd_bearing bd_bearing;           /* as kept in a model */
@@ -324,8 +329,9 @@ typedef struct bd_energy {
 } bd_energy;
 #undef BD_ENERGY_FIELD
 
-/* X(type, name, how it adds): of two marches, one after the other, a count is the sum of both and anything else the
- * last of both. A new counter is named here, counted where it happens, and typed in core.Report. */
+/* X(type, name, how it adds): of two marches, one after the other, a count is the sum of both; of the rest the last of
+ * both counts, or the first that is not negative. A new counter is named here, counted where it happens, and typed in
+ * core.Report. */
 typedef long long bd_count;
 #define BD_REPORT_LIST(X)                                                                          \
     X(bd_status, status, last)                                                                     \
@@ -334,6 +340,9 @@ typedef long long bd_count;
     X(bd_count, refreshes, sum)  /* of Newton's matrix */                                          \
     X(bd_count, refactors, sum)  /* of S, because the speed moved: counted by the caller */        \
     X(bd_count, grazing, sum)    /* steps in which balls were held where their film opens */       \
+    X(bd_count, open_steps, sum) /* with a ball pressed on a bearing's open side */                \
+    X(double, open_t, first)     /* at the first of them, -1 without */                            \
+    X(int, open_bearing, first)  /* whose it was, -1 without */                                    \
     X(double, t, last)           /* at the end */                                                  \
     X(double, residual, last)    /* of the last step, relative */                                  \
     X(int, bearing, last)        /* with the largest residual, -1 without */

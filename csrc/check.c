@@ -78,8 +78,11 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
         return BD_BAD_VALUE;
     if (bearing->n_waves < 0 || bearing->n_pits < 0)
         return BD_BAD_SHAPE;
-    const double sizes[] = {bearing->spin_ratio, bearing->ball_diameter, bearing->inner_radius,
-                            bearing->outer_radius};
+    if (bearing->shoulder < -1 || bearing->shoulder > 1)
+        return BD_BAD_VALUE;
+    const double sizes[] = {bearing->spin_ratio,   bearing->ball_diameter, bearing->inner_radius,
+                            bearing->outer_radius, bearing->inner_ratio,   bearing->outer_ratio,
+                            bearing->open_sine};
     if (!all_finite(sizes, sizeof sizes / sizeof sizes[0]) ||
         (bearing->n_pits > 0 && !(bearing->ball_diameter > 0.0)) ||
         (bearing->oversize && !all_finite(bearing->oversize, (size_t)bearing->n_balls)))

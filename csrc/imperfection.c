@@ -63,6 +63,12 @@ void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, doub
 {
     const bd_bearing_data *data = &bearing->data;
     const double spin = data->spin_ratio * turn.angle, spin_rate = data->spin_ratio * turn.speed;
+    const double inner = data->inner_ratio * turn.angle, outer = data->outer_ratio * turn.angle;
+    const double inner_speed = data->inner_ratio * turn.speed,
+                 outer_speed = data->outer_ratio * turn.speed;
+    /* the first ball's azimuth on each race, and how fast the race runs past it */
+    const double on_inner = psi - inner, inner_rate = cage_speed - inner_speed;
+    const double on_outer = psi - outer, outer_rate = cage_speed - outer_speed;
     double **cleared[] = {&work->shift_X,      &work->shift_Y,      &work->shift,
                           &work->shift_X_rate, &work->shift_Y_rate, &work->shift_rate};
 
@@ -71,7 +77,6 @@ void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, doub
 
     for (int w = 0; w < data->n_waves; w++) {
         const bd_wave *wave = &data->waves[w];
-        const double on_inner = psi - turn.angle, inner_rate = cage_speed - turn.speed;
         switch (wave->kind) {
         case BD_WAVE_INNER_RADIAL:
             add_race_wave(bearing, w, 1.0, on_inner, inner_rate, work->shift_Y, work->shift_Y_rate);
@@ -80,10 +85,12 @@ void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, doub
             add_race_wave(bearing, w, 1.0, on_inner, inner_rate, work->shift_X, work->shift_X_rate);
             break;
         case BD_WAVE_OUTER_RADIAL:
-            add_race_wave(bearing, w, -1.0, psi, cage_speed, work->shift_Y, work->shift_Y_rate);
+            add_race_wave(bearing, w, -1.0, on_outer, outer_rate, work->shift_Y,
+                          work->shift_Y_rate);
             break;
         case BD_WAVE_OUTER_AXIAL:
-            add_race_wave(bearing, w, -1.0, psi, cage_speed, work->shift_X, work->shift_X_rate);
+            add_race_wave(bearing, w, -1.0, on_outer, outer_rate, work->shift_X,
+                          work->shift_X_rate);
             break;
         case BD_WAVE_BALL:
             if (wave->order % 2 == 0) { /* the same on both sides; odd orders keep the diameter */
@@ -107,10 +114,10 @@ void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, doub
                     rate);
             continue;
         }
-        const bool inner = pit->kind == BD_PIT_INNER;
-        const double radius = inner ? data->inner_radius : data->outer_radius;
-        const double turned = inner ? turn.angle : 0.0;
-        const double rate = cage_speed - (inner ? turn.speed : 0.0);
+        const bool of_inner = pit->kind == BD_PIT_INNER;
+        const double radius = of_inner ? data->inner_radius : data->outer_radius;
+        const double turned = of_inner ? inner : outer;
+        const double rate = of_inner ? inner_rate : outer_rate;
         for (int j = 0; j < data->n_balls; j++) {
             const double psi_j = psi + two_pi * (double)j / (double)data->n_balls;
             add_pit(bearing, pit, radius, psi_j - turned - pit->angle, rate, &work->shift[j],

@@ -118,6 +118,21 @@ double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double
     return clock->reference;
 }
 
+/* A step with a ball on its bearing's open side; the first of them is kept. */
+static void count_open_sides(const bd_model *model, const bd_work *work, double t,
+                             bd_report *report)
+{
+    int b = 0;
+    while (b < model->n_bearings && !bd_bearing_runs_off(&model->bearings[b], &work->bearings[b]))
+        b++;
+    if (b == model->n_bearings)
+        return;
+    if (report->open_steps++ == 0) {
+        report->open_t = t;
+        report->open_bearing = b;
+    }
+}
+
 long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work, double *flat,
                    long long n_steps, long long decimate, double *record, bd_report *report)
 {
@@ -125,7 +140,7 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
     const double dt = scheme->dt;
     long long rows = 0;
 
-    *report = (bd_report){.status = BD_OK, .bearing = -1};
+    *report = (bd_report){.status = BD_OK, .bearing = -1, .open_t = -1.0, .open_bearing = -1};
     if (!bd_clock_valid(&state.clock)) {
         report->status = BD_BAD_VALUE;
         return 0;
@@ -155,6 +170,7 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
             break;
         }
         state.clock.steps++;
+        count_open_sides(model, work, t, report);
         if (scheme->audit)
             bd_energy_step(model, work, &state);
 

@@ -124,6 +124,10 @@ static const bd_py_field bearing_fields[] = {
     OBJECT("table", table),
     DOUBLE("cage_ratio", cage_ratio),
     DOUBLE("angle0", angle0),
+    DOUBLE("inner_ratio", inner_ratio),
+    DOUBLE("outer_ratio", outer_ratio),
+    INT("shoulder", shoulder),
+    DOUBLE("open_sine", open_sine),
     OBJECT("imperfections", imperfections),
 };
 #undef INT

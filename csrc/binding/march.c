@@ -74,7 +74,8 @@ PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
         goto done;
     }
 
-    bd_report total = {.status = status, .bearing = -1}, part = {0};
+    bd_report total = {.status = status, .bearing = -1, .open_t = -1.0, .open_bearing = -1};
+    bd_report part = {0};
     long long kept = 0, chunk = 1;
     bd_state_get(model, flat, &total.t, NULL, NULL, NULL);
     while (total.status == BD_OK && total.steps < steps) {

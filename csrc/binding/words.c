@@ -142,6 +142,7 @@ void bd_py_report_add(bd_report *total, const bd_report *part)
 {
 #define ADD_sum(to, from) to += from
 #define ADD_last(to, from) to = from
+#define ADD_first(to, from) to = to < 0 ? from : to
 #define ADD(type, name, adds) ADD_##adds(total->name, part->name);
     BD_REPORT_LIST(ADD)
 }

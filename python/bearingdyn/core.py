@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -163,7 +163,8 @@ class Stepping:
 class Report:
     """Where and how a march ended (bd_report); the sum of two is that of one march after the other.
 
-    The fields are those of REPORT_FIELDS, which says of each whether it adds or the last one counts.
+    The fields are those of REPORT_FIELDS, which says of each whether it adds, or
+    the first or the last one counts.
     """
 
     status: int = 0
@@ -172,14 +173,22 @@ class Report:
     refreshes: int = 0
     refactors: int = 0
     grazing: int = 0
+    open_steps: int = 0
+    open_t: float = -1.0
+    open_bearing: int = -1
     t: float = 0.0
     residual: float = 0.0
     bearing: int = -1
 
     def __add__(self, later: Report) -> Report:
         mine, its = vars(self), vars(later)
-        added = {n: mine[n] + its[n] if how == "sum" else its[n] for n, how in REPORT_FIELDS.items()}
-        return Report(**added)
+
+        def both(a: Any, b: Any, how: str) -> Any:
+            if how == "sum":
+                return a + b
+            return a if how == "first" and a >= 0 else b
+
+        return Report(**{n: both(mine[n], its[n], how) for n, how in REPORT_FIELDS.items()})
 
     @property
     def counts(self) -> dict[str, int]:

@@ -27,6 +27,30 @@ class CoarseStep(Notice):
     """
 
 
+class FitWarning(Notice):
+    """Two neighbours at one interface hardly fit, by the radii and widths that are known of them.
+
+    When: radii 1 to 5 % apart (above, they are refused); a bearing or a bonded layer that has less than nine
+    tenths of its width on its seat; two interfaces joined that both face outwards, or both inwards.
+
+    Remedy: correct the dimension, or pass `fits=False` to `connect` or `bearing` where they are meant to
+    differ.
+    """
+
+
+class OpenSideWarning(Notice):
+    """In a march, balls were pressed onto the side of an angular contact bearing that has no shoulder.
+
+    The motion computed from then on is that of a bearing with two shoulders.
+
+    When: a march in which a ball that carries (1 % of the largest ball load) stood beyond the bottom of its
+    groove, on the open side. The bearing, the first time and the number of steps are named.
+
+    Remedy: more preload, or the bearing hung the other way round, `bearing.mirrored()`; with shoulders on
+    both sides it has `open_side=None`.
+    """
+
+
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Warn at the nearest caller that is not of this package.
 

@@ -113,6 +113,7 @@ void make_imperfect(bd_bearing_data *bearing)
         {BD_PIT_BALL, 2, 0.2, 1e-3, 2e-6},
     };
     static const double oversize[] = {0.0, 1e-6, 0.0, -5e-7, 0.0, 0.0, 3e-7, 0.0};
+    bearing->inner_ratio = 1.0;
     bearing->spin_ratio = 1.8;
     bearing->ball_diameter = 11.5e-3;
     bearing->inner_radius = 16e-3;

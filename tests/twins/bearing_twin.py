@@ -76,6 +76,12 @@ def imperfections(
     flaws = spec.imperfections
     dX = dY = d = X_rate = Y_rate = rate = 0.0
     spin, spin_speed = flaws.spin_ratio * shaft_angle, flaws.spin_ratio * shaft_speed
+    # each race stands at its own angle and turns at its own speed
+    turned = {True: spec.inner_ratio * shaft_angle, False: spec.outer_ratio * shaft_angle}
+    past = {
+        True: cage_speed - spec.inner_ratio * shaft_speed,
+        False: cage_speed - spec.outer_ratio * shaft_speed,
+    }
     for kind, order, owner, amplitude, phase in flaws.waves:
         if kind == 4:
             if owner == ball:
@@ -84,11 +90,11 @@ def imperfections(
                     rate -= amplitude * order * spin_speed * np.sin(order * (spin + side) + phase)
             continue
         inner = kind < 2
-        argument = order * (psi - shaft_angle if inner else psi) + phase
+        argument = order * (psi - turned[inner]) + phase
         sign = 1.0 if inner else -1.0
         value = sign * amplitude * np.cos(argument)
         slope = -sign * amplitude * order * np.sin(argument)
-        speed = cage_speed - shaft_speed if inner else cage_speed
+        speed = past[inner]
         if kind % 2:
             dX, X_rate = dX + value, X_rate + slope * speed
         else:
@@ -98,9 +104,9 @@ def imperfections(
         if kind == 2:
             meetings = [(D / 2, spin - angle + side, spin_speed) for side in (0.0, np.pi) if owner == ball]
         elif kind == 0:
-            meetings = [(flaws.inner_radius, psi - shaft_angle - angle, cage_speed - shaft_speed)]
+            meetings = [(flaws.inner_radius, psi - turned[True] - angle, past[True])]
         else:
-            meetings = [(flaws.outer_radius, psi - angle, cage_speed)]
+            meetings = [(flaws.outer_radius, psi - turned[False] - angle, past[False])]
         for radius, at, speed in meetings:
             s = radius * wrapped(at)
             d -= drop(D, width, depth, s)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bearingdyn.analysis.statics import BearingState, Statics, diagonal_blocks
 from bearingdyn.application import Application
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.checks import number, whole
-from bearingdyn.system import LoadTerm, System, assemble
+from bearingdyn.system import BearingTerm, LoadTerm, System, assemble
 from bearingdyn.types import Array
 
 
@@ -113,7 +114,7 @@ def equilibrium(
     Raises
     ------
     ValueError
-        Where a body is free to move.
+        Where a body is free to move, or a load presses balls onto the open side of a bearing.
     ArithmeticError
         Where there is no balance; names the body that lost its support.
 
@@ -139,6 +140,7 @@ def equilibrium(
             for t in system.bearings
         )
         q, states = rest.balance(bearings, q)
+        _check_open_sides(bearings, states)
         passage.append(states)
         if i == 0:
             first, x = replace(system, bearings=bearings), rest.T @ q
@@ -151,6 +153,16 @@ def equilibrium(
         for name, state in passage[0].items()
     }
     return Equilibrium(first, x, mean, modulus)
+
+
+def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, BearingState]) -> None:
+    """Refuse a state in which balls carry where their bearing has no shoulder: ValueError."""
+    for term in bearings:
+        kernel, state = term.kernel(), states[term.name]
+        astray = runs_off(kernel, state.z, state.loads, kernel.angle0)
+        if astray:
+            force = ", ".join(f"{f:.4g}" for f in state.force)
+            raise ValueError(f"bearing {term.name!r} is loaded by ({force}) N; {astray}; {OPEN_SIDE_REMEDY}")
 
 
 def with_loads(system: System, loads: tuple[LoadTerm, ...]) -> System:

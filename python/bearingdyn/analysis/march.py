@@ -15,7 +15,9 @@ from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.coarseness import warn_if_coarse
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.application import Application
+from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import number, numbers, positive, require, whole
+from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.results import inputs_of
 from bearingdyn.system import System
 from bearingdyn.types import Array
@@ -218,7 +220,7 @@ class March:
         progress
             Told of the steps done and of all there are.
         """
-        status = 0
+        status, told = 0, False
         while status == 0 and (done < self.total or start):
             settling = done < self.settle
             left = (self.settle if settling else self.total) - done
@@ -233,7 +235,20 @@ class March:
                 progress=part_of(progress, done, self.total),
             )
             start, status, done = False, report.status, done + report.steps
+            if report.open_steps and not told:
+                told = True
+                self._tell_open_side(report)
             yield rows, state, report
+
+    def _tell_open_side(self, report: core.Report) -> None:
+        """Warn of the first step with a ball on the open side of a bearing."""
+        name = self.system.bearings[report.open_bearing].name
+        warn(
+            f"bearing {name!r}: from t = {report.open_t:.6g} s on, in {report.open_steps} of the "
+            f"{report.steps} steps marched, balls are pressed onto its open side, where no shoulder holds "
+            f"them; {OPEN_SIDE_REMEDY}",
+            OpenSideWarning,
+        )
 
     def run(
         self,

@@ -8,6 +8,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.application.fitting import RINGS, check_bearing, check_connection
 from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
 from bearingdyn.application.loads import Unbalance, in_time
 from bearingdyn.application.place import GRAVITY, GROUND
@@ -101,13 +102,27 @@ class Application:
         plan.parts[name] = plan.reduced[name]
         plan.sources[name] = part
 
-    def connect(self, a: str, b: str) -> None:
+    def connect(self, a: str, b: str, *, fits: bool = True) -> None:
         """Join two interfaces rigidly: they move as one.
+
+        Parameters
+        ----------
+        a, b
+            The interfaces, "part.interface".
+        fits
+            Whether what is known of both is compared: one must sit in the other. Radii more than 5 % apart
+            are refused, and warned of above 1 %; so are parts that run into a shoulder. False: they are meant
+            to differ.
 
         Raises
         ------
         ValueError
-            If either is unknown or connected already, or both are of one part.
+            If either is unknown or connected already, both are of one part, or they do not fit.
+
+        Warns
+        -----
+        FitWarning
+            Where they hardly fit.
         """
         first, second = self.plan.interface(a), self.plan.interface(b)
         for place in (first, second):
@@ -117,7 +132,10 @@ class Application:
                     f"{place} is connected already, to {partner}; connect the third part to another "
                     f"interface of either"
                 )
-        self.plan.connections.append(Connection(first, second))
+        joint = Connection(first, second)
+        if fits:
+            check_connection((first, second), (self.plan.faces(first), self.plan.faces(second)))
+        self.plan.connections.append(joint)
 
     def ground(
         self,
@@ -194,7 +212,14 @@ class Application:
         self.plan.free_interfaces.add(place)
 
     def bearing(
-        self, name: str, bearing: BallBearing, *, inner: str, outer: str, offset: float = 0.0
+        self,
+        name: str,
+        bearing: BallBearing,
+        *,
+        inner: str,
+        outer: str,
+        offset: float = 0.0,
+        fits: bool = True,
     ) -> None:
         """Hang a bearing between the interfaces of its two rings.
 
@@ -206,21 +231,34 @@ class Application:
             What is hung; of a pair, each row by itself.
         inner, outer
             Interfaces of the rings. outer may be "ground", or the raceway of a flexible ring,
-            "ring.raceway", made for this bearing's arm.
+            "ring.raceway", made for this bearing's arm. A ring turns with the shaft where its part does: one
+            with gyroscopic forces, as a Shaft or a rotating RigidBody, or connected to such a part. Where
+            neither is known to turn, the inner ring does. The bearing's `turning` says otherwise.
         offset
             How far along z the inner ring sits beyond where it is drawn, m: a spacer or nut that preloads
             two bearings against each other by displacement.
+        fits
+            Whether bore, outside and width are compared with the seats, as by `connect`; of a bearing without
+            `boundary`, whether the seats leave room for its rings.
 
         Raises
         ------
         ValueError
-            If this is no bearing, a name is unknown or taken, the raceway has another arm, or the offset is
-            not finite.
+            If this is no bearing, a name is unknown or taken, the raceway has another arm, the offset is not
+            finite, or a ring does not fit.
+
+        Warns
+        -----
+        FitWarning
+            Where a ring hardly fits.
         """
         self.plan.check_new("bearing", name)
         ends = self.plan.interface(inner), self.plan.raceway_or_interface(outer)
         joint = BearingJoint(name, bearing, *ends, offset)
         self.plan.check_raceway(joint)
+        if fits:
+            for ring, place in zip(RINGS, (joint.inner, joint.outer), strict=True):
+                check_bearing(name, bearing, ring, place, self.plan.faces(place))
         self.plan.bearings[name] = joint
 
     def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
@@ -249,6 +287,7 @@ class Application:
                 f'fit {name!r}: {ring!r} is no flexible face; make the ring with outside="flexible" and '
                 f'name its "outside"'
             )
+        check_connection((joint.ring, joint.bore), (self.plan.faces(joint.ring), self.plan.faces(joint.bore)))
         if joint.ring in self.plan.raceways_used():
             raise ValueError(f"fit {name!r}: {ring} is in use already; give each its own")
         self.plan.fits[name] = joint

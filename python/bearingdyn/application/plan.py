@@ -12,6 +12,7 @@ from bearingdyn.application.loads import Load
 from bearingdyn.application.place import GRAVITY, GROUND, Place
 from bearingdyn.application.rigid import arm, rigid_shapes
 from bearingdyn.cms import Raceway, Superelement
+from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.types import Array
 
 
@@ -139,6 +140,11 @@ class Plan:
         """The raceway at a place; None where there is none."""
         return self.parts[place.part].raceways.get(place.name) if place.part in self.parts else None
 
+    def faces(self, place: Place) -> tuple[RoundFace, ...]:
+        """Cylinders that the part at a place offers there; none where it knows of none, or of the ground."""
+        source = self.sources.get(place.part)
+        return source.round_faces().get(place.name, ()) if isinstance(source, HasRoundFaces) else ()
+
     def check_raceway(self, joint: BearingJoint) -> None:
         """Check a new bearing against the raceway it is hung in, if it is hung in one.
 
@@ -177,6 +183,32 @@ class Plan:
             if joined <= turning:
                 return turning
             turning |= joined
+
+    def ring_speeds(self, joint: BearingJoint) -> tuple[float, float]:
+        """Speeds of inner and outer ring of a bearing over that of the shaft.
+
+        A ring turns where its part is known to turn. What the bearing says itself is taken as long as it does
+        not contradict; where nothing is known, the inner ring turns.
+
+        Raises
+        ------
+        ValueError
+            For a bearing that says of a ring another speed than that of the turning part it is hung on.
+        """
+        known = self.turning_parts()
+        turns = [end.part in known for end in (joint.inner, joint.outer)]
+        told = joint.bearing.turning
+        if told is None:
+            return (float(turns[0]), float(turns[1])) if any(turns) else joint.bearing.ring_speeds
+        for ring, end, turning, speed in zip(
+            ("inner", "outer"), (joint.inner, joint.outer), turns, joint.bearing.ring_speeds, strict=True
+        ):
+            if turning and speed != 1.0:
+                raise ValueError(
+                    f"bearing {joint.name!r}: turning is {told!r}, and its {ring} ring is hung on {end}, "
+                    f"which turns with the shaft; leave turning out, or hang the rings the other way round"
+                )
+        return joint.bearing.ring_speeds
 
     def check_joints(self) -> None:
         """Check that every interface and raceway is used or declared free.

@@ -22,7 +22,9 @@ from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
+from bearingdyn.bearing.open_side import REMEDY, OpenSide, open_sine, runs_off, shoulder
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
+from bearingdyn.bearing.turning import Turning, ring_speeds
 from bearingdyn.checks import nonnegative, number, positive, require, vector
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.types import Array
@@ -60,7 +62,7 @@ class BallBearing:
     clearance
         Diametral clearance Pd, m. Exactly one of clearance and contact_angle.
     contact_angle
-        Free contact angle α0, rad; the inner ring then carries axial load towards +z.
+        Free contact angle α0, rad; the inner ring then carries axial load towards +z, see `open_side`.
     material, ball_material
         Elastic material of the rings and of the balls.
     film
@@ -71,7 +73,7 @@ class BallBearing:
     kappa
         Deflection coefficient of one ball, both contacts in series, instead of Hertz's, N/m^1.5.
     cage_ratio
-        Cage speed over inner-ring speed instead of ½(1 − γ).
+        Cage speed over inner-ring speed with the outer ring at rest, instead of ½(1 − γ).
     angle0
         Azimuth of the first ball at cage angle 0, rad, from x towards y.
     waviness, defects
@@ -80,6 +82,16 @@ class BallBearing:
         (Z,) diameter of each ball beyond Dw, m; empty: all equal.
     arm
         Arm of tilts and moments instead of the radius R_i of the inner groove centres, m.
+    turning
+        Which ring turns with the shaft, "inner", "outer" or "both", or the speeds of inner and outer ring
+        over that of the shaft, such as (1.0, -0.5). None: an application sees it from what the rings are hung
+        on, and elsewhere the inner ring turns.
+    open_side
+        Where there is no shoulder: "-z", and axial load on the inner ring is borne towards +z alone, or "+z",
+        the same bearing hung the other way round. None: both ways. "auto": "-z" with a contact angle, else
+        None. A load that presses balls onto the open side is refused.
+    boundary
+        (bore, outside, width), m, against which an application checks shaft and housing; None: not known.
     overrides
         For `dataclasses.replace` only: carries kappa, cage_ratio and arm as given, so that a changed geometry
         changes what was not given.
@@ -114,6 +126,9 @@ class BallBearing:
     waviness: tuple[Waviness, ...]
     defects: tuple[Pit, ...]
     oversize: tuple[float, ...]
+    turning: Turning | None
+    open_side: OpenSide
+    boundary: tuple[float, float, float] | None
     overrides: Overrides
 
     def __init__(
@@ -137,6 +152,9 @@ class BallBearing:
         defects: Sequence[Pit] = (),
         oversize: Sequence[float] = (),
         arm: float | None = None,
+        turning: Turning | None = None,
+        open_side: OpenSide = "auto",
+        boundary: tuple[float, float, float] | None = None,
         overrides: Overrides = Overrides(),  # noqa: B008 (immutable)
     ) -> None:
         Geometry(Z, Dw, Dpw, fi, fo, clearance, contact_angle)
@@ -154,6 +172,12 @@ class BallBearing:
             require(0 <= ratio <= 1, "cage_ratio", ratio, "it must lie in 0..1 (½(1 − γ), near 0.4)")
         if given.arm is not None:
             positive("arm", given.arm, "it must be positive and finite, in m")
+        if turning is not None and not isinstance(turning, str):
+            turning = ring_speeds(turning)
+        ring_speeds(turning)
+        shoulder(open_side, contact_angle)
+        if boundary is not None:
+            boundary = _measures(boundary, Dpw, Dw)
         waves, pits, sizes = checked(int(Z), waviness, defects, oversize)
         values = {
             "Z": int(Z),
@@ -171,6 +195,9 @@ class BallBearing:
             "waviness": waves,
             "defects": pits,
             "oversize": sizes,
+            "turning": turning,
+            "open_side": open_side,
+            "boundary": boundary,
             "overrides": given,
         }
         for name, value in values.items():
@@ -199,10 +226,38 @@ class BallBearing:
         return resultant_deflection_coefficient(self.inner_contact.kappa, self.outer_contact.kappa)
 
     @property
+    def ring_speeds(self) -> tuple[float, float]:
+        """Speeds of inner and outer ring over that of the shaft."""
+        return ring_speeds(self.turning)
+
+    @property
     def cage_ratio(self) -> float:
-        """Cage speed over inner-ring speed, outer ring at rest."""
-        given = self.overrides.cage_ratio
-        return self.geometry.cage_ratio if given is None else float(given)
+        """Cage speed over shaft speed: ½(1 − γ) where the inner ring turns, ½(1 + γ) where the outer does."""
+        given, (inner, outer) = self.overrides.cage_ratio, self.ring_speeds
+        against_outer = self.geometry.cage_ratio if given is None else float(given)
+        return outer + against_outer * (inner - outer)
+
+    @property
+    def spin_ratio(self) -> float:
+        """Spin of a ball about its own axis over shaft speed; negative where the outer ring is faster."""
+        inner, outer = self.ring_speeds
+        return self.geometry.ball_spin(1.0) * (inner - outer)
+
+    def mirrored(self) -> BallBearing:
+        """The bearing hung the other way round: its shoulder and its open side change places.
+
+        Waves and pits stay as they are described in space.
+
+        Raises
+        ------
+        ValueError
+            For a bearing given by its contact angle that is said to have two shoulders.
+        """
+        side = shoulder(self.open_side, self.contact_angle)
+        if side == 0:
+            require(not self.contact_angle, "open_side", self.open_side, 'to be mirrored, give "+z" or "-z"')
+            return self
+        return replace(self, open_side="+z" if side > 0 else "-z")
 
     @property
     def arm(self) -> float:
@@ -216,17 +271,20 @@ class BallBearing:
         return self.Z * Q * math.cos(self.contact_angle or 0.0) / 5
 
     def frequencies(self, speed: float, contact_angle: float | None = None) -> Frequencies:
-        """Cage, ball-pass and ball-spin frequencies, Hz, at the inner-ring speed in rad/s, in pure rolling.
+        """Cage, ball-pass and ball-spin frequencies, Hz, at the shaft speed in rad/s, in pure rolling.
+
+        Which ring turns with the shaft is said by `turning`.
 
         Parameters
         ----------
         contact_angle
             Of the loaded state, rad; None: the nominal one, 0 if a clearance is given.
         """
+        rings = [ratio * speed for ratio in self.ring_speeds]
         if contact_angle is None:
-            return self.geometry.frequencies(speed)
+            return self.geometry.frequencies(*rings)
         loaded = abs(number("contact_angle", contact_angle, "it must be a finite angle in rad"))
-        return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(speed)
+        return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(*rings)
 
     def turned(self, angle: float) -> BallBearing:
         """The bearing as it stands with its cage at `angle`, rad, from now on called zero.
@@ -234,8 +292,9 @@ class BallBearing:
         The shaft has turned by angle/cage_ratio and the balls have spun: waves and pits stand accordingly.
         """
         shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
-        # a wave's argument is order·(azimuth − shaft) on the inner race and order·spin on a ball
-        carried = {"inner": shaft, "outer": 0.0, "ball": -self.geometry.ball_spin(1.0) * shaft}
+        inner, outer = self.ring_speeds
+        # a wave's argument is order·(azimuth − turn of its ring) on a race and order·spin on a ball
+        carried = {"inner": inner * shaft, "outer": outer * shaft, "ball": -self.spin_ratio * shaft}
         return replace(
             self,
             angle0=self.angle0 + angle,
@@ -259,13 +318,15 @@ class BallBearing:
             x0, y0, e0 = 0.0, A - half, -half * (2 * A - half)
         else:
             x0, y0, e0 = A * math.sin(geometry.alpha0), A * math.cos(geometry.alpha0), 0.0
+        side = shoulder(self.open_side, self.contact_angle)
+        inner, outer = self.ring_speeds
         axial, order, sine = RIGID.columns
         return BearingKernel(
             Z=self.Z,
             axial=axial,
             order=order,
             sine=sine,
-            x0=x0,
+            x0=-x0 if side < 0 else x0,
             y0=y0,
             A=A,
             e0=e0,
@@ -276,17 +337,20 @@ class BallBearing:
             damping_table=table,
             cage_ratio=self.cage_ratio,
             angle0=self.angle0,
+            inner_ratio=inner,
+            outer_ratio=outer,
+            shoulder=side,
+            open_sine=open_sine(geometry.alpha0),
             imperfections=self._imperfections(),
         )
 
     def _imperfections(self) -> Imperfections:
         """Waves, pits and sizes, with the spin and the radii of the races where the balls run."""
-        geometry = self.geometry
         reach = self.Dw * math.cos(self.contact_angle or 0.0)
         waves = [row for wave in self.waviness for row in wave.rows(self.Z)]
         pits = [pit.row(self.Z) for pit in self.defects]
         return Imperfections(
-            spin_ratio=geometry.ball_spin(1.0),
+            spin_ratio=self.spin_ratio,
             ball_diameter=self.Dw,
             inner_radius=(self.Dpw - reach) / 2,
             outer_radius=(self.Dpw + reach) / 2,
@@ -321,7 +385,7 @@ class BallBearing:
         velocity
             (6,) rate of q, m/s and rad/s; None is rest.
         speed
-            Speed of the inner ring, rad/s; the cage turns at cage_ratio × speed and moves the balls through
+            Speed of the shaft, rad/s; the cage turns at cage_ratio × speed and moves the balls through
             their indentations, which damping resists.
 
         Raises
@@ -368,7 +432,8 @@ class BallBearing:
         Raises
         ------
         ValueError
-            On a wrong shape or a value that is not finite.
+            On a wrong shape or a value that is not finite, and for a load that presses balls onto the open
+            side of an angular contact bearing.
         ArithmeticError
             If no equilibrium is found.
         """
@@ -387,6 +452,11 @@ class BallBearing:
 
         expected = (float(np.linalg.norm(target)) / self.kappa) ** (2 / 3) + self.geometry.Pd / 2 + self.film
         z = minimum(stored, target, expected or 1e-9)
+        if self._kernel.shoulder:
+            loads = core.bearing_force(self._kernel, z, still, turn, 0.0, shaft)[3]
+            astray = runs_off(self._kernel, z, loads, turn)
+            if astray:
+                raise ValueError(f"load is {f.tolist()}; {astray}; {REMEDY}")
         return np.array([z[0], z[1], z[2], z[4] / R, -z[3] / R, 0.0])
 
     def _evaluate(self, q: ArrayLike, angle: float, velocity: ArrayLike, speed: float) -> _Response:
@@ -400,3 +470,15 @@ class BallBearing:
         shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
         response: _Response = core.bearing_force(self._kernel, z, zdot, turn, cage, shaft, speed)
         return response
+
+
+def _measures(boundary: object, Dpw: float, Dw: float) -> tuple[float, float, float]:
+    """(bore, outside, width) as numbers; ValueError unless the balls fit between bore and outside."""
+    meaning = "(bore, outside, width) in m"
+    bore, outside, width = (float(v) for v in vector("boundary", boundary, (3,), meaning))  # type: ignore[arg-type]
+    positive("boundary width", width, "it must be a positive width in m")
+    fits = 0 < bore < Dpw - Dw and outside > Dpw + Dw
+    races = f"the races, Ø{Dpw - Dw:.6g} and Ø{Dpw + Dw:.6g} m, between bore and outside"
+    remedy = f"it must be {meaning}, {races}"
+    require(fits, "boundary", boundary, remedy)
+    return bore, outside, width

@@ -64,7 +64,7 @@ class _Motion(NamedTuple):
 
 @dataclass(frozen=True)
 class Running:
-    """A bearing whose inner ring turns, with the inertia of its balls; the outer ring is at rest.
+    """A turning bearing with the inertia of its balls; its rings turn as its `turning` says.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class Running:
         The bearing; waviness, defects and unequal balls are not taken. Half of its film is on each race; a κ
         of its own is shared by the races as Hertz's would be.
     speed
-        Speed of the inner ring, rad/s.
+        Speed of the shaft, rad/s.
     control
         Race on which the balls do not spin, which sets the ball's attitude β: "outer" with λ_o = 2, λ_i = 0,
         or "inner" with λ_i = λ_o = 1, as Harris has it.
@@ -222,8 +222,9 @@ class Running:
         tan = s_o / (c_o + ratio) if self.control == "outer" else s_i / (c_i - ratio)
         outer = (c_o + tan * s_o) / (1 + ratio * c_o)
         inner = (c_i + tan * s_i) / (1 - ratio * c_i)
-        orbit = self.speed * outer / (outer + inner)
-        spin = self.speed / ((outer + inner) * ratio)  # ω_R cosβ
+        at_inner, at_outer = (turns * self.speed for turns in brg.ring_speeds)
+        orbit = (at_inner * outer + at_outer * inner) / (outer + inner)
+        spin = (at_inner - at_outer) / ((outer + inner) * ratio)  # ω_R cosβ, against the orbit
         inertia = self._mass * brg.Dw**2 / 10
         return _Motion(orbit, self._mass * brg.Dpw / 2 * orbit**2, inertia * orbit * spin * tan)
 

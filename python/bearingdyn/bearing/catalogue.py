@@ -229,5 +229,12 @@ def from_entry(entry: Entry, *, clearance: float | None = None, **keywords: Any)
     else:
         require(clearance is None, "clearance", clearance, "it must not be given: the contact angle fixes it")
     return BallBearing(
-        e.Z, e.Dw, e.Dpw, e.fi, e.fo, clearance=clearance, contact_angle=e.contact_angle, **keywords
+        e.Z,
+        e.Dw,
+        e.Dpw,
+        e.fi,
+        e.fo,
+        clearance=clearance,
+        contact_angle=e.contact_angle,
+        **{"boundary": (e.bore, e.outside, e.width), **keywords},
     )

@@ -1,7 +1,8 @@
 """What a bearing's surfaces excite: waviness, localised defects, balls of unequal size.
 
-Waves and pits ride on the body that carries them: the inner race turns with the shaft, the outer race stands,
-a ball spins about its own axis. Each shifts the contact, and its rate enters the contact's damping.
+Waves and pits ride on the body that carries them: a race turns with its ring (which one turns is said by the
+bearing's `turning`), a ball spins about its own axis. Each shifts the contact, and its rate enters the
+contact's damping.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ class Waviness:
     Parameters
     ----------
     body
-        "inner" (turns with the shaft), "outer" (stands) or "ball".
+        "inner" or "outer", which turn with their ring, or "ball".
     order
         Waves per turn, ≥ 0. Of a ball, odd orders keep its diameter and excite nothing.
     amplitude
@@ -130,7 +131,7 @@ class Imperfections:
     Parameters
     ----------
     spin_ratio
-        Ball spin over shaft speed.
+        Ball spin over shaft speed, negative where the outer ring is faster.
     ball_diameter
         m.
     inner_radius, outer_radius

@@ -151,9 +151,17 @@ class BearingKernel:
     damping_table: Array = field(default_factory=lambda: np.zeros((0, 2)))
     """(n, 2) rows (δ in m, c in N s/m); empty unless the law is "table"."""
     cage_ratio: float = 0.5
-    """Cage speed over inner-ring speed."""
+    """Cage speed over shaft speed."""
     angle0: float = 0.0
     """Azimuth of the first ball at the start, rad."""
+    inner_ratio: float = 1.0
+    """Speed of the inner ring over that of the shaft."""
+    outer_ratio: float = 0.0
+    """Speed of the outer ring over that of the shaft."""
+    shoulder: int = 0
+    """+1, −1: axial load on the inner ring is borne towards +z, −z only; 0: both ways."""
+    open_sine: float = 0.0
+    """Sine of the contact angle on the open side from which a ball runs off."""
     imperfections: Imperfections = field(default_factory=Imperfections)
     """Waves, pits and unequal balls; none by default."""
 
@@ -184,5 +192,9 @@ class BearingKernel:
             "table": np.asarray(self.damping_table, dtype=np.float64).reshape(-1, 2),
             "cage_ratio": self.cage_ratio,
             "angle0": self.angle0,
+            "inner_ratio": self.inner_ratio,
+            "outer_ratio": self.outer_ratio,
+            "shoulder": self.shoulder,
+            "open_sine": self.open_sine,
             "imperfections": self.imperfections.packed(),
         }

@@ -80,7 +80,7 @@ def lubricate(
     lubricant, temperature
         Oil, or base oil of a grease, and its temperature at the inlet of the contacts, °C.
     speed
-        Of the inner ring, rad/s, not zero; the outer ring is at rest.
+        Of the shaft, rad/s, not zero; the rings turn as the bearing's `turning` says.
     load
         (6,) on the inner ring, N and N m.
     law
@@ -107,6 +107,9 @@ def lubricate(
     )
     omega = number("speed", speed, "it must be a finite speed in rad/s")
     require(omega != 0, "speed", speed, "it must not be zero: without speed there is no film")
+    turns = bearing.ring_speeds
+    rolling = turns[0] != turns[1]
+    require(rolling, "bearing.turning", bearing.turning, "both rings turn alike: without rolling no film")
     share = positive("starvation", starvation)
     require(share <= 1, "starvation", starvation, "it must be at most 1, fully flooded")
     sigma = 0.0
@@ -119,7 +122,7 @@ def lubricate(
     require(state.loaded > 0, "load", load, "no ball is loaded: there is no contact to lubricate")
     Q = float(state.load_inner.sum() / state.loaded)
     gamma = bearing.Dw / bearing.Dpw * math.cos(float(state.angle_inner[int(state.load_inner.argmax())]))
-    us = bearing.Dpw / 2 * abs(omega) * (1 - gamma**2)
+    us = bearing.Dpw / 2 * abs(omega * (turns[0] - turns[1])) * (1 - gamma**2)
     contacts = (bearing.inner_contact, bearing.outer_contact)
     if law == "hamrock-dowson":
         flooded = [hamrock_dowson(c, Q, us / 2, eta0, alpha).central for c in contacts]

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.energy_minimum import minimum
+from bearingdyn.bearing.open_side import REMEDY, runs_off, shoulder
 from bearingdyn.checks import nonnegative, positive, require, vector
 from bearingdyn.types import Array
 
@@ -69,6 +70,9 @@ class Pair:
         require(isinstance(self.row, BallBearing), "row", self.row, "give a BallBearing")
         known = self.arrangement in ("DB", "DF", "DT")
         require(known, "arrangement", self.arrangement, 'it must be "DB", "DF" or "DT"')
+        side = shoulder(self.row.open_side, self.row.contact_angle)
+        remedy = "a row by itself must carry towards +z: give the row as it is made, bearing.mirrored()"
+        require(side >= 0, "row", self.row, remedy)
         positive("distance", self.distance, "between the rows, in metres, must be positive and finite")
         remedy = "it must be zero or positive, and finite"
         if self.preload is not None:
@@ -138,7 +142,8 @@ class Pair:
         Raises
         ------
         ValueError
-            On a wrong shape or a value that is not finite.
+            On a wrong shape or a value that is not finite, and for a load that presses balls onto the open
+            side of a row.
         ArithmeticError
             If no equilibrium is found.
         """
@@ -154,4 +159,11 @@ class Pair:
 
         target = f[:5] * length
         expected = (float(np.linalg.norm(target)) / self.row.kappa) ** (2 / 3) + self.approach
-        return np.append(minimum(law, target, expected or 1e-9) * length, 0.0)
+        q = np.append(minimum(law, target, expected or 1e-9) * length, 0.0)
+        places = zip(("first", "second"), self.row_displacements(q), strict=True)
+        for name, place in places:
+            loads = self.row.ball_loads(place, angle)
+            astray = runs_off(self.row.kernel(), self.row.relative(place), loads, self.row.angle0 + angle)
+            if astray:
+                raise ValueError(f"load is {f.tolist()}; in the {name} row {astray}; {REMEDY}")
+        return q

@@ -18,7 +18,7 @@ def fault_lines(
     Parameters
     ----------
     bearing, speed
-        Inner ring at `speed`, rad/s, outer ring at rest.
+        Shaft at `speed`, rad/s; which ring turns with it is said by the bearing's `turning`.
     harmonics
         How many multiples of the ball passes and of 2 BSF.
     contact_angle
@@ -60,14 +60,14 @@ def waviness_lines(
 ) -> dict[str, float]:
     """Name -> frequency, Hz, at which waves of order n vibrate a uniformly loaded, elastically held ring.
 
-    Inner race: n = qZ axial at qZ(ω_i − ω_c), n = qZ ± 1 radial at qZ(ω_i − ω_c) ± ω_i. Outer race: n = qZ
-    axial and n = qZ ± 1 radial at qZω_c. Ball, even n: axial nω_b, radial nω_b ± ω_c (J. A. Wensing 1998;
-    reference page §2). Names are body, order, direction; "outer 9(±1)" is 9 axial and 8, 10 radial.
+    A race whose ring turns at ω_r: n = qZ axial at qZ|ω_r − ω_c|, n = qZ ± 1 radial at |qZ(ω_r − ω_c) ± ω_r|.
+    Ball, even n: axial nω_b, radial |nω_b ± ω_c| (J. A. Wensing 1998; reference page §2). Names are body,
+    order, direction; "outer 9(±1)" is 9 axial and 8, 10 radial, which are one line where the ring stands.
 
     Parameters
     ----------
     bearing, speed
-        Inner ring at `speed`, rad/s, outer ring at rest.
+        Shaft at `speed`, rad/s; which ring turns with it is said by the bearing's `turning`.
     multiples
         q = 1 … multiples.
     ball_orders
@@ -87,17 +87,24 @@ def waviness_lines(
     f = bearing.frequencies(number("speed", speed), contact_angle)
     turn, Z = abs(speed) / (2 * math.pi), bearing.Z
     lines: dict[str, float] = {}
+    inner, outer = bearing.ring_speeds
+    # the ring's own turn counted along ω_r − ω_c: + where it runs ahead of the balls
+    ahead = 1.0 if inner >= outer else -1.0
+    rings = (("inner", f.BPFI, ahead * inner * turn), ("outer", f.BPFO, -ahead * outer * turn))
     for q in range(1, multiples + 1):
-        lines |= {
-            f"inner {q * Z} ax": q * f.BPFI,
-            f"inner {q * Z - 1} rad": q * f.BPFI - turn,
-            f"inner {q * Z + 1} rad": q * f.BPFI + turn,
-            f"outer {q * Z}(±1)": q * f.BPFO,
-        }
+        for name, passes, own in rings:
+            if own == 0.0:
+                lines[f"{name} {q * Z}(±1)"] = q * passes
+                continue
+            lines |= {
+                f"{name} {q * Z} ax": q * passes,
+                f"{name} {q * Z - 1} rad": abs(q * passes - own),
+                f"{name} {q * Z + 1} rad": abs(q * passes + own),
+            }
     for n in ball_orders:
         lines |= {
             f"ball {n} ax": n * f.BSF,
-            f"ball {n} rad −": n * f.BSF - f.FTF,
+            f"ball {n} rad −": abs(n * f.BSF - f.FTF),
             f"ball {n} rad +": n * f.BSF + f.FTF,
         }
     return lines

@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing import BallBearing, minimum
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, minimum, runs_off
 from bearingdyn.checks import vector
 from bearingdyn.cms import Superelement
 from bearingdyn.parts.flexible_ring import FlexibleRing
@@ -129,7 +129,7 @@ class FlexibleBearing:
         Raises
         ------
         ValueError
-            For a load of another shape.
+            For a load of another shape, or one that presses balls onto the open side.
         ArithmeticError
             If no equilibrium is found.
         """
@@ -150,4 +150,8 @@ class FlexibleBearing:
 
         size = (float(np.linalg.norm(f)) / self.bearing.kappa) ** (2 / 3) + self.bearing.geometry.Pd / 2
         x = minimum(stored, np.concatenate([unit @ f[:5], np.zeros(len(S))]), size or 1e-9)
+        kernel, relative = self.bearing.kernel(self._element.raceways["raceway"].series), J @ x
+        astray = runs_off(kernel, relative, self._press(relative, angle)[3], self.bearing.angle0 + angle)
+        if astray:
+            raise ValueError(f"load is {f.tolist()}; {astray}; {OPEN_SIDE_REMEDY}")
         return np.concatenate([unit @ x[:5], [0.0]])

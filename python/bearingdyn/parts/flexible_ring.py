@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -18,6 +19,7 @@ from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.round_face import RoundFace
 
 
 @dataclass(frozen=True)
@@ -160,6 +162,15 @@ class FlexibleRing:
         bottom = np.sqrt(radius**2 - z**2) - math.sqrt(radius**2 - track**2)
         share = (self.r_outer - mesh.r) / (self.r_outer - self.r_inner)
         return replace(mesh, r=mesh.r + np.maximum(share, 0.0) * bottom)
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        bonded = self.layer is not None
+        known = {k: tuple(replace(f, bonded=bonded) for f in v) for k, v in self.body.round_faces().items()}
+        half = (-0.5 * self.width, 0.5 * self.width)
+        if self.layer is None and self.outside == "flexible":
+            known["outside"] = (RoundFace("shaft", self.r_outer, half),)
+        return known
 
     def superelement(self) -> Superelement:
         """Reduced matrices: interface, raceway coefficients, internal modes; see Revolved.superelement."""

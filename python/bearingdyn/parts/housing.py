@@ -15,6 +15,7 @@ from bearingdyn.fem import block_with_bore
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.parts.solid import RigidSurface, Solid
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
@@ -149,6 +150,11 @@ class Housing:
     def outline(self) -> Outline:
         """Its surface; see Solid.outline."""
         return self.body.outline()
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        half = 0.5 * self.length
+        return {"bore": (RoundFace("bore", 0.5 * self.bore_diameter, (-half, half)),)}
 
     @cached_property
     def body(self) -> Solid:

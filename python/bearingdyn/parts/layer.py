@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +18,7 @@ from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.types import Array, Complex
 
 
@@ -115,6 +117,10 @@ class Layer:
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""
         return self.body.outline()
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        return {k: tuple(replace(f, bonded=True) for f in v) for k, v in self.body.round_faces().items()}
 
     def nominal_strain(self, relative: ArrayLike) -> Array:
         """Nominal strain max |t + θ × ρ| / (r_outer − r_inner) under a relative motion of the interfaces.

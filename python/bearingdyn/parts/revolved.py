@@ -41,6 +41,7 @@ from bearingdyn.parts.outline import Outline, azimuths, revolved
 from bearingdyn.parts.regions import Patch, Region, shape_moduli
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
+from bearingdyn.parts.round_face import RoundFace, face_of_nodes
 from bearingdyn.types import Array, Complex, Index
 
 
@@ -367,6 +368,16 @@ class Revolved:
                 for name, t in self._boundaries.tracks.items()
             },
         )
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        mesh, known = self.mesh, {}
+        for name, face in self._boundaries.faces.items():
+            around = mesh.elements[np.isin(mesh.elements, face.nodes).sum(axis=1) >= 3]
+            known[name] = face_of_nodes(
+                mesh.r[face.nodes], mesh.z[face.nodes], mesh.r[around], face.reference
+            )
+        return known
 
     def outline(self) -> Outline:
         """Its surface, revolved.

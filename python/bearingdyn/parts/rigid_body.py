@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ from bearingdyn.cms import Superelement
 from bearingdyn.magnitude import check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, box, carried, cylinder
+from bearingdyn.parts.round_face import RoundFace
 
 
 @dataclass(frozen=True)
@@ -89,6 +91,16 @@ class RigidBody:
         across = mass * (square / 4.0 + width**2 / 12.0)
         inertia = (across, across, mass * square / 2.0)
         return cls(mass, inertia, rotating, (r_inner, r_outer, width))
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Bore and outside of a ring of known measures, against which neighbours are checked."""
+        if self.measures is None:
+            return {}
+        r_inner, r_outer, width = self.measures
+        half = (-0.5 * width, 0.5 * width)
+        outside = RoundFace("shaft", r_outer, half, beside=True)
+        bore = (RoundFace("bore", r_inner, half, beside=True),) if r_inner > 0 else ()
+        return {"centre": (*bore, outside)}
 
     def superelement(self) -> Superelement:
         """Six coordinates, those of the interface "centre"; gyroscopic when rotating."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,6 +14,7 @@ from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
+from bearingdyn.parts.round_face import RoundFace
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,10 @@ class Ring:
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""
         return self.body.outline()
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        return self.body.round_faces()
 
     def modes(self, order: int, count: int, fixed: Iterable[str] = ()) -> RevolvedModes:
         """Lowest modes of one Fourier order with its faces free (elastic), or some of them held still."""

@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 import scipy
@@ -26,8 +27,11 @@ from bearingdyn.fem import Section, assemble_beam, bending_wavelength
 from bearingdyn.magnitude import LONGEST_SHAFT, check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
+from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.types import Array, Index
 
+KINDS: tuple[Literal["shaft", "bore"], ...] = ("shaft", "bore")
+_SAME_SEAT = 0.01  # of the radius: a taper or a relief, no shoulder
 ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at f_max, 2e-4 at half of it
 
 
@@ -186,6 +190,36 @@ class Shaft:
             sections += [self.sections[own]] * count
         return np.concatenate(z), sections
 
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        return {name: self._seat_faces(z) for name, z in self.seats.items()}
+
+    def _seat_faces(self, place: float) -> tuple[RoundFace, ...]:
+        """Outside and bore of the section at a place, m; of both where two meet."""
+        ends = [0.0, *itertools.accumulate(s.length for s in self.sections)]
+        spans = list(itertools.pairwise(ends))
+        near = 1e-6 * self.length
+        found = []
+        for k, (low, high) in enumerate(spans):
+            if not low - near <= place <= high + near:
+                continue
+            for kind in KINDS:
+                own = _radius(self.sections[k], kind)
+                if own == 0.0:
+                    continue
+                # sections of the same diameter are one seat; thinner ones, or wider bores, leave room
+                same = [abs(_radius(s, kind) - own) <= _SAME_SEAT * own for s in self.sections]
+                sign = 1.0 if kind == "shaft" else -1.0
+                open_ = [sign * (_radius(s, kind) - own) <= _SAME_SEAT * own for s in self.sections]
+                z, room = (_reach(spans, yes, k) for yes in (same, open_))
+                # nothing stands beyond the ends of the shaft
+                room = (
+                    -math.inf if room[0] == 0.0 else room[0] - place,
+                    math.inf if room[1] == ends[-1] else room[1] - place,
+                )
+                found.append(RoundFace(kind, own, (z[0] - place, z[1] - place), room, beside=True))
+        return tuple(found)
+
     def full_model(self) -> FullModel:
         """The unreduced equations: sparse matrices, six coordinates at each of `nodes`."""
         z, sections = self.nodes()
@@ -248,6 +282,21 @@ class Shaft:
         faces = np.concatenate([each[1] + start for each, start in zip(drawn, starts, strict=False)])
         arms = points - z[owner, None] * np.array([0.0, 0.0, 1.0])
         return Outline(points, faces, carried(motion[owner], arms))
+
+
+def _radius(section: Section, kind: str) -> float:
+    """Of its outside ("shaft") or of its bore, m."""
+    return 0.5 * (section.d_outer if kind == "shaft" else section.d_inner)
+
+
+def _reach(spans: Sequence[tuple[float, float]], yes: Sequence[bool], k: int) -> tuple[float, float]:
+    """From where to where the sections next to the k-th go on with yes, m."""
+    first = last = k
+    while first > 0 and yes[first - 1]:
+        first -= 1
+    while last + 1 < len(yes) and yes[last + 1]:
+        last += 1
+    return spans[first][0], spans[last][1]
 
 
 def spin_generator(n_nodes: int) -> scipy.sparse.csr_matrix:

@@ -32,6 +32,7 @@ from bearingdyn.magnitude import LARGEST_SOLID, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import ViscoelasticSolid
+from bearingdyn.parts.round_face import RoundFace, face_of_nodes
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -307,6 +308,15 @@ class Solid:
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
         return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        p, known = self.mesh.points, {}
+        for name, (nodes, reference) in self._faces.items():
+            radius = np.hypot(*(p[:, :2] - reference[:2]).T)
+            around = self.mesh.elements[np.isin(self.mesh.elements, nodes).sum(axis=1) >= 3]
+            known[name] = face_of_nodes(radius[nodes], p[nodes, 2], radius[around], float(reference[2]))
+        return known
 
     def outline(self) -> Outline:
         """The faces of its elements on the boundary, each as triangles around its middle."""

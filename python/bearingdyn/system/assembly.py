@@ -76,7 +76,10 @@ def assemble(app: Application) -> System:
         B = _between(ends, outputs)
         if raceway is not None:
             B = B - raceway.rows @ select[hung.outer.part]
-        bearings.append(BearingTerm(hung.name, hung.bearing, B, series, hung.offset, ends))
+        speeds = plan.ring_speeds(hung)
+        known = hung.bearing.ring_speeds == speeds
+        bearing = hung.bearing if known else replace(hung.bearing, turning=speeds)
+        bearings.append(BearingTerm(hung.name, bearing, B, series, hung.offset, ends))
 
     for seat in plan.fits.values():
         contacts, hold = _loose(plan, seat, select, outputs)

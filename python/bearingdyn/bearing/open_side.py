@@ -1,0 +1,90 @@
+"""The side on which a bearing has no shoulder, and whether balls are pressed onto it.
+
+An angular contact bearing bears axial load one way. The other way there is no shoulder: the balls run off
+the bottom of the groove and the bearing comes apart.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from bearingdyn.checks import one_of
+from bearingdyn.types import Array
+
+if TYPE_CHECKING:
+    from bearingdyn.bearing.kernel import BearingKernel
+
+OpenSide: TypeAlias = Literal["auto", "+z", "-z"] | None
+
+_BOTTOM = math.radians(5)
+"""How far beyond the bottom of the groove a ball still finds it: half of a contact ellipse, some 0.1 Dw wide,
+seen from the middle of the ball. The low shoulder of an angular contact bearing is cut down to there."""
+_CARRIES = 0.01
+"""Of the largest ball load: a ball that only brushes the groove does not carry."""
+
+
+def shoulder(open_side: OpenSide, contact_angle: float | None) -> int:
+    """+1, −1: axial load on the inner ring is borne towards +z, −z only; 0: both ways.
+
+    Raises
+    ------
+    ValueError
+        For an unknown open side.
+    """
+    one_of("open_side", open_side, ("auto", "+z", "-z", None))
+    if open_side == "auto":
+        return 1 if contact_angle else 0
+    return {"-z": 1, "+z": -1, None: 0}[open_side]
+
+
+def open_sine(alpha0: float) -> float:
+    """Sine of the angle on the open side from which a ball runs off, for a free contact angle in rad."""
+    return math.sin(min(_BOTTOM, alpha0 / 2))
+
+
+def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str | None:
+    """Which balls are pressed onto the open side, in words; None where there are none.
+
+    Parameters
+    ----------
+    kernel
+        The bearing.
+    z
+        Its relative raceway coefficients (n,), m.
+    loads
+        Of the balls (Z,), N.
+    turn
+        Azimuth of the first ball, rad.
+    """
+    if kernel.shoulder == 0:
+        return None
+    psi = turn + 2 * math.pi * np.arange(kernel.Z) / kernel.Z
+    basis = _basis(kernel, psi)
+    axial = kernel.x0 + (z * (kernel.axial == 1)) @ basis
+    radial = kernel.y0 + (z * (kernel.axial == 0)) @ basis
+    alpha = np.arctan2(axial, radial)
+    astray = (kernel.shoulder * np.sin(alpha) < -kernel.open_sine) & (loads > _CARRIES * loads.max())
+    if not astray.any():
+        return None
+    j = int(np.argmax(np.where(astray, loads, 0.0)))
+    side = "−z" if kernel.shoulder > 0 else "+z"
+    return (
+        f"{int(astray.sum())} of {kernel.Z} balls are pressed onto the open side, where no shoulder holds "
+        f"them (ball {j + 1}: {loads[j]:.4g} N at {math.degrees(alpha[j]):.1f}°): the inner ring is not "
+        f"carried towards {side}"
+    )
+
+
+REMEDY = (
+    "hang the bearing the other way round, bearing.mirrored(), or set it against a second one that carries "
+    "this direction (a Pair, or a preload by offset=); one with shoulders on both sides has open_side=None"
+)
+
+
+def _basis(kernel: BearingKernel, psi: Array) -> Array:
+    """cos or sin of order·ψ, (n, Z)."""
+    argument = kernel.order[:, None] * psi
+    return np.where(kernel.sine[:, None] == 1, np.sin(argument), np.cos(argument))
