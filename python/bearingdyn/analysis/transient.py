@@ -12,6 +12,7 @@ from bearingdyn import core
 from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, whole
 from bearingdyn.results import march_dataset
@@ -94,6 +95,11 @@ def transient(
     OSError
         Where `stream` cannot be written; what was on the disk stays.
 
+    Warns
+    -----
+    BearingWarning
+        Where a contact pressure was above 4.2 GPa (ISO 76) at the end, or by what was recorded.
+
     References
     ----------
     Paper section 4.2.
@@ -140,6 +146,7 @@ def transient(
         stream=stream,
         header=facts if stream is None else {**facts, "digest": march.digest(state)},
     )
+    warn_of_overload(march, model, state, record, rows)
     energies = march.energies(model, state) if audit else {}
     result = march_dataset(facts, rows, state, report, {f"energy_{k}": v for k, v in energies.items()})
     return march.ended(result, report)

@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 
 from bearingdyn.checks import positive
-from bearingdyn.magnitude import LONGEST_SHAFT, THICKEST_SHAFT, check_length
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.types import Array
 
@@ -49,8 +49,8 @@ class Section:
             raise ValueError(
                 f"Section d_inner is {self.d_inner}; it must lie from 0 to below d_outer = {self.d_outer} m"
             )
-        check_length("Section length", self.length, LONGEST_SHAFT)
-        check_length("Section d_outer", self.d_outer, THICKEST_SHAFT)
+        plausible("shaft length", "Section length", self.length)
+        plausible("shaft diameter", "Section d_outer", self.d_outer)
 
     @property
     def area(self) -> float:

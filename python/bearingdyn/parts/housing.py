@@ -12,7 +12,7 @@ import numpy as np
 from bearingdyn.checks import nonnegative, positive
 from bearingdyn.cms import F_MAX, Superelement, check_damping, check_f_max
 from bearingdyn.fem import block_with_bore
-from bearingdyn.magnitude import check_length
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.solid import RigidSurface, Solid
@@ -100,7 +100,9 @@ class Housing:
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "length", "bore_diameter"):
-            check_length(name, positive(name, getattr(self, name), "it must be a positive length in m"))
+            plausible(
+                "length", name, positive(name, getattr(self, name), "it must be a positive length in m")
+            )
         check_f_max(self.f_max)
         check_damping(self.damping)
         d, axis = self.bore_diameter, self.axis

@@ -23,7 +23,7 @@ from bearingdyn.cms import (
     project,
 )
 from bearingdyn.fem import Section, assemble_beam, bending_wavelength
-from bearingdyn.magnitude import LONGEST_SHAFT, check_length
+from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 from bearingdyn.types import Array, Index
@@ -57,11 +57,12 @@ class Disc:
 
     def __post_init__(self) -> None:
         number("Disc z", self.z, "it must be a position in m")
-        positive("Disc mass", self.mass, "it must be a positive mass in kg")
+        plausible("mass", "Disc mass", positive("Disc mass", self.mass, "it must be a positive mass in kg"))
         nonnegative("Disc Id", self.Id, "it must be a moment in kg m², not negative")
         nonnegative("Disc Ip", self.Ip, "it must be a moment in kg m², not negative")
         if not self.Ip <= 2.0 * self.Id * (1.0 + 1e-9):
             raise ValueError(f"Disc Ip is {self.Ip}; no disc has Ip above 2 Id = {2.0 * self.Id} kg m²")
+        check_gyration("Disc Id", self.Id, self.mass)
 
     @classmethod
     def cylinder(
@@ -144,7 +145,7 @@ class Shaft:
         if not self.seats:
             raise ValueError("seats is empty; a shaft needs at least one seat to be joined by")
         L = self.length
-        check_length("the length of all sections", L, LONGEST_SHAFT)
+        plausible("shaft length", "the length of all sections", L)
         places = [(f"seats[{k!r}]", v) for k, v in self.seats.items()]
         places += [(f"points[{k!r}]", v) for k, v in self.points.items()]
         places += [(f"discs[{i}].z", d.z) for i, d in enumerate(self.discs)]
