@@ -18,6 +18,9 @@ from bearingdyn.notice import UnloadedBearing, warn
 from bearingdyn.system import LoadTerm, System, assemble
 from bearingdyn.types import Array
 
+PARTED = 1e-9
+"""Load, N, below which a ball is not pressed: what a search leaves where nothing pushes, and no weight is."""
+
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
@@ -49,7 +52,8 @@ class Equilibrium:
     def __repr__(self) -> str:
         """One line; the matrices are in `system`."""
         loaded = [
-            f"{name} {b.loads[b.loads > 0].size} of {b.loads.size}" for name, b in self.bearings.items()
+            f"{name} {np.count_nonzero(b.loads > PARTED)} of {b.loads.size}"
+            for name, b in self.bearings.items()
         ]
         balls = f", balls loaded: {', '.join(loaded)}" if loaded else ""
         return f"<Equilibrium of {self.system.n} coordinates, layers {self.modulus}{balls}>"
@@ -71,7 +75,7 @@ class Equilibrium:
     def warn_of_unloaded(self) -> None:
         """Warn of every bearing without a pressed ball: about this state it has no stiffness."""
         for name, state in self.bearings.items():
-            if isinstance(self._bearing(name), BallBearing) and not (state.loads > 0).any():
+            if isinstance(self._bearing(name), BallBearing) and not (state.loads > PARTED).any():
                 warn(
                     f"bearing {name!r} carries no load in this equilibrium: none of its {state.loads.size} "
                     f"balls is pressed, and in a linear analysis it has no stiffness; load it (app.gravity, "

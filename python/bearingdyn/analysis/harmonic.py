@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     import xarray
 
 
+# N/m: a bearing below it holds nothing; κ^(2/3) F^(1/3) of one ball under 1e-9 N is some 1e4 N/m
+IDLE = 1e3
+
+
 @dataclass(frozen=True, eq=False)
 class Linear:
     """A system with its bearings linearised: K, C (coefs, coefs) on their raceway coefficients."""
@@ -74,19 +78,26 @@ class Linear:
         drives = force @ free
         worst = int(np.argmax(np.abs(drives).max(axis=1)))
         if np.abs(drives[worst]).max() > 1e-9 * np.abs(free).max():
-            raise ArithmeticError(_freedom(system, free @ drives[worst]))
+            ends = np.cumsum([0, *(len(t.B) for t in system.bearings)])
+            idle = [
+                t.name
+                for t, a, b in zip(system.bearings, ends, ends[1:], strict=False)
+                if np.abs(self.K[a:b, a:b]).max(initial=0.0) <= IDLE
+            ]
+            raise ArithmeticError(_freedom(system, free @ drives[worst], idle))
         held = system.M @ free
         return replace(system, K=system.K + HOLD * (held @ held.T))
 
 
-def _freedom(system: System, motion: Array) -> str:
+def _freedom(system: System, motion: Array, idle: list[str]) -> str:
     """What is said of a motion (n,) that is free and driven at 0 Hz."""
     sites = [(name, rows @ motion) for name, rows in system.outputs.items()]
     name, moved = max(sites, key=lambda site: float(np.abs(site[1]).max()))
     k = int(np.argmax(np.abs(moved)))
     place = f"{name}.{COMPONENTS[k]}"
+    hint = f" (no ball of {idle} is pressed: load it)" if idle else ""
     spins = k == 5 and np.abs(moved[:5]).max() < 1e-6 * abs(moved[5])
-    what = "the shaft is free to spin about z" if spins else "nothing holds that motion"
+    what = "the shaft is free to spin about z" if spins else f"nothing holds that motion{hint}"
     spring = ", ".join("k" if i == k else "0" for i in range(6))
     return (
         f"frequency is 0 Hz, and a force drives {place}, where {what}: the static response is infinite (the "
