@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -101,6 +101,19 @@ def items(field: str, value: object, remedy: str) -> list[Any]:
         raise ValueError(f"{field} is {value!r}; {remedy}") from None
 
 
+def instance(field: str, value: object, kinds: type | tuple[type, ...], remedy: str) -> None:
+    """Raise ValueError unless the value is one of the kinds."""
+    require(isinstance(value, kinds), field, value, remedy)
+
+
+def named(field: str, value: object, remedy: str) -> dict[str, Any]:
+    """A mapping with names as keys, as a dict; ValueError for anything else."""
+    require(isinstance(value, Mapping), field, value, remedy)
+    found = dict(cast(Mapping[str, Any], value))
+    require(all(isinstance(name, str) and name for name in found), field, value, remedy)
+    return found
+
+
 def whole(field: str, value: object, least: int, most: int | None = None, remedy: str = "") -> int:
     """The value as a whole number in least … most; ValueError if it is anything else."""
     limit = f"of at least {least}" if most is None else f"in {least}...{most}"
@@ -112,4 +125,9 @@ def whole(field: str, value: object, least: int, most: int | None = None, remedy
 
 def one_of(field: str, value: object, choices: Sequence[object]) -> None:
     """Raise ValueError unless the value is one of the choices."""
-    require(value in choices, field, value, f"it must be {' or '.join(repr(c) for c in choices)}")
+    require(
+        isinstance(value, str | int | float) and value in choices,
+        field,
+        value,
+        f"it must be {' or '.join(repr(c) for c in choices)}",
+    )

@@ -86,7 +86,7 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         # ------------------------------------------------------------ materials
         "Young's modulus": Magnitude(
             "Pa",
-            (1e4, 2e12),
+            (1e4, 1e18),
             (1e5, 1.3e12),
             "a gel has 1e4 Pa, rubber 1e6, steel 2.1e11, diamond 1.2e12",
             _STRESSES,

@@ -12,7 +12,7 @@ from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.pressure import check_pressure
-from bearingdyn.checks import number, positive
+from bearingdyn.checks import instance, number, positive
 from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.types import Array
 
@@ -71,6 +71,7 @@ def load_distribution(
         On a wrong shape, a pressure above 21 GPa, or where a ball runs beyond the shoulder: the axial load
         is more than it can hold.
     """
+    instance("bearing", bearing, (BallBearing, Running), "give a BallBearing, or it Running")
     if shoulder is not None:
         positive("shoulder", shoulder, "it must be positive and finite, in m")
     if isinstance(bearing, Running):

@@ -88,6 +88,7 @@ class Walther:
         ValueError
             For a grade outside 10..220 without nu_100.
         """
+        number("grade", grade, "it must be an ISO viscosity grade, as 32")
         if nu_100 is None:
             grades = ", ".join(map(str, _VG_AT_100))
             require(

@@ -125,6 +125,7 @@ class Mounting:
         ValueError
             If the races do not lie between bore and outside diameter.
         """
+        require(isinstance(bearing, BallBearing), "bearing", bearing, "give a BallBearing")
         race_i, race_o = bearing.Dpw - bearing.Dw, bearing.Dpw + bearing.Dw
         inside = self.bore < race_i and race_o < self.outside
         remedy = f"the races, {race_i:.6g} and {race_o:.6g} m, must lie between it and the other diameter"
@@ -147,6 +148,7 @@ class Mounting:
         ValueError
             If the clearance left is negative: rings clamped onto their balls are not modelled.
         """
+        require(isinstance(bearing, BallBearing), "bearing", bearing, "give a BallBearing")
         left = bearing.geometry.Pd + self.clearance_change(bearing)
         why = (
             "fits and temperatures leave less than none; choose looser fits or a larger clearance "

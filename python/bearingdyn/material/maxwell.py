@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, number, positive
+from bearingdyn.checks import nonnegative, number, positive, real, vector
 from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
@@ -22,7 +22,10 @@ _ROUNDING = 1.001  # of the edges of a band
 
 
 def _branches(name: str, values: ArrayLike) -> Array:
-    array = np.array(values, dtype=np.float64)
+    try:
+        array = real(values)
+    except (TypeError, ValueError):
+        raise ValueError(f"Maxwell.{name} is {values!r}; it must be real numbers, one per branch") from None
     if array.ndim != 1:
         raise ValueError(
             f"Maxwell.{name} has shape {array.shape}; it must be one-dimensional, a value per branch"
@@ -110,6 +113,7 @@ class Maxwell(Retunable):
     ) -> None:
         if band is None and fit is not None:
             band = fit.band
+        edges = band if band is None else vector("Maxwell.band", band, (2,), "lowest and highest, in Hz")
         if temperature is None and law is not None:
             temperature = law.T_ref
         values = {
@@ -122,7 +126,7 @@ class Maxwell(Retunable):
             "law": law,
             "temperature": temperature,
             "vertical": vertical,
-            "band": None if band is None else (float(band[0]), float(band[1])),
+            "band": None if edges is None else (float(edges[0]), float(edges[1])),
             "fit": fit,
         }
         for name, value in values.items():

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bearingdyn.checks import nonnegative, positive
+from bearingdyn.checks import instance, named, nonnegative, positive, vector
 from bearingdyn.cms import F_MAX, Superelement, check_damping, check_f_max
 from bearingdyn.fem import block_with_bore
 from bearingdyn.magnitude import plausible
@@ -103,6 +103,16 @@ class Housing:
             plausible(
                 "length", name, positive(name, getattr(self, name), "it must be a positive length in m")
             )
+        instance(
+            "material", self.material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL"
+        )
+        if self.feet is not None:
+            instance("feet", self.feet, Feet, "it must be bd.Feet(width, height), or None for the whole base")
+        for name in ("bore_height", "element_size"):
+            if getattr(self, name) is not None:
+                positive(name, getattr(self, name), "it must be a positive length in m")
+        for name, at in named("points", self.points, "it must be a dict, name -> (x, y, z) in m").items():
+            vector(f"points[{name!r}]", at, (3,), "x, y and z in m")
         check_f_max(self.f_max)
         check_damping(self.damping)
         d, axis = self.bore_diameter, self.axis

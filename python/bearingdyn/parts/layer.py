@@ -68,9 +68,11 @@ class Layer:
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
+        positive("r_outer", self.r_outer, "it must be a positive radius in m")
         if not self.r_inner < self.r_outer < math.inf:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
         positive("width", self.width, "it must be a positive length in m")
+        positive("refinement", self.refinement, "it must be a positive mesh density, 1 by default")
         for name in ("r_outer", "width"):
             plausible("length", name, getattr(self, name))
         if self.moduli is not None:

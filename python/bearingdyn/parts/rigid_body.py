@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearingdyn.checks import positive, vector
+from bearingdyn.checks import instance, nonnegative, positive, vector
 from bearingdyn.cms import Superelement
 from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
@@ -50,6 +50,12 @@ class RigidBody:
 
     def __post_init__(self) -> None:
         plausible("mass", "mass", positive("mass", self.mass, "it must be a positive mass in kg"))
+        instance("rotating", self.rotating, (bool, np.bool_), "it must be True or False")
+        if self.measures is not None:
+            meaning = "r_inner, r_outer and width in m"
+            object.__setattr__(
+                self, "measures", tuple(vector("measures", self.measures, (3,), meaning).tolist())
+            )
         moments = vector("inertia", self.inertia, (3,), "three moments (Ix, Iy, Iz) in kg m²")
         inertia = tuple(moments.tolist())
         for name, value in zip(("Ix", "Iy", "Iz"), inertia, strict=True):
@@ -79,7 +85,9 @@ class RigidBody:
         ValueError
             Unless 0 <= r_inner < r_outer <= 10 m and 0 < width <= 10 m.
         """
+        instance("material", material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL")
         positive("r_outer", r_outer, "it must be a positive radius in m")
+        nonnegative("r_inner", r_inner, "it must be a radius in m, 0 for a disc")
         if not 0 <= r_inner < r_outer:
             raise ValueError(f"r_inner is {r_inner}; it must be at least 0 and below r_outer = {r_outer} m")
         positive("width", width, "it must be a positive width in m")

@@ -50,9 +50,11 @@ class Ring:
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
+        positive("r_outer", self.r_outer, "it must be a positive radius in m")
         if not self.r_outer > self.r_inner:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
         positive("width", self.width, "it must be a positive length in m")
+        positive("refinement", self.refinement, "it must be a positive mesh density, 1 by default")
         for name in ("r_outer", "width"):
             plausible("length", name, getattr(self, name))
         _ = self.body

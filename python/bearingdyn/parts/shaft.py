@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy
 
-from bearingdyn.checks import nonnegative, number, positive
+from bearingdyn.checks import instance, items, named, nonnegative, number, positive
 from bearingdyn.cms import (
     F_MAX,
     Basis,
@@ -75,6 +75,7 @@ class Disc:
         ValueError
             For measures that make no cylinder.
         """
+        instance("material", material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL")
         body = Section(width, d_outer, d_inner)
         mass = material.density * body.area * width
         square = d_outer**2 + d_inner**2
@@ -136,10 +137,21 @@ class Shaft:
     element_length: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sections", tuple(self.sections))
-        object.__setattr__(self, "discs", tuple(self.discs))
-        object.__setattr__(self, "seats", {k: float(v) for k, v in self.seats.items()})
-        object.__setattr__(self, "points", {k: float(v) for k, v in self.points.items()})
+        instance(
+            "material", self.material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL"
+        )
+        for name, kind in (("sections", Section), ("discs", Disc)):
+            remedy = f"it must be a list of bd.{kind.__name__}"
+            given = tuple(items(name, getattr(self, name), remedy))
+            for k, one in enumerate(given):
+                instance(f"{name}[{k}]", one, kind, f"it must be a bd.{kind.__name__}(…)")
+            object.__setattr__(self, name, given)
+        for name in ("seats", "points"):
+            given_places = named(name, getattr(self, name), "it must be a dict, name -> position z in m")
+            found = {
+                k: number(f"{name}[{k!r}]", z, "it must be a position z in m") for k, z in given_places.items()
+            }
+            object.__setattr__(self, name, found)
         if not self.sections:
             raise ValueError("sections is empty; a shaft needs at least one Section")
         if not self.seats:
@@ -161,7 +173,7 @@ class Shaft:
                 raise ValueError(f"seats {a!r} and {b!r} are both at z = {za} m; move one, or keep one")
         check_damping(self.damping)
         check_f_max(self.f_max, may_be_zero=False)
-        if self.element_length is not None and not self.element_length > 1e-4 * L:
+        if self.element_length is not None and not positive("element_length", self.element_length) > 1e-4 * L:
             raise ValueError(f"element_length is {self.element_length}; it must exceed {1e-4 * L:.3g} m")
 
     @property
