@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,9 +20,11 @@ def require(ok: bool, field: str, value: object, remedy: str) -> None:
 
 def number(field: str, value: object, remedy: str = "give one finite number") -> float:
     """The value as a finite float; ValueError if it is anything else."""
+    # True is no length, and an array of one entry no number
+    other = isinstance(value, (str, bytes, bool, np.bool_)) or np.ndim(value) > 0  # type: ignore[arg-type]
     try:
-        x = math.nan if isinstance(value, str) else float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+        x = math.nan if other else float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{field} is {value!r}; {remedy}") from None
     require(math.isfinite(x), field, value, remedy)
     return x
@@ -44,7 +47,7 @@ def nonnegative(field: str, value: object, remedy: str = "it must be zero or pos
 def numbers(field: str, value: ArrayLike, remedy: str, least: float = -math.inf) -> Array:
     """One or more finite numbers ≥ `least` as an array (n,); ValueError if they are anything else."""
     try:
-        x = np.atleast_1d(np.array(value, dtype=np.float64))
+        x = np.atleast_1d(real(value))
     except (TypeError, ValueError):
         raise ValueError(f"{field} is {value!r}; {remedy}") from None
     require(x.ndim == 1 and x.size > 0, field, value, remedy)
@@ -52,10 +55,20 @@ def numbers(field: str, value: ArrayLike, remedy: str, least: float = -math.inf)
     return x
 
 
+def real(value: ArrayLike) -> Array:
+    """A new array of real numbers; TypeError or ValueError for texts, truths, None and ragged lists."""
+    found = np.asarray(value)
+    if found.dtype.kind not in "iuf" and found.size:
+        # numbers of another kind, as Fraction, come as objects
+        if found.dtype.kind != "O" or any(isinstance(x, str | bool) or x is None for x in found.flat):
+            raise TypeError(f"{found.dtype} are no real numbers")
+    return np.array(found, dtype=np.float64)
+
+
 def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> Array:
     """The value as a finite float array of the given shape; ValueError if it is anything else."""
     try:
-        x = np.array(value, dtype=np.float64)
+        x = real(value)
     except (TypeError, ValueError):
         raise ValueError(f"{field} is {value!r}; it must be real numbers, {meaning}") from None
     require(
@@ -79,6 +92,28 @@ def name_list(field: str, value: object, what: str = "channels") -> list[str]:
     return [str(name) for name in found]
 
 
+def items(field: str, value: object, remedy: str) -> list[Any]:
+    """The entries of a list, tuple or array; ValueError for a text, a mapping and what has no entries."""
+    try:
+        require(not isinstance(value, str | bytes | Mapping), field, value, remedy)
+        return list(value)  # type: ignore[call-overload, no-any-return]
+    except TypeError:
+        raise ValueError(f"{field} is {value!r}; {remedy}") from None
+
+
+def instance(field: str, value: object, kinds: type | tuple[type, ...], remedy: str) -> None:
+    """Raise ValueError unless the value is one of the kinds."""
+    require(isinstance(value, kinds), field, value, remedy)
+
+
+def named(field: str, value: object, remedy: str) -> dict[str, Any]:
+    """A mapping with names as keys, as a dict; ValueError for anything else."""
+    require(isinstance(value, Mapping), field, value, remedy)
+    found = dict(cast(Mapping[str, Any], value))
+    require(all(isinstance(name, str) and name for name in found), field, value, remedy)
+    return found
+
+
 def whole(field: str, value: object, least: int, most: int | None = None, remedy: str = "") -> int:
     """The value as a whole number in least … most; ValueError if it is anything else."""
     limit = f"of at least {least}" if most is None else f"in {least}...{most}"
@@ -90,4 +125,9 @@ def whole(field: str, value: object, least: int, most: int | None = None, remedy
 
 def one_of(field: str, value: object, choices: Sequence[object]) -> None:
     """Raise ValueError unless the value is one of the choices."""
-    require(value in choices, field, value, f"it must be {' or '.join(repr(c) for c in choices)}")
+    require(
+        isinstance(value, str | int | float) and value in choices,
+        field,
+        value,
+        f"it must be {' or '.join(repr(c) for c in choices)}",
+    )

@@ -1,32 +1,342 @@
-"""Magnitudes no machine has: a number in mm, µm, GPa or g/cm³ where an SI unit is asked for."""
+"""What a physical input can be, in SI: one table, and the check of a number against its row.
+
+A number outside the possible is refused; one outside the usual is used, with a warning. Both say why, and
+name the unit that was probably meant: mm, µm, MPa, degrees, g mm, kg mm², rpm, kelvin.
+"""
 
 from __future__ import annotations
 
-LONGEST_SHAFT = 100.0  # m; a ship's line of shafts
-THICKEST_SHAFT = 5.0  # m
-LARGEST_BODY = 10.0  # m; housings, rings, layers
-LARGEST_SOLID = 100.0  # m; of a mesh that read_mesh was told is that large
-LARGEST_BALL = 0.5  # m
-LIGHTEST, HEAVIEST = 10.0, 30000.0  # kg/m³; a foam, more than any metal
-MASSLESS = (1e-4, 0.1)  # kg/m³; what stands for a body without inertia: neither t/mm³, kg/mm³ nor g/cm³
-SOFTEST = 1e4  # Pa; below any rubber
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import NamedTuple
+
+from bearingdyn.checks import number
+from bearingdyn.notice import UnusualMagnitude, warn
+
+__all__ = ["MAGNITUDES", "Magnitude", "UnusualMagnitude", "check_bulk", "check_density", "plausible"]
 
 
-def check_length(field: str, value: float, largest: float = LARGEST_BODY) -> None:
-    """Raise ValueError for a length above `largest`, both in m: it was probably given in mm."""
-    if not abs(value) <= largest:
-        raise ValueError(
-            f"{field} is {value:.6g} m, above {largest:g} m: is it in mm? lengths are in m, as "
-            f"{value * 1e-3:.6g}"
-        )
+class Slip(NamedTuple):
+    """A unit that is often given instead: SI = scale × number + shift."""
+
+    unit: str
+    scale: float
+    shift: float = 0.0
+
+
+@dataclass(frozen=True)
+class Magnitude:
+    """What one quantity can be.
+
+    Parameters
+    ----------
+    unit
+        SI.
+    possible
+        (least, most); what is outside is refused.
+    usual
+        (least, most); what is outside comes with a warning.
+    reason
+        Where the limits come from.
+    slips
+        Units often given instead.
+    by_size
+        Whether the limits are of |x|, zero always being possible; else of x itself.
+    """
+
+    unit: str
+    possible: tuple[float, float]
+    usual: tuple[float, float]
+    reason: str
+    slips: tuple[Slip, ...] = ()
+    by_size: bool = True
+
+    def within(self, x: float, limits: tuple[float, float]) -> bool:
+        """Whether x lies in the limits; NaN does not."""
+        if self.by_size and x == 0:
+            return True
+        return limits[0] <= (abs(x) if self.by_size else x) <= limits[1]
+
+    def guess(self, x: float) -> str:
+        """The unit in which x would be usual, as a question; empty if there is none."""
+        for unit, scale, shift in self.slips:
+            meant = scale * x + shift
+            if self.within(meant, self.usual):
+                return f"; is it in {unit}? give {meant:.4g} {self.unit}".rstrip()
+        return ""
+
+    def span(self, limits: tuple[float, float], x: float) -> str:
+        """The limit that x does not keep, in words."""
+        size = abs(x) if self.by_size else x
+        word, limit = ("at least", limits[0]) if size < limits[0] else ("at most", limits[1])
+        return f"{word} {limit:g} {self.unit}".rstrip()
+
+
+_MM, _UM, _NM = Slip("mm", 1e-3), Slip("µm", 1e-6), Slip("nm", 1e-9)
+_MPA, _GPA, _KPA = Slip("MPa", 1e6), Slip("GPa", 1e9), Slip("kPa", 1e3)
+_LENGTHS, _STRESSES = (_MM, _UM), (_MPA, _GPA, _KPA)
+_DEGREES = (Slip("degrees", math.pi / 180),)
+_CELSIUS = (Slip("kelvin", 1.0, -273.15), Slip("°F", 5 / 9, -160 / 9))
+_RPM = Slip("rpm", math.pi / 30)
+
+MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
+    {
+        # ------------------------------------------------------------ materials
+        "Young's modulus": Magnitude(
+            "Pa",
+            (1e4, 1e18),
+            (1e5, 1.3e12),
+            "a gel has 1e4 Pa, rubber 1e6, steel 2.1e11, diamond 1.2e12",
+            _STRESSES,
+        ),
+        "shear modulus": Magnitude(
+            "Pa", (1e2, 1e12), (1e3, 6e11), "a gel has 1e3 Pa, rubber 1e5 to 1e9, diamond 5e11", _STRESSES
+        ),
+        "branch modulus": Magnitude(
+            "Pa", (0.0, 1e12), (0.0, 6e11), "no glass has more, diamond 5e11", (Slip("kPa", 1e-3),)
+        ),
+        "bulk modulus": Magnitude(
+            "Pa",
+            (1e4, 1e12),
+            (1e5, 5e11),
+            "a foam has 1e5 Pa, rubber 2e9, diamond 4.4e11",
+            _STRESSES,
+        ),
+        "wave speed": Magnitude(
+            "m/s", (20.0, math.inf), (20.0, math.inf), "sound runs at 20 m/s or more in any solid"
+        ),
+        "relaxation time": Magnitude(
+            "s", (1e-30, 1e30), (1e-20, 1e20), "a measured curve spans some twenty decades about 1 s"
+        ),
+        "dashpot viscosity": Magnitude("Pa s", (0.0, 1e15), (0.0, 1e9), "a rubber's is of G times its time"),
+        "temperature": Magnitude(
+            "°C", (-273.15, 2000.0), (-150.0, 250.0), "rubber serves from -100 to 250 °C", _CELSIUS, False
+        ),
+        "oil temperature": Magnitude(
+            "°C", (-273.15, 1000.0), (-80.0, 250.0), "oils serve from -60 to 200 °C", _CELSIUS, False
+        ),
+        "viscosity": Magnitude(
+            "Pa s",
+            (1e-6, 1e6),
+            (1e-4, 100.0),
+            "water has 1e-3 Pa s, a bearing's oil 5e-3 to 1",
+            (Slip("mPa s", 1e-3),),
+        ),
+        "kinematic viscosity": Magnitude(
+            "m²/s", (1e-8, 1.0), (5e-7, 0.1), "ISO VG 32 has 32e-6 m²/s at 40 °C", (Slip("mm²/s", 1e-6),)
+        ),
+        "pressure coefficient": Magnitude(
+            "1/Pa",
+            (1e-10, 1e-6),
+            (2e-9, 6e-8),
+            "oils have 1e-8 to 3e-8 1/Pa",
+            (Slip("1/GPa", 1e-9), Slip("1/MPa", 1e-6), Slip("mm²/N", 1e-6)),
+        ),
+        "oil density": Magnitude(
+            "kg/m³", (100.0, 5000.0), (500.0, 3000.0), "oils have 800 to 1000 kg/m³", (Slip("g/cm³", 1e3),)
+        ),
+        "expansion": Magnitude(
+            "1/K", (0.0, 1e-2), (0.0, 3e-4), "steel has 12e-6 1/K, rubber 2e-4", (Slip("1e-6/K", 1e-6),)
+        ),
+        "warming": Magnitude(
+            "K",
+            (-2000.0, 2000.0),
+            (-200.0, 200.0),
+            "it is a difference of temperatures",
+            (Slip("kelvin above absolute zero", 1.0, -293.15),),
+            False,
+        ),
+        # ------------------------------------------------------------- geometry
+        "length": Magnitude("m", (1e-8, 10.0), (1e-6, 10.0), "a part of a machine", _LENGTHS),
+        "shaft length": Magnitude("m", (1e-8, 100.0), (1e-6, 100.0), "a ship's line of shafts", _LENGTHS),
+        "shaft diameter": Magnitude("m", (1e-8, 5.0), (1e-6, 5.0), "the hub of a turbine", _LENGTHS),
+        "solid length": Magnitude(
+            "m", (1e-8, 100.0), (1e-6, 100.0), "of a mesh that read_mesh was told is that large", _LENGTHS
+        ),
+        "ball diameter": Magnitude(
+            "m", (1e-6, 0.5), (1e-4, 0.2), "balls of bearings have 0.3 mm to 150 mm", _LENGTHS
+        ),
+        "pitch diameter": Magnitude(
+            "m", (1e-6, 10.0), (1e-4, 10.0), "slewing bearings have metres", _LENGTHS
+        ),
+        "groove": Magnitude("", (0.5, math.inf), (0.5, 1.0), "a groove's radius is 0.51 to 0.56 Dw"),
+        "clearance": Magnitude(
+            "of Dw", (0.0, 0.1), (0.0, 0.04), "radial clearances (ISO 5753) are below Dw/80"
+        ),
+        "mount clearance": Magnitude(
+            "m", (0.0, 0.1), (0.0, 2e-3), "fits leave some µm to some tenths of a mm", (_UM, _MM)
+        ),
+        "interference": Magnitude(
+            "m", (0.0, 0.01), (0.0, 5e-4), "press fits have some µm to some tenths of a mm", (_UM, _MM)
+        ),
+        "contact angle": Magnitude(
+            "rad", (0.0, math.pi / 2), (0.0, 1.2), "ball bearings have 0 to 60°, 1.05 rad", _DEGREES
+        ),
+        "angle": Magnitude("rad", (0.0, 1e6), (0.0, 4 * math.pi * (1 + 1e-6)), "a full turn is 2π", _DEGREES),
+        "turned angle": Magnitude("rad", (0.0, 1e12), (0.0, 40.0), "a full turn is 2π", _DEGREES),
+        "tilt": Magnitude(
+            "rad",
+            (0.0, 1.0),
+            (0.0, 0.1),
+            "tilts enter linearly and are milliradians",
+            (Slip("degrees", math.pi / 180), Slip("mrad", 1e-3), Slip("µrad", 1e-6)),
+        ),
+        "film": Magnitude(
+            "m", (0.0, 1e-4), (0.0, 1e-5), "both films of a ball are 0.05 to 5 µm thick", (_UM, _NM, _MM)
+        ),
+        "waviness": Magnitude(
+            "m", (0.0, 2e-4), (0.0, 5e-5), "waves of ground races are 1 nm to some µm high", (_UM, _NM, _MM)
+        ),
+        "oversize": Magnitude(
+            "m", (0.0, 2e-4), (0.0, 5e-5), "balls of one bearing differ by 0.1 to some µm", (_UM, _NM, _MM)
+        ),
+        "roughness": Magnitude(
+            "m", (0.0, 1e-4), (0.0, 1e-5), "races and balls have 5 nm to 0.5 µm", (_UM, _NM, _MM)
+        ),
+        "pit width": Magnitude("m", (1e-8, 0.1), (1e-7, 0.02), "spalls are 0.1 to some mm wide", (_MM, _UM)),
+        "pit depth": Magnitude("m", (1e-9, 0.01), (1e-9, 1e-3), "spalls are 1 to 500 µm deep", (_UM, _MM)),
+        "offset": Magnitude(
+            "m", (0.0, 1.0), (0.0, 5e-3), "preload by displacement is 1 to some 100 µm", (_UM, _MM)
+        ),
+        "displacement": Magnitude(
+            "m", (0.0, 1.0), (0.0, 0.01), "parts move by µm; the theory is of small motions", (_UM, _MM)
+        ),
+        # ---------------------------------------------------- bodies and joints
+        "mass": Magnitude("kg", (1e-12, 1e8), (1e-9, 1e6), "a ball has grams, a turbine's rotor 1e5 kg"),
+        "gyration": Magnitude(
+            "m",
+            (0.0, 20.0),
+            (0.0, 5.0),
+            "√(inertia/mass), the radius of gyration, lies within the part",
+            (Slip("mm, the inertia in kg mm²,", 1e-3),),
+        ),
+        "gyration ratio": Magnitude("", (0.0, 300.0), (0.0, 30.0), "wheels and rods reach ten or twenty"),
+        "stiffness": Magnitude(
+            "N/m", (0.0, 1e18), (0.0, 1e14), "a machine's bed has 1e9 N/m; hold rigidly what is stiffer"
+        ),
+        "damping": Magnitude("N s/m", (0.0, 1e15), (0.0, 1e10), "a machine's dampers have 1 to 1e6 N s/m"),
+        "contact damping": Magnitude("N s/m", (0.0, 1e9), (0.0, 1e6), "one ball in oil has 10 to 1e4 N s/m"),
+        "contact damping time": Magnitude(
+            "s",
+            (0.0, 1.0),
+            (0.0, 1e-2),
+            "a contact's damping over stiffness is 1e-7 to 1e-4 s",
+            (Slip("µs", 1e-6), Slip("ms", 1e-3)),
+        ),
+        "deflection coefficient": Magnitude(
+            "N/m^1.5",
+            (1e3, 1e16),
+            (1e6, 1e13),
+            "steel balls have 1e9 to 1e11 N/m^1.5",
+            (Slip("N/mm^1.5", 10**4.5), Slip("N/µm^1.5", 1e9)),
+        ),
+        # ---------------------------------------------------------------- loads
+        "force": Magnitude(
+            "N", (0.0, 1e12), (0.0, 1e8), "the heaviest bearings carry 1e7 N", (Slip("mN", 1e-3),)
+        ),
+        "moment": Magnitude(
+            "N m", (0.0, 1e12), (0.0, 1e8), "the heaviest shafts pass 1e7 N m", (Slip("N mm", 1e-3),)
+        ),
+        "gravity": Magnitude(
+            "m/s²", (0.0, 1000.0), (0.0, 30.0), "the earth has 9.81 m/s²", (Slip("mm/s²", 1e-3),)
+        ),
+        "acceleration": Magnitude(
+            "m/s²", (0.0, 1e7), (0.0, 5000.0), "a hard shock has 500 g, 5000 m/s²", (Slip("mm/s²", 1e-3),)
+        ),
+        "unbalance": Magnitude(
+            "kg m",
+            (0.0, 1e4),
+            (0.0, 100.0),
+            "rotors of 1 kg have 1e-6 to 1e-4 kg m",
+            (Slip("g mm", 1e-6), Slip("kg mm", 1e-3)),
+        ),
+        "eccentricity": Magnitude(
+            "m",
+            (0.0, 0.5),
+            (0.0, 0.01),
+            "unbalance over the mass that turns is 0.1 to 100 µm (ISO 21940)",
+            (Slip("mm, the unbalance in g mm or kg mm,", 1e-3), Slip("µm, the unbalance in g mm,", 1e-6)),
+        ),
+        "pressure": Magnitude(
+            "Pa",
+            (0.0, 2.1e10),
+            (0.0, 4.2e9),
+            "4.2 GPa is the static rating (ISO 76), five times that is above the hardness of silicon nitride",
+        ),
+        # ------------------------------------------------------- time and speed
+        "speed": Magnitude(
+            "rad/s", (0.0, 1e6), (0.0, 5e4), "5e4 rad/s are 477 000 rpm, a dental drill's", (_RPM,)
+        ),
+        "speed value n·dm": Magnitude(
+            "mm/min",
+            (0.0, 2e7),
+            (0.0, 3e6),
+            "speed times pitch diameter; the fastest ball bearings reach 3e6 mm/min",
+            (Slip("rpm (the speed),", math.pi / 30),),
+        ),
+        "frequency": Magnitude("Hz", (1e-12, 1e12), (1e-9, 1e9), "machines sound from 1e-3 to 1e5 Hz"),
+        "time step": Magnitude(
+            "s",
+            (1e-18, 1e6),
+            (1e-12, 1.0),
+            "balls passing take steps of 1e-7 to 1e-4 s",
+            (Slip("µs", 1e-6), Slip("ms", 1e-3)),
+        ),
+    }
+)
+"""What is possible and usual of every physical input."""
+
+# kg/m³; a foam to more than any metal, and what stands for a body without inertia
+LIGHTEST, HEAVIEST = 10.0, 30000.0
+MASSLESS = (1e-4, 0.1)
+SOFTEST = MAGNITUDES["Young's modulus"].possible[0]
+LARGEST_BODY = MAGNITUDES["length"].possible[1]
+
+
+def plausible(kind: str, field: str, value: object, remedy: str = "") -> float:
+    """The value as a float that can be meant.
+
+    Parameters
+    ----------
+    kind
+        Row of MAGNITUDES.
+    field
+        Name of the input, for the message.
+    value
+        In the row's unit.
+    remedy
+        What would be right where it is no finite number at all.
+
+    Warns
+    -----
+    UnusualMagnitude
+        Outside the usual.
+
+    Raises
+    ------
+    ValueError
+        Outside the possible, or no finite number.
+    """
+    row = MAGNITUDES[kind]
+    x = number(field, value, remedy or f"it must be one finite number, in {row.unit}".removesuffix(", in "))
+    if row.within(x, row.usual) and row.within(x, row.possible):
+        return x
+    told = f"{field} is {x:.6g} {row.unit}".rstrip()
+    if not row.within(x, row.possible):
+        raise ValueError(f"{told}; it must be {row.span(row.possible, x)} ({row.reason}){row.guess(x)}")
+    text = f"{told}; usual is {row.span(row.usual, x)} ({row.reason}){row.guess(x)}"
+    warn(text, UnusualMagnitude)
+    return x
 
 
 def check_density(field: str, density: float) -> None:
     """Raise ValueError for a density, kg/m³, that no solid has; 1e-4 to 0.1 mean a body without inertia."""
     if not (LIGHTEST <= density <= HEAVIEST or MASSLESS[0] <= density <= MASSLESS[1]):
         raise ValueError(
-            f"{field} is {density!r} kg/m³; a solid has {LIGHTEST:g} to {HEAVIEST:g} kg/m³; is it in g/cm³ "
-            f"or t/mm³? Water has 1000 kg/m³ (for a body without inertia give {MASSLESS[0]:g} to "
+            f"{field} is {density!r} kg/m³; it must be {LIGHTEST:g} to {HEAVIEST:g} kg/m³, as solids are; is "
+            f"it in g/cm³ or t/mm³? Water has 1000 kg/m³ (for a body without inertia give {MASSLESS[0]:g} to "
             f"{MASSLESS[1]:g})"
         )
 
@@ -38,3 +348,42 @@ def check_bulk(field: str, K: float, G: float) -> None:
             f"{field} is {K:g} Pa, below 2/3 of the shear modulus, {G:.4g} Pa: Poisson's ratio would be "
             "negative; a rubber's bulk modulus is near 2e9 Pa"
         )
+
+
+def check_waves(field: str, modulus: float, density: float) -> None:
+    """Raise ValueError for a modulus, Pa, and a density, kg/m³, in which sound runs slower than in any solid.
+
+    The kind of slip: steel of E = 210e3, in MPa, with 7850 kg/m³ has √(E/ρ) = 5.2 m/s.
+    """
+    speed = math.sqrt(modulus / density)
+    floor = MAGNITUDES["wave speed"].possible[0]
+    if density >= LIGHTEST and not speed >= floor:
+        raise ValueError(
+            f"{field} is {modulus:g} Pa; it must be at least {floor**2 * density:.3g} Pa with a density of "
+            f"{density:g} kg/m³: waves would run at {speed:.2g} m/s, and run at {floor:g} m/s or more in any "
+            f"solid; is it in MPa? give {modulus * 1e6:.4g} Pa"
+        )
+
+
+def check_speed_value(field: str, speed: float, pitch: float) -> None:
+    """Check a shaft's speed, rad/s, against the pitch diameter, m, of a bearing on it: n·dm."""
+    value = abs(speed) * 30 / math.pi * pitch * 1e3
+    plausible("speed value n·dm", f"{field} is {speed:.6g} rad/s; n·dm", value)
+
+
+def check_gyration(field: str, inertia: float, mass: float) -> None:
+    """Check a moment of inertia, kg m², against a mass, kg: its radius of gyration lies within the part.
+
+    Beside the row's own limits, √(I/m) is compared with the side of a steel cube of that mass: a shell, a rod
+    or a wheel reach some ten sides, an inertia in kg mm² is a thousand times further out.
+    """
+    radius, side = math.sqrt(inertia / mass), (mass / 7850.0) ** (1 / 3)
+    name = f"{field} is {inertia:.6g} kg m² with a mass of {mass:.6g} kg; its radius of gyration"
+    plausible("gyration", name, radius)
+    row = MAGNITUDES["gyration ratio"]
+    if not row.within(radius / side, row.usual):
+        text = f"{name} is {radius:.4g} m, {radius / side:.3g} times the side of a steel cube of that mass; "
+        meant = f"is the inertia in kg mm²? give {inertia * 1e-6:.4g} kg m²"
+        if not row.within(radius / side, row.possible):
+            raise ValueError(f"{text}it must be at most {row.possible[1]:g} ({row.reason}); {meant}")
+        warn(f"{text}usual is at most {row.usual[1]:g} ({row.reason}); {meant}", UnusualMagnitude)

@@ -51,6 +51,38 @@ class OpenSideWarning(Notice):
     """
 
 
+class UnusualMagnitude(Notice):
+    """An input is larger or smaller than machines have it; it was probably given in another unit.
+
+    When: a number lies outside the usual range of its row in `bearingdyn.magnitude.MAGNITUDES`, where it is
+    given or where what it is compared with becomes known.
+
+    Remedy: give it in SI units; the text names the unit that was probably meant and the number in SI. A
+    machine that is rightly so unusual needs nothing: the number is used as it is.
+    """
+
+
+class BearingWarning(Notice):
+    """A bearing is asked for more than its parts bear, or than its model covers.
+
+    When: a contact pressure exceeds 4.2 GPa (ISO 76), the static rating, in any analysis; or a shoulder cuts
+    a contact ellipse.
+
+    Remedy: check the load's unit; a larger bearing, less load, or a higher shoulder.
+    """
+
+
+class UnloadedBearing(Notice):
+    """A linear analysis stands on a bearing that carries nothing, and so has no stiffness.
+
+    When: modes, a response or a Campbell diagram start from an equilibrium in which no ball of a bearing is
+    pressed.
+
+    Remedy: load the bearing (weight by `app.gravity`, a belt, an axial preload by `offset`), or give it no
+    clearance.
+    """
+
+
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Warn at the nearest caller that is not of this package.
 

@@ -32,7 +32,8 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 # A room may import the rooms of earlier rows, and nothing beside or after it. "" is bearingdyn/__init__.py.
 ORDER: tuple[tuple[str, ...], ...] = (
     ("types",),
-    ("checks", "core", "inputs", "magnitude", "notice", "writing"),
+    ("checks", "core", "inputs", "notice", "writing"),
+    ("magnitude",),
     ("material",),
     ("bearing", "fem"),
     ("cms",),

@@ -8,11 +8,11 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import ArrayLike
 
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, system_of
 from bearingdyn.analysis.modes import modes
 from bearingdyn.application import Application, Place
 from bearingdyn.checks import numbers, whole
-from bearingdyn.system import System, assemble
+from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
@@ -66,8 +66,8 @@ def campbell(
     """
     given = numbers("speeds", speeds, "speeds must be one or more finite values, in rad/s")
     count = whole("count", count, 1)
-    if isinstance(source, Application):
-        source = assemble(source)
+    if not isinstance(source, Equilibrium):
+        source = system_of("source", source)
     system = source.system if isinstance(source, Equilibrium) else source
 
     order = np.argsort(-np.abs(given), kind="stable")

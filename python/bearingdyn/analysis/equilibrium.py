@@ -5,15 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
 from bearingdyn.analysis.statics import BearingState, Statics, diagonal_blocks
 from bearingdyn.application import Application
-from bearingdyn.bearing import OPEN_SIDE_REMEDY, runs_off
-from bearingdyn.checks import number, whole
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, check_bearing_pressure, runs_off
+from bearingdyn.checks import one_of, require, whole
+from bearingdyn.magnitude import plausible
+from bearingdyn.notice import UnloadedBearing, warn
 from bearingdyn.system import BearingTerm, LoadTerm, System, assemble
 from bearingdyn.types import Array
+
+PARTED = 1e-9
+"""Load, N, below which a ball is not pressed: what a search leaves where nothing pushes, and no weight is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +52,8 @@ class Equilibrium:
     def __repr__(self) -> str:
         """One line; the matrices are in `system`."""
         loaded = [
-            f"{name} {b.loads[b.loads > 0].size} of {b.loads.size}" for name, b in self.bearings.items()
+            f"{name} {np.count_nonzero(b.loads > PARTED)} of {b.loads.size}"
+            for name, b in self.bearings.items()
         ]
         balls = f", balls loaded: {', '.join(loaded)}" if loaded else ""
         return f"<Equilibrium of {self.system.n} coordinates, layers {self.modulus}{balls}>"
@@ -65,8 +72,29 @@ class Equilibrium:
         """Tangent damping of all bearings on their coefficients, block-diagonal, N s/m."""
         return diagonal_blocks([b.C for b in self.bearings.values()])
 
+    def warn_of_unloaded(self) -> None:
+        """Warn of every bearing without a pressed ball: about this state it has no stiffness."""
+        for name, state in self.bearings.items():
+            if isinstance(self._bearing(name), BallBearing) and not (state.loads > PARTED).any():
+                warn(
+                    f"bearing {name!r} carries no load in this equilibrium: none of its {state.loads.size} "
+                    f"balls is pressed, and in a linear analysis it has no stiffness; load it (app.gravity, "
+                    f"app.load, an axial preload by offset=), or give it no clearance",
+                    UnloadedBearing,
+                )
+
+    def _bearing(self, name: str) -> object:
+        return next((t.bearing for t in self.system.bearings if t.name == name), None)
+
     def linearised(self) -> System:
-        """The system about this state: bearings replaced by their tangents, constant loads left out."""
+        """The system about this state: bearings replaced by their tangents, constant loads left out.
+
+        Warns
+        -----
+        UnloadedBearing
+            Where a bearing carries nothing.
+        """
+        self.warn_of_unloaded()
         s = self.system
         B = s.B
         return replace(
@@ -114,16 +142,26 @@ def equilibrium(
     Raises
     ------
     ValueError
-        Where a body is free to move, or a load presses balls onto the open side of a bearing.
+        Where a body is free to move, where a load presses balls onto the open side of a bearing, and where a
+        contact pressure is above 21 GPa.
     ArithmeticError
         Where there is no balance; names the body that lost its support.
+
+    Warns
+    -----
+    BearingWarning
+        Where a contact pressure exceeds 4.2 GPa (ISO 76); the bearing and the ball are named.
 
     References
     ----------
     J. J. Moré and D. C. Sorensen, SIAM J. Sci. Stat. Comput. 4 (1983) 553.
     """
-    angle, average = number("angle", angle, "give one finite angle, in rad"), whole("average", average, 1)
-    system = app if isinstance(app, System) else assemble(app)
+    angle = plausible("turned angle", "angle", angle, "give one finite angle, in rad")
+    average = whole("average", average, 1)
+    system = system_of("app", app)
+    if start is not None:
+        require(isinstance(start, Equilibrium), "start", start, "it must be an Equilibrium")
+    one_of("modulus", modulus, ("relaxed", "instantaneous"))
     if start is not None and start.x.shape != (system.n,):
         raise ValueError(
             f"start has {start.x.size} coordinates and the system {system.n}; start from a state of the same "
@@ -141,6 +179,9 @@ def equilibrium(
         )
         q, states = rest.balance(bearings, q)
         _check_open_sides(bearings, states)
+        for term in bearings:
+            if isinstance(term.bearing, BallBearing):
+                check_bearing_pressure(term.bearing, states[term.name].loads, f"bearing {term.name!r}, ")
         passage.append(states)
         if i == 0:
             first, x = replace(system, bearings=bearings), rest.T @ q
@@ -163,6 +204,15 @@ def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, Bear
         if astray:
             force = ", ".join(f"{f:.4g}" for f in state.force)
             raise ValueError(f"bearing {term.name!r} is loaded by ({force}) N; {astray}; {OPEN_SIDE_REMEDY}")
+
+
+def system_of(field: str, source: object) -> System:
+    """The system of an application, or the system itself; ValueError for anything else."""
+    if isinstance(source, System):
+        return source
+    remedy = "it must be an Application (bd.Application()), or its system"
+    require(isinstance(source, Application), field, source, remedy)
+    return assemble(cast(Application, source))
 
 
 def with_loads(system: System, loads: tuple[LoadTerm, ...]) -> System:

@@ -10,17 +10,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, system_of
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.analysis.statics import HOLD
-from bearingdyn.application import QUANTITIES, RATES, Application
-from bearingdyn.checks import name_list, numbers
-from bearingdyn.material import Maxwell
-from bearingdyn.system import System, assemble
+from bearingdyn.application import COMPONENTS, QUANTITIES, RATES, Application
+from bearingdyn.checks import name_list, numbers, one_of
+from bearingdyn.magnitude import plausible
+from bearingdyn.system import System, natural
 from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
     import xarray
+
+
+# N/m: a bearing below it holds nothing; κ^(2/3) F^(1/3) of one ball under 1e-9 N is some 1e4 N/m
+IDLE = 1e3
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,11 +52,58 @@ class Linear:
         x = np.zeros((omega.size, len(rows), len(force)), dtype=np.complex128)
         for part in (omega > 0, omega == 0):
             if part.any():
-                model = (system if omega[part][0] > 0 else _at_rest(system, force)).model([], relaxed=False)
+                held = system if omega[part][0] > 0 else self._held_at_rest(modulus[part][0], force)
+                model = held.model([], relaxed=False)
                 x[part] = core.harmonic(
                     model, omega[part], modulus[part], self.K, self.C, force, rows, speed, progress
                 )
         return x
+
+    def _held_at_rest(self, modulus: Complex, force: Array) -> System:
+        """The system with its free motions held, which no force drives; modulus (layers,) at 0 Hz, Pa.
+
+        Raises
+        ------
+        ArithmeticError
+            Where a force drives one: its response is infinite. Names what moves.
+        """
+        system = self.system
+        K = system.K + system.B.T @ self.K @ system.B
+        for layer, G in zip(system.layers, modulus.real, strict=True):
+            K += 2.0 * G * (layer.L @ layer.L.T)
+        squares, shapes = natural(K, system.M)
+        free = shapes[:, squares <= 0.0]
+        if not free.shape[1]:
+            return system
+        drives = force @ free
+        worst = int(np.argmax(np.abs(drives).max(axis=1)))
+        if np.abs(drives[worst]).max() > 1e-9 * np.abs(free).max():
+            ends = np.cumsum([0, *(len(t.B) for t in system.bearings)])
+            idle = [
+                t.name
+                for t, a, b in zip(system.bearings, ends, ends[1:], strict=False)
+                if np.abs(self.K[a:b, a:b]).max(initial=0.0) <= IDLE
+            ]
+            raise ArithmeticError(_freedom(system, free @ drives[worst], idle))
+        held = system.M @ free
+        return replace(system, K=system.K + HOLD * (held @ held.T))
+
+
+def _freedom(system: System, motion: Array, idle: list[str]) -> str:
+    """What is said of a motion (n,) that is free and driven at 0 Hz."""
+    sites = [(name, rows @ motion) for name, rows in system.outputs.items()]
+    name, moved = max(sites, key=lambda site: float(np.abs(site[1]).max()))
+    k = int(np.argmax(np.abs(moved)))
+    place = f"{name}.{COMPONENTS[k]}"
+    hint = f" (no ball of {idle} is pressed: load it)" if idle else ""
+    spins = k == 5 and np.abs(moved[:5]).max() < 1e-6 * abs(moved[5])
+    what = "the shaft is free to spin about z" if spins else f"nothing holds that motion{hint}"
+    spring = ", ".join("k" if i == k else "0" for i in range(6))
+    return (
+        f"frequency is 0 Hz, and a force drives {place}, where {what}: the static response is infinite (the "
+        f"dynamic stiffness is singular); ask from above 0 Hz on, leave that input out, or hold it, as by "
+        f'app.ground("{name}", stiffness=[{spring}])'
+    )
 
 
 def linear(source: Equilibrium | Application | System) -> Linear:
@@ -64,8 +115,9 @@ def linear(source: Equilibrium | Application | System) -> Linear:
         For bearings without an equilibrium.
     """
     if isinstance(source, Equilibrium):
+        source.warn_of_unloaded()
         return Linear(source.system, source.bearing_K, source.bearing_C)
-    system = source if isinstance(source, System) else assemble(source)
+    system = system_of("source", source)
     if system.bearings:
         raise ValueError(
             "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
@@ -75,9 +127,11 @@ def linear(source: Equilibrium | Application | System) -> Linear:
 
 def frequencies(frequency: ArrayLike) -> Array:
     """Frequencies (f,), Hz; ValueError for none, and for one that is negative or not finite."""
-    return numbers(
+    found = numbers(
         "frequency", frequency, "frequency must be one or more finite values of zero or more, in Hz", 0.0
     )
+    plausible("frequency", "the highest frequency", float(found.max()))
+    return found
 
 
 def frequency_response(
@@ -123,7 +177,13 @@ def frequency_response(
         For an unknown channel or quantity, a negative frequency, bearings without an equilibrium, a part that
         would turn although its damping is known at rest only.
     ArithmeticError
-        Where the dynamic stiffness is singular.
+        Where the dynamic stiffness is singular; at 0 Hz it names the motion that a force drives and nothing
+        holds, such as the spin of a shaft.
+
+    Warns
+    -----
+    UnloadedBearing
+        Where a bearing carries nothing, and so has no stiffness.
 
     References
     ----------
@@ -141,8 +201,7 @@ def frequency_response(
     """
     f = frequencies(frequency)
     inputs, outputs = name_list("inputs", inputs), name_list("outputs", outputs)
-    if quantity not in QUANTITIES:
-        raise ValueError(f"quantity is {quantity!r}; it must be one of {list(QUANTITIES)}")
+    one_of("quantity", quantity, QUANTITIES)
     state = linear(source)
     state.system.check_speed(speed)
     given = [Input.of(state.system, name) for name in inputs]
@@ -187,15 +246,3 @@ def _unit(quantity: str, outputs: Sequence[Output], inputs: Sequence[Input]) -> 
     if any(turning):
         return f"({motion})/({force}){' per' + time if time else ''}"
     return f"m/({force}{time})" if time else f"m/{force}"
-
-
-def _at_rest(system: System, force: Array) -> System:
-    """The system with its free motions held, unless a force drives one of them."""
-    if not all(isinstance(layer.material, Maxwell) for layer in system.layers):
-        return system
-    free = system.free_motions()
-    driven = np.abs(force @ free).max(initial=0.0)
-    if driven > 1e-9 * np.abs(free).max(initial=0.0):
-        return system
-    held = system.M @ free
-    return replace(system, K=system.K + HOLD * (held @ held.T))

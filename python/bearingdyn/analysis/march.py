@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike
 from bearingdyn import core, inputs, runfile
 from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.coarseness import warn_if_coarse
-from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, system_of
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import number, numbers, positive, require, whole
+from bearingdyn.magnitude import plausible
 from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.results import inputs_of
 from bearingdyn.system import System
@@ -84,6 +85,7 @@ class March:
             a part that would turn although its damping is known at rest only.
         """
         dt = positive("dt", dt, "the time step must be positive and finite, in s")
+        plausible("time step", "dt", dt)
         counts = {
             "steps": whole("steps", steps, least_steps),
             "settle": whole("settle", settle, 0),
@@ -92,6 +94,8 @@ class March:
         drive = drive_of(speed)
         if isinstance(source, Application):
             source = equilibrium(source)
+        elif not isinstance(source, Equilibrium):
+            source = system_of("source", source)
         if isinstance(source, Equilibrium) and source.modulus != "relaxed":
             raise ValueError(
                 f"the equilibrium has its layers at their {source.modulus} modulus; a march starts with "
@@ -399,6 +403,8 @@ def moved(system: System, x: Array, initial: Mapping[str, ArrayLike]) -> Array:
         field, remedy = f"initial[{name!r}]", f"it must be {count} finite numbers, m and rad"
         given[name] = numbers(field, target, remedy)
         require(given[name].shape == (count,), field, target, remedy)
+        for k, x_k in enumerate(given[name].tolist()):
+            plausible("displacement" if k < 3 else "tilt", f"{field}[{k}]", x_k)
     rows = np.vstack([system.rows(name) for name in given])
     wanted = np.concatenate(list(given.values()))
     x = x + np.linalg.pinv(rows) @ (wanted - rows @ x)

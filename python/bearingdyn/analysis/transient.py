@@ -13,6 +13,7 @@ from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.coarseness import STEP_ERROR_MADE, step_error
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, whole
 from bearingdyn.results import march_dataset
@@ -106,6 +107,11 @@ def transient(
     OSError
         Where `stream` cannot be written; what was on the disk stays.
 
+    Warns
+    -----
+    BearingWarning
+        Where a contact pressure was above 4.2 GPa (ISO 76) at the end, or by what was recorded.
+
     References
     ----------
     Paper section 4.2.
@@ -152,6 +158,7 @@ def transient(
         stream=stream,
         header=facts if stream is None else {**facts, "digest": march.digest(state)},
     )
+    warn_of_overload(march, model, state, record, rows)
     energies = march.energies(model, state) if audit else {}
     error: dict[str, Any] = {}
     if check_step and report.status == 0:

@@ -12,7 +12,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.application import QUANTITIES, Application
-from bearingdyn.checks import name_list, numbers
+from bearingdyn.checks import name_list, numbers, one_of
 from bearingdyn.system import System
 
 if TYPE_CHECKING:
@@ -58,8 +58,7 @@ def unbalance_response(
         "speeds", speeds, "speeds must be one or more finite values of zero or more, in rad/s", 0.0
     )
     outputs = name_list("outputs", outputs)
-    if quantity not in QUANTITIES:
-        raise ValueError(f"quantity is {quantity!r}; it must be one of {list(QUANTITIES)}")
+    one_of("quantity", quantity, QUANTITIES)
     state = linear(source)
     system = state.system
     system.check_speed(float(given.max()))

@@ -15,8 +15,9 @@ from bearingdyn.application.place import GRAVITY, GROUND
 from bearingdyn.application.plan import Part, Plan
 from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, Pair
-from bearingdyn.checks import number, require
+from bearingdyn.checks import require
 from bearingdyn.cms import Viscoelastic
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 
@@ -419,7 +420,9 @@ class Application:
         element = self.plan.parts[part]
         if not element.viscoelastic:
             raise ValueError(f"part {part!r} has no viscoelastic material; a temperature changes nothing")
-        T = number(f"temperature of part {part!r}", T, "it must be one finite number, in °C")
+        T = plausible(
+            "temperature", f"temperature of part {part!r}", T, "it must be one finite number, in °C"
+        )
         moved = []
         for term in element.viscoelastic:
             at = getattr(term.material, "at", None)

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.application.place import Place
 from bearingdyn.bearing import BallBearing, LooseFit, Pair, catalogue
-from bearingdyn.checks import number, require, vector
+from bearingdyn.checks import require, vector
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 
@@ -128,7 +129,7 @@ class BearingJoint:
         _check_bearing(field, self.bearing)
         if self.inner == self.outer:
             raise ValueError(f"{field} has both rings at {self.inner}; name two interfaces")
-        offset = number(f"{field}: offset", self.offset, "it must be a finite length in m")
+        offset = plausible("offset", f"{field}: offset", self.offset, "it must be a finite length in m")
         object.__setattr__(self, "offset", offset)
 
 
@@ -172,6 +173,8 @@ def _check_springs(joint: Support | Bush, what: str) -> None:
         array = vector(name, value, (6,), "six numbers (x, y, z, θx, θy, θz) in SI units")
         ok = not positive or bool((array >= 0).all())
         require(ok, name, array.tolist(), "stiffness and damping cannot be negative")
+        for k, x in enumerate(array.tolist()):
+            plausible(field if positive else "offset" if k < 3 else "tilt", f"{name}, entry {k},", x)
         object.__setattr__(joint, field, array)
         return array
 

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.application.place import GRAVITY, GROUND, Place
-from bearingdyn.checks import nonnegative, number, positive, require, vector
+from bearingdyn.checks import nonnegative, positive, real, require, vector
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 FORCE = "six numbers (Fx, Fy, Fz, Mx, My, Mz) in N and N m"
@@ -76,7 +77,14 @@ class DirectedLoad(Load):
             self.where, f"load at {self.where}"
         )
         shape, meaning = ((3,), ACCELERATION) if of_all else ((6,), FORCE)
-        object.__setattr__(self, "vector", vector(name, self.vector, shape, meaning))
+        given = vector(name, self.vector, shape, meaning)
+        for k, x in enumerate(given.tolist()):
+            if of_all:
+                kind = "gravity" if self.where == GRAVITY else "acceleration"
+            else:
+                kind = "force" if k < 3 else "moment"
+            plausible(kind, f"{name}: {kind} along {'xyz'[k % 3]}", x)
+        object.__setattr__(self, "vector", given)
 
     @property
     def size(self) -> str:
@@ -136,8 +144,9 @@ class HarmonicLoad(DirectedLoad):
     def __post_init__(self) -> None:
         super().__post_init__()
         remedy = "it must be positive, in Hz (leave it out for a constant load)"
-        object.__setattr__(self, "frequency", positive(self._name("frequency"), self.frequency, remedy))
-        phase = number(self._name("phase"), self.phase, "it must be finite, in rad")
+        frequency = positive(self._name("frequency"), self.frequency, remedy)
+        object.__setattr__(self, "frequency", plausible("frequency", self._name("frequency"), frequency))
+        phase = plausible("angle", self._name("phase"), self.phase, "it must be finite, in rad")
         object.__setattr__(self, "phase", phase)
 
     def core(self, rows: Array) -> CoreLoad:
@@ -183,7 +192,7 @@ class SampledLoad(DirectedLoad):
 
     def _samples(self, field: str, samples: object) -> Array:
         try:
-            return np.atleast_1d(np.array(samples, dtype=np.float64))
+            return np.atleast_1d(real(cast(ArrayLike, samples)))
         except (TypeError, ValueError):
             require(False, self._name(field), samples, "it must be real numbers, two or more")
             raise
@@ -219,8 +228,8 @@ class Unbalance(Load):
     def __post_init__(self) -> None:
         name = f"unbalance at {self.where}"
         moment = nonnegative(name, self.moment, "it must be finite and not negative, in kg m")
-        object.__setattr__(self, "moment", moment)
-        phase = number(f"{name}: phase", self.phase, "it must be finite, in rad")
+        object.__setattr__(self, "moment", plausible("unbalance", name, moment))
+        phase = plausible("angle", f"{name}: phase", self.phase, "it must be finite, in rad")
         object.__setattr__(self, "phase", phase)
 
     @property

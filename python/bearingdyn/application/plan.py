@@ -210,6 +210,15 @@ class Plan:
                 )
         return joint.bearing.ring_speeds
 
+    def joined_parts(self, part: str) -> set[str]:
+        """A part and all parts that rigid connections join to it."""
+        found, pairs = {part}, [{c.a.part, c.b.part} for c in self.connections]
+        while True:
+            more = {name for pair in pairs if pair & found for name in pair}
+            if more <= found:
+                return found
+            found |= more
+
     def check_joints(self) -> None:
         """Check that every interface and raceway is used or declared free.
 

@@ -7,7 +7,7 @@ from bearingdyn.bearing import catalogue
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Balls, Running
 from bearingdyn.bearing.ball_passage import Passage, passage, without_spin
-from bearingdyn.bearing.contact_loads import BearingWarning, LoadDistribution, load_distribution
+from bearingdyn.bearing.contact_loads import LoadDistribution, load_distribution
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness
 from bearingdyn.bearing.geometry import Frequencies, Geometry
@@ -25,14 +25,17 @@ from bearingdyn.bearing.mounting import Mounting, Seat
 from bearingdyn.bearing.open_side import REMEDY as OPEN_SIDE_REMEDY
 from bearingdyn.bearing.open_side import runs_off
 from bearingdyn.bearing.pairs import Pair
+from bearingdyn.bearing.pressure import STATIC_PRESSURE, check_bearing_pressure
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
 from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
 from bearingdyn.bearing.surface_generation import WavinessSpectrum, dent, diameter_scatter, spall
+from bearingdyn.notice import BearingWarning
 
 __all__ = [
     "NET",
     "OPEN_SIDE_REMEDY",
     "RIGID",
+    "STATIC_PRESSURE",
     "BallBearing",
     "Balls",
     "BearingKernel",
@@ -62,6 +65,7 @@ __all__ = [
     "Waviness",
     "WavinessSpectrum",
     "catalogue",
+    "check_bearing_pressure",
     "contact_modulus",
     "dent",
     "diameter_scatter",

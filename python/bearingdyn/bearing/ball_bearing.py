@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,14 +23,13 @@ from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
 from bearingdyn.bearing.open_side import REMEDY, OpenSide, open_sine, runs_off, shoulder
+from bearingdyn.bearing.pressure import STATIC_PRESSURE, check_bearing_pressure, check_load, check_motion
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.turning import Turning, ring_speeds
 from bearingdyn.checks import nonnegative, number, positive, require, vector
+from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.types import Array
-
-STATIC_PRESSURE = 4.2e9
-"""Contact pressure that defines the static rating of a ball bearing (ISO 76), Pa."""
 
 _Response: TypeAlias = tuple[Array, Array, Array, Array]
 _MOTION = "(x, y, z, θx, θy, θz) of the inner ring relative to the outer ring"
@@ -42,6 +41,17 @@ class Overrides(NamedTuple):
     kappa: float | None = None
     cage_ratio: float | None = None
     arm: float | None = None
+
+
+_Frozen = TypeVar("_Frozen", "BallBearing", Waviness, Pit)
+
+
+def _changed(given: _Frozen, **values: object) -> _Frozen:
+    """A copy with other values, which are not checked again."""
+    made = object.__new__(type(given))
+    for own in fields(given):
+        object.__setattr__(made, own.name, values.get(own.name, getattr(given, own.name)))
+    return made
 
 
 @dataclass(frozen=True, init=False)
@@ -166,12 +176,13 @@ class BallBearing:
             overrides.arm if arm is None else arm,
         )
         if given.kappa is not None:
-            positive("kappa", given.kappa, "it must be positive and finite, in N/m^1.5")
+            kappa = positive("kappa", given.kappa, "it must be positive and finite, in N/m^1.5")
+            plausible("deflection coefficient", "kappa", kappa)
         if given.cage_ratio is not None:
             ratio = number("cage_ratio", given.cage_ratio)
             require(0 <= ratio <= 1, "cage_ratio", ratio, "it must lie in 0..1 (½(1 − γ), near 0.4)")
         if given.arm is not None:
-            positive("arm", given.arm, "it must be positive and finite, in m")
+            plausible("length", "arm", positive("arm", given.arm, "it must be positive and finite, in m"))
         if turning is not None and not isinstance(turning, str):
             turning = ring_speeds(turning)
         ring_speeds(turning)
@@ -189,9 +200,11 @@ class BallBearing:
             "contact_angle": contact_angle,
             "material": material,
             "ball_material": ball_material,
-            "film": nonnegative("film", film, "it must be zero or positive, in m (h_i + h_o)"),
+            "film": plausible(
+                "film", "film", nonnegative("film", film, "it must be zero or positive, in m (h_i + h_o)")
+            ),
             "damping": as_damping(damping),
-            "angle0": number("angle0", angle0, "it must be a finite angle in rad"),
+            "angle0": plausible("angle", "angle0", angle0, "it must be a finite angle in rad"),
             "waviness": waves,
             "defects": pits,
             "oversize": sizes,
@@ -264,6 +277,10 @@ class BallBearing:
         """Arm R of tilts and moments, m."""
         return self.geometry.R_i if self.overrides.arm is None else float(self.overrides.arm)
 
+    def pressure(self, load: float) -> float:
+        """Largest contact pressure of a ball under a load, N, in the heavier of its two contacts, Pa."""
+        return max(c.pressure(load) for c in (self.inner_contact, self.outer_contact))
+
     @cached_property
     def static_rating(self) -> float:
         """Radial load ZQcosα/5 with 4.2 GPa in the heavier contact (ISO 76), N; axial play neglected."""
@@ -280,6 +297,8 @@ class BallBearing:
         contact_angle
             Of the loaded state, rad; None: the nominal one, 0 if a clearance is given.
         """
+        plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
+        check_speed_value("speed", speed, self.Dpw)
         rings = [ratio * speed for ratio in self.ring_speeds]
         if contact_angle is None:
             return self.geometry.frequencies(*rings)
@@ -295,11 +314,12 @@ class BallBearing:
         inner, outer = self.ring_speeds
         # a wave's argument is order·(azimuth − turn of its ring) on a race and order·spin on a ball
         carried = {"inner": inner * shaft, "outer": outer * shaft, "ball": -self.spin_ratio * shaft}
-        return replace(
+        # as they were given, they have been checked, and warned of where that was due
+        return _changed(
             self,
             angle0=self.angle0 + angle,
-            waviness=tuple(replace(w, phase=w.phase - w.order * carried[w.body]) for w in self.waviness),
-            defects=tuple(replace(p, angle=p.angle + carried[p.body]) for p in self.defects),
+            waviness=tuple(_changed(w, phase=w.phase - w.order * carried[w.body]) for w in self.waviness),
+            defects=tuple(_changed(p, angle=p.angle + carried[p.body]) for p in self.defects),
         )
 
     def kernel(self, series: RacewaySeries = RIGID) -> BearingKernel:
@@ -391,24 +411,33 @@ class BallBearing:
         Raises
         ------
         ValueError
-            On a wrong shape or a value that is not finite.
+            On a wrong shape, a value that is not finite, a motion that no bearing makes, or pressures above
+            21 GPa.
+
+        Warns
+        -----
+        BearingWarning
+            Where a pressure exceeds 4.2 GPa (ISO 76).
         """
         rate = np.zeros(6) if velocity is None else velocity
-        return self.coefficients().T @ self._evaluate(q, angle, rate, speed)[0]
+        g, _, _, loads = self._checked(q, angle, rate, speed)
+        check_bearing_pressure(self, loads)
+        return self.coefficients().T @ g
 
     def stiffness(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Tangent stiffness (6, 6) ∂force/∂q at rest, symmetric, N/m, N and N m."""
-        B = self.coefficients()
-        return B.T @ self._evaluate(q, angle, np.zeros(6), 0.0)[1] @ B
+        B, (_, K, _, loads) = self.coefficients(), self._checked(q, angle, np.zeros(6), 0.0)
+        check_bearing_pressure(self, loads)
+        return B.T @ K @ B
 
     def damping_matrix(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Tangent damping (6, 6) ∂force/∂velocity at rest, symmetric, N s/m, N s and N m s."""
         B = self.coefficients()
-        return B.T @ self._evaluate(q, angle, np.zeros(6), 0.0)[2] @ B
+        return B.T @ self._checked(q, angle, np.zeros(6), 0.0)[2] @ B
 
     def ball_loads(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Contact load (Z,) of each ball at rest, N, balls in the order of their azimuth."""
-        return self._evaluate(q, angle, np.zeros(6), 0.0)[3]
+        return self._checked(q, angle, np.zeros(6), 0.0)[3]
 
     def energy(self, q: ArrayLike, angle: float = 0.0) -> float:
         """Energy stored in the contacts at rest, Σ (2/5)κ(δ + film)^{5/2}, J."""
@@ -432,12 +461,18 @@ class BallBearing:
         Raises
         ------
         ValueError
-            On a wrong shape or a value that is not finite, and for a load that presses balls onto the open
-            side of an angular contact bearing.
+            On a wrong shape or a value that is not finite, for a load that presses balls onto the open side
+            of an angular contact bearing, and for one under which a pressure exceeds 21 GPa.
         ArithmeticError
             If no equilibrium is found.
+
+        Warns
+        -----
+        BearingWarning
+            Where a pressure exceeds 4.2 GPa (ISO 76).
         """
         f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
+        check_load("load", f)
         turn = self.angle0 + number("angle", angle, "it must be a finite angle in rad")
         R = self.arm
         target = np.array([f[0], f[1], f[2], -f[4] / R, f[3] / R])
@@ -452,12 +487,24 @@ class BallBearing:
 
         expected = (float(np.linalg.norm(target)) / self.kappa) ** (2 / 3) + self.geometry.Pd / 2 + self.film
         z = minimum(stored, target, expected or 1e-9)
-        if self._kernel.shoulder:
-            loads = core.bearing_force(self._kernel, z, still, turn, 0.0, shaft)[3]
-            astray = runs_off(self._kernel, z, loads, turn)
-            if astray:
-                raise ValueError(f"load is {f.tolist()}; {astray}; {REMEDY}")
+        loads = core.bearing_force(self._kernel, z, still, turn, 0.0, shaft)[3]
+        astray = runs_off(self._kernel, z, loads, turn) if self._kernel.shoulder else ""
+        if astray:
+            raise ValueError(f"load is {f.tolist()}; {astray}; {REMEDY}")
+        check_bearing_pressure(self, loads)
         return np.array([z[0], z[1], z[2], z[4] / R, -z[3] / R, 0.0])
+
+    def evaluate(self, q: ArrayLike, angle: float = 0.0) -> _Response:
+        """Force (5,), stiffness and damping (5, 5) on the raceway coefficients and loads (Z,), at rest.
+
+        For searches, which pass through motions that no bearing makes: q is not judged, nor are pressures.
+        """
+        return self._evaluate(q, angle, np.zeros(6), 0.0)
+
+    def _checked(self, q: ArrayLike, angle: float, velocity: ArrayLike, speed: float) -> _Response:
+        """`_evaluate` at a motion that a bearing can make."""
+        check_motion("q", vector("q", q, (6,), _MOTION))
+        return self._evaluate(q, angle, velocity, speed)
 
     def _evaluate(self, q: ArrayLike, angle: float, velocity: ArrayLike, speed: float) -> _Response:
         from bearingdyn import core
@@ -465,7 +512,8 @@ class BallBearing:
         z = self.relative(q)
         zdot = self.coefficients() @ vector("velocity", velocity, (6,), f"rate of {_MOTION}")
         turn = self.angle0 + number("angle", angle, "it must be a finite angle in rad")
-        cage = self.cage_ratio * number("speed", speed, "it must be a finite speed in rad/s")
+        cage = self.cage_ratio * plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
+        check_speed_value("speed", speed, self.Dpw)
         # the shaft has turned so far that the cage stands at `angle`
         shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
         response: _Response = core.bearing_force(self._kernel, z, zdot, turn, cage, shaft, speed)

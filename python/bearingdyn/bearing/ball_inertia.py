@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.checks import number, require, vector
+from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.types import Array
 
 _STEP = 1e-30
@@ -93,7 +94,8 @@ class Running:
         require(
             not flaws, "bearing", self.bearing, "it must have neither waviness, defects nor unequal balls"
         )
-        number("speed", self.speed, "it must be a finite speed in rad/s")
+        plausible("speed", "speed", self.speed, "it must be a finite speed in rad/s")
+        check_speed_value("speed", self.speed, self.bearing.Dpw)
         require(self.control in ("outer", "inner"), "control", self.control, 'it must be "outer" or "inner"')
 
     def balls(self, q: ArrayLike, angle: float = 0.0) -> Balls:

@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.checks import positive, require
-from bearingdyn.magnitude import check_length
+from bearingdyn.magnitude import plausible
 
 Kind = Literal["deep groove", "angular contact"]
 
@@ -80,7 +80,7 @@ def estimate(
     """
     d, D = positive("bore", bore), positive("outside", outside)
     B = positive("width", width)
-    check_length("outside", D)
+    plausible("length", "outside", D)
     require(D > d, "outside", outside, f"it must exceed the bore of {bore!r} m")
     require(
         kind in ("deep groove", "angular contact"), "kind", kind, 'give "deep groove" or "angular contact"'

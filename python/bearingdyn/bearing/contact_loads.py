@@ -8,16 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.ball_bearing import STATIC_PRESSURE, BallBearing
+from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.checks import number, positive
-from bearingdyn.notice import warn
+from bearingdyn.bearing.pressure import check_pressure
+from bearingdyn.checks import instance, number, positive
+from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.types import Array
-
-
-class BearingWarning(UserWarning):
-    """A bearing is asked for more than its parts bear, or than its model covers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +68,10 @@ def load_distribution(
     Raises
     ------
     ValueError
-        On a wrong shape, or where a ball runs beyond the shoulder: the axial load is more than it can hold.
+        On a wrong shape, a pressure above 21 GPa, or where a ball runs beyond the shoulder: the axial load
+        is more than it can hold.
     """
+    instance("bearing", bearing, (BallBearing, Running), "give a BallBearing, or it Running")
     if shoulder is not None:
         positive("shoulder", shoulder, "it must be positive and finite, in m")
     if isinstance(bearing, Running):
@@ -80,7 +79,7 @@ def load_distribution(
         psi, Q_i, Q_o, a_i, a_o = b.azimuth, b.Q_i, b.Q_o, b.alpha_i, b.alpha_o
     else:
         brg = bearing
-        Q_i = Q_o = brg.ball_loads(q, angle)
+        Q_i = Q_o = brg.ball_loads(q, angle)  # pressures are checked below
         psi, a_i = _angles(brg, q, angle)
         a_o = a_i
     pressures = []
@@ -89,7 +88,7 @@ def load_distribution(
         ("outer", brg.outer_contact, brg.fo, Q_o, a_o),
     ):
         p = contact.pressure(1.0) * np.cbrt(Q)
-        _warn_of_pressure(race, p)
+        check_pressure(race, p)
         if shoulder is not None:
             _check_shoulder(race, contact, f * brg.Dw, 2 * f * brg.Dw / (2 * f + 1), Q, alpha, shoulder)
         pressures.append(p)
@@ -103,15 +102,6 @@ def _angles(brg: BallBearing, q: ArrayLike, angle: float) -> tuple[Array, Array]
     axial = kernel.x0 + z[2] + z[3] * np.cos(psi) + z[4] * np.sin(psi)
     radial = kernel.y0 + z[0] * np.cos(psi) + z[1] * np.sin(psi)
     return psi, np.arctan2(axial, radial)
-
-
-def _warn_of_pressure(race: str, p: Array) -> None:
-    over = np.flatnonzero(p > STATIC_PRESSURE)
-    if over.size:
-        j = int(np.argmax(p))
-        others = f", and {over.size - 1} more above it" if over.size > 1 else ""
-        text = f"ball {j + 1}: {p[j] / 1e9:.3g} GPa on the {race} race, over 4.2 GPa (ISO 76){others}"
-        warn(text, BearingWarning)
 
 
 def _check_shoulder(

@@ -7,7 +7,6 @@ contact's damping.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from typing import Literal
@@ -15,7 +14,8 @@ from typing import Literal
 import numpy as np
 
 from bearingdyn import core
-from bearingdyn.checks import number, positive, require
+from bearingdyn.checks import items, positive, require, whole
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 Body = Literal["inner", "outer", "ball"]
@@ -60,15 +60,16 @@ class Waviness:
 
     def __post_init__(self) -> None:
         require(self.body in BODIES, "waviness.body", self.body, f"it must be one of {BODIES}")
-        whole = isinstance(self.order, int) and self.order >= 0
-        require(whole, "waviness.order", self.order, "it must be a whole number of waves, zero or more")
-        number("waviness.amplitude", self.amplitude, "it must be a finite length in m")
-        number("waviness.phase", self.phase, "it must be a finite angle in rad")
+        waves = isinstance(self.order, int) and not isinstance(self.order, bool) and self.order >= 0
+        require(waves, "waviness.order", self.order, "it must be a whole number of waves, zero or more")
+        plausible("waviness", "waviness.amplitude", self.amplitude, "it must be a finite length in m")
+        plausible("angle", "waviness.phase", self.phase, "it must be a finite angle in rad")
         known = self.direction in ("radial", "axial")
         require(known, "waviness.direction", self.direction, 'it must be "radial" or "axial"')
         if self.ball is not None:
-            on_ball = self.body == "ball" and self.ball >= 1
-            require(on_ball, "waviness.ball", self.ball, 'names a ball from 1, with body "ball"')
+            remedy = 'it names a ball from 1, with body "ball"'
+            whole("waviness.ball", self.ball, 1, remedy=remedy)
+            require(self.body == "ball", "waviness.ball", self.ball, remedy)
 
     def rows(self, Z: int) -> list[tuple[float, ...]]:
         """(kind, order, ball, amplitude, phase) as the core takes them."""
@@ -113,10 +114,11 @@ class Pit:
 
     def __post_init__(self) -> None:
         require(self.body in BODIES, "defects.body", self.body, f"it must be one of {BODIES}")
-        number("defects.angle", self.angle, "it must be a finite angle in rad")
-        positive("defects.width", self.width, "it must be a positive length in m")
-        positive("defects.depth", self.depth, "it must be a positive length in m")
-        require(self.ball >= 1, "defects.ball", self.ball, "balls are counted from 1")
+        plausible("angle", "defects.angle", self.angle, "it must be a finite angle in rad")
+        for name in ("width", "depth"):
+            field, value = f"defects.{name}", getattr(self, name)
+            plausible(f"pit {name}", field, positive(field, value, "it must be a positive length in m"))
+        whole("defects.ball", self.ball, 1, remedy="balls are counted from 1")
 
     def row(self, Z: int) -> tuple[float, ...]:
         """(kind, ball, angle, width, depth) as the core takes it."""
@@ -166,13 +168,14 @@ def checked(
     Z: int, waviness: Sequence[Waviness], defects: Sequence[Pit], oversize: Sequence[float]
 ) -> tuple[tuple[Waviness, ...], tuple[Pit, ...], tuple[float, ...]]:
     """The same as tuples; ValueError for something of the wrong kind or a ball that is not there."""
-    for wave in waviness:
+    for wave in items("waviness", waviness, "give a list of Waviness objects"):
         require(isinstance(wave, Waviness), "waviness", wave, "give Waviness objects")
         wave.rows(Z)
-    for pit in defects:
+    for pit in items("defects", defects, "give a list of Pit objects"):
         require(isinstance(pit, Pit), "defects", pit, "give Pit objects")
         pit.row(Z)
-    sizes = tuple(float(d) for d in oversize)
-    fits = len(sizes) in (0, Z) and all(math.isfinite(d) for d in sizes)
-    require(fits, "oversize", oversize, f"give one finite diameter deviation in m for each of {Z} balls")
+    remedy = f"give one finite diameter deviation in m for each of {Z} balls"
+    sizes = tuple(items("oversize", oversize, remedy))
+    require(len(sizes) in (0, Z), "oversize", oversize, remedy)
+    sizes = tuple(plausible("oversize", f"oversize[{i}]", d, remedy) for i, d in enumerate(sizes))
     return tuple(waviness), tuple(defects), sizes

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from bearingdyn.checks import nonnegative, number, positive, require
-from bearingdyn.magnitude import LARGEST_BALL, LARGEST_BODY, check_length
+from bearingdyn.magnitude import plausible
 
 PRELOADED = (
     "an interference that leaves none is not modelled: give clearance=0 and load the bearing along its axis, "
@@ -73,8 +73,8 @@ class Geometry:
         require(n >= 3 and n == int(n), "Z", self.Z, "it must be a whole number of balls, at least 3")
         positive("Dw", self.Dw, "it must be positive and finite, in m")
         positive("Dpw", self.Dpw, "it must be positive and finite, in m")
-        check_length("Dw", self.Dw, LARGEST_BALL)
-        check_length("Dpw", self.Dpw, LARGEST_BODY)
+        plausible("ball diameter", "Dw", self.Dw)
+        plausible("pitch diameter", "Dpw", self.Dpw)
         require(
             self.Dpw * math.sin(math.pi / n) >= self.Dw,
             "Dpw",
@@ -87,6 +87,7 @@ class Geometry:
                 "it must exceed 0.5: give groove radius / ball diameter, above 0.5 (commonly 0.515 to 0.53)"
             )
             require(number(name, f, remedy) > 0.5, name, f, remedy)
+            plausible("groove", name, f)
         require(
             (self.clearance is None) != (self.contact_angle is None),
             "clearance, contact_angle",
@@ -100,6 +101,7 @@ class Geometry:
             )
             unit = f"it must be at most Dw/10, {0.1 * self.Dw:.6g} m: is it in µm? give m"
             require(Pd <= 0.1 * self.Dw, "clearance", self.clearance, unit)
+            plausible("clearance", "clearance", Pd / self.Dw)
             require(
                 Pd < 2 * self.A,
                 "clearance",
@@ -109,7 +111,13 @@ class Geometry:
         else:
             remedy = "it must be in radians, 0 <= angle < pi/2"
             angle = nonnegative("contact_angle", self.contact_angle, remedy)
-            require(angle < math.pi / 2, "contact_angle", self.contact_angle, remedy)
+            require(
+                angle < math.pi / 2,
+                "contact_angle",
+                self.contact_angle,
+                f"{remedy}; is it in degrees? give {math.radians(angle):.4g}" if angle < 90 else remedy,
+            )
+            plausible("contact angle", "contact_angle", angle)
 
     @cached_property
     def A(self) -> float:

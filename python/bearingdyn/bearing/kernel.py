@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.bearing.excitation import Imperfections
 from bearingdyn.checks import nonnegative, number, require, vector
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 Law: TypeAlias = Literal["constant", "table", "load"]
@@ -33,7 +34,8 @@ class ConstantDamping:
     c: float
 
     def __post_init__(self) -> None:
-        nonnegative("damping.c", self.c, "the damping of one ball in N s/m must be zero or positive")
+        c = nonnegative("damping.c", self.c, "the damping of one ball in N s/m must be zero or positive")
+        plausible("contact damping", "damping.c", c)
 
     def kernel_fields(self) -> KernelFields:
         """Law, constant and table as the kernel takes them."""
@@ -69,6 +71,8 @@ class TabulatedDamping:
         y = vector("damping.c", c, (n,), "one damping in N s/m for each delta")
         require(bool((np.diff(x) > 0).all()), "damping.delta", delta, "it must be strictly increasing")
         require(bool((y >= 0).all()), "damping.c", c, "it must be zero or positive")
+        plausible("contact damping", "the largest damping.c", float(y.max()))
+        plausible("offset", "the largest damping.delta", float(np.abs(x).max()))
         for array in (x, y):
             array.flags.writeable = False
         object.__setattr__(self, "delta", x)
@@ -94,7 +98,8 @@ class LoadDamping:
     time: float
 
     def __post_init__(self) -> None:
-        nonnegative("damping.time", self.time, "the damping time in seconds must be zero or positive")
+        remedy = "the damping time in seconds must be zero or positive"
+        plausible("contact damping time", "damping.time", nonnegative("damping.time", self.time, remedy))
 
     def kernel_fields(self) -> KernelFields:
         """Law, constant and table as the kernel takes them."""

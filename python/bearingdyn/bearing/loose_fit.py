@@ -8,7 +8,8 @@ import numpy as np
 
 from bearingdyn.bearing.kernel import BearingKernel
 from bearingdyn.bearing.raceway_series import RacewaySeries
-from bearingdyn.checks import nonnegative, positive, require
+from bearingdyn.checks import nonnegative, positive, require, whole
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Index
 
 _SCALE = 1.0  # m; radial motion alone: no result depends on it
@@ -46,11 +47,13 @@ class LooseFit:
     hold: float = 1e8
 
     def __post_init__(self) -> None:
-        nonnegative("clearance", self.clearance, "it must be zero or positive, in m (diametral)")
-        whole = self.stations % 1 == 0 and self.stations >= 3
-        require(whole, "stations", self.stations, "it must be a whole number, 3 or more")
-        positive("kappa", self.kappa, "it must be positive and finite, in N/m^1.5")
-        positive("hold", self.hold, "it must be positive and finite, in N/m")
+        gap = nonnegative("clearance", self.clearance, "it must be zero or positive, in m (diametral)")
+        plausible("mount clearance", "clearance", gap)
+        whole("stations", self.stations, 3, remedy="it must be a whole number, 3 or more")
+        kappa = positive("kappa", self.kappa, "it must be positive and finite, in N/m^1.5")
+        plausible("deflection coefficient", "kappa", kappa)
+        hold = positive("hold", self.hold, "it must be positive and finite, in N/m")
+        plausible("stiffness", "hold", hold)
 
     @property
     def Z(self) -> int:

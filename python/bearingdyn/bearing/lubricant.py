@@ -12,6 +12,7 @@ from typing import Literal, NamedTuple
 
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.checks import nonnegative, number, positive, require
+from bearingdyn.magnitude import plausible
 
 _ROELANDS_PRESSURE = 1.96e8  # Pa
 _ROELANDS_LOG_VISCOSITY = 9.67  # −ln(6.31e-5 Pa s)
@@ -65,7 +66,10 @@ class Walther:
         """
         first, second = _kelvin("T1", T1), _kelvin("T2", T2)
         require(first < second, "T1, T2", (T1, T2), "temperatures in °C must increase")
-        x, y = positive("nu1", nu1) * 1e6, positive("nu2", nu2) * 1e6
+        x, y = (
+            plausible("kinematic viscosity", name, positive(name, nu)) * 1e6
+            for name, nu in (("nu1", nu1), ("nu2", nu2))
+        )
         require(y >= 2, "nu2", nu2, "it must be 2e-6 m²/s or more (give m²/s: 32 mm²/s is 32e-6)")
         require(x > y, "nu1, nu2", (nu1, nu2), "an oil thins with temperature: nu1 must exceed nu2")
         a, b = math.log10(math.log10(x + 0.7)), math.log10(math.log10(y + 0.7))
@@ -84,6 +88,7 @@ class Walther:
         ValueError
             For a grade outside 10..220 without nu_100.
         """
+        number("grade", grade, "it must be an ISO viscosity grade, as 32")
         if nu_100 is None:
             grades = ", ".join(map(str, _VG_AT_100))
             require(
@@ -136,8 +141,11 @@ class Lubricant:
     alpha: float = 2.0e-8
 
     def __post_init__(self) -> None:
+        require(isinstance(self.kinematic, Walther), "kinematic", self.kinematic, "give a Walther")
         positive("density", self.density, "the mass density in kg/m³ must be positive and finite")
-        positive("alpha", self.alpha, "α in 1/Pa must be positive (oils: 1e-8 to 3e-8)")
+        plausible("oil density", "density", self.density)
+        alpha = positive("alpha", self.alpha, "α in 1/Pa must be positive (oils: 1e-8 to 3e-8)")
+        plausible("pressure coefficient", "alpha", alpha)
 
     def viscosity(self, T: float, p: float = 0.0, law: Literal["roelands", "barus"] = "roelands") -> float:
         """Dynamic viscosity, Pa s, at T in °C and the pressure p in Pa."""
@@ -354,4 +362,5 @@ def _roelands_log(eta0: float) -> float:
 def _kelvin(field: str, T: float) -> float:
     kelvin = number(field, T, "it must be a finite temperature in °C") + _ZERO_CELSIUS
     require(kelvin > 0, field, T, "it must lie above absolute zero, −273.15 °C")
+    plausible("oil temperature", field, T)
     return kelvin

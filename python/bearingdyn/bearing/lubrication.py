@@ -19,7 +19,8 @@ from bearingdyn.bearing.lubricant import (
     nijenbanning_venner_moes,
     wijnant_damping,
 )
-from bearingdyn.checks import number, positive, require
+from bearingdyn.checks import positive, require, vector
+from bearingdyn.magnitude import check_speed_value, plausible
 
 FilmLaw = Literal["nijenbanning-venner-moes", "hamrock-dowson"]
 
@@ -98,6 +99,7 @@ def lubricate(
     ArithmeticError
         If the bearing finds no equilibrium.
     """
+    require(isinstance(bearing, BallBearing), "bearing", bearing, "give a BallBearing")
     require(isinstance(lubricant, Lubricant), "lubricant", lubricant, "give a Lubricant")
     require(
         law in ("nijenbanning-venner-moes", "hamrock-dowson"),
@@ -105,7 +107,8 @@ def lubricate(
         law,
         'it must be "nijenbanning-venner-moes" or "hamrock-dowson"',
     )
-    omega = number("speed", speed, "it must be a finite speed in rad/s")
+    omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
+    check_speed_value("speed", omega, bearing.Dpw)
     require(omega != 0, "speed", speed, "it must not be zero: without speed there is no film")
     turns = bearing.ring_speeds
     rolling = turns[0] != turns[1]
@@ -114,8 +117,9 @@ def lubricate(
     require(share <= 1, "starvation", starvation, "it must be at most 1, fully flooded")
     sigma = 0.0
     if roughness is not None:
-        race, ball = roughness
-        sigma = math.hypot(positive("roughness", race), positive("roughness", ball))
+        given = vector("roughness", roughness, (2,), "rms roughness of race and ball, in m")
+        race, ball = (plausible("roughness", "roughness", positive("roughness", r)) for r in given.tolist())
+        sigma = math.hypot(race, ball)
     eta0, alpha = lubricant.viscosity(temperature), lubricant.alpha
     dry = dataclasses.replace(bearing, film=0.0)
     state = load_distribution(dry, dry.displacement(load))

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.geometry import PRELOADED
-from bearingdyn.checks import nonnegative, number, positive, require
-from bearingdyn.magnitude import check_length
+from bearingdyn.checks import nonnegative, positive, require
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 
 _STEEL_EXPANSION = 11.5e-6
@@ -51,12 +51,19 @@ class Seat:
     warming: float = 0.0
 
     def __post_init__(self) -> None:
-        nonnegative("interference", self.interference, "it must be zero or positive, in m (diametral)")
+        squeeze = nonnegative(
+            "interference", self.interference, "it must be zero or positive, in m (diametral)"
+        )
+        plausible("interference", "interference", squeeze)
         require(isinstance(self.material, Elastic), "material", self.material, "give a material.Elastic")
-        nonnegative("expansion", self.expansion, "the thermal expansion in 1/K must be zero or positive")
-        number("warming", self.warming, "it must be a finite temperature difference in K")
-        if self.other is not None:
-            require(self.other >= 0, "other", self.other, "a diameter in m must be zero or positive")
+        growth = nonnegative(
+            "expansion", self.expansion, "the thermal expansion in 1/K must be zero or positive"
+        )
+        plausible("expansion", "expansion", growth)
+        plausible("warming", "warming", self.warming, "it must be a finite temperature difference in K")
+        if self.other is not None and self.other != math.inf:  # of a housing without end
+            other = nonnegative("other", self.other, "a diameter in m must be zero or positive")
+            plausible("length", "other", other)
 
 
 @dataclass(frozen=True)
@@ -91,15 +98,17 @@ class Mounting:
     ball_expansion: float = _STEEL_EXPANSION
 
     def __post_init__(self) -> None:
-        positive("bore", self.bore)
+        plausible("length", "bore", positive("bore", self.bore, "it must be positive and finite, in m"))
+        for name in ("shaft", "housing"):
+            require(isinstance(getattr(self, name), Seat), name, getattr(self, name), "give a Seat")
         require(
             positive("outside", self.outside) > self.bore, "outside", self.outside, "it must exceed the bore"
         )
-        check_length("outside", self.outside)
+        plausible("length", "outside", self.outside)
         for name in ("inner", "outer", "balls"):
-            number(name, getattr(self, name), "it must be a finite temperature difference in K")
-        nonnegative("expansion", self.expansion)
-        nonnegative("ball_expansion", self.ball_expansion)
+            plausible("warming", name, getattr(self, name), "it must be a finite temperature difference in K")
+        for name in ("expansion", "ball_expansion"):
+            plausible("expansion", name, nonnegative(name, getattr(self, name)))
         hollow = 0.0 if self.shaft.other is None else self.shaft.other
         require(
             hollow < self.bore, "shaft.other", hollow, f"it must be less than the bore of {self.bore!r} m"
@@ -116,6 +125,7 @@ class Mounting:
         ValueError
             If the races do not lie between bore and outside diameter.
         """
+        require(isinstance(bearing, BallBearing), "bearing", bearing, "give a BallBearing")
         race_i, race_o = bearing.Dpw - bearing.Dw, bearing.Dpw + bearing.Dw
         inside = self.bore < race_i and race_o < self.outside
         remedy = f"the races, {race_i:.6g} and {race_o:.6g} m, must lie between it and the other diameter"
@@ -138,6 +148,7 @@ class Mounting:
         ValueError
             If the clearance left is negative: rings clamped onto their balls are not modelled.
         """
+        require(isinstance(bearing, BallBearing), "bearing", bearing, "give a BallBearing")
         left = bearing.geometry.Pd + self.clearance_change(bearing)
         why = (
             "fits and temperatures leave less than none; choose looser fits or a larger clearance "

@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.bearing.open_side import REMEDY, runs_off, shoulder
+from bearingdyn.bearing.pressure import check_bearing_pressure, check_load
 from bearingdyn.checks import nonnegative, positive, require, vector
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 Arrangement = Literal["DB", "DF", "DT"]
@@ -73,14 +75,18 @@ class Pair:
         side = shoulder(self.row.open_side, self.row.contact_angle)
         remedy = "a row by itself must carry towards +z: give the row as it is made, bearing.mirrored()"
         require(side >= 0, "row", self.row, remedy)
-        positive("distance", self.distance, "between the rows, in metres, must be positive and finite")
+        apart = positive(
+            "distance", self.distance, "between the rows, in metres, must be positive and finite"
+        )
+        plausible("length", "distance", apart)
         remedy = "it must be zero or positive, and finite"
         if self.preload is not None:
-            nonnegative("preload", self.preload, f"in m, {remedy}")
+            plausible("offset", "preload", nonnegative("preload", self.preload, f"in m, {remedy}"))
             both = self.preload_force is None
             require(both, "preload_force", self.preload_force, "give a preload or a preload_force, not both")
         if self.preload_force is not None:
-            nonnegative("preload_force", self.preload_force, f"{remedy}, in N")
+            force = nonnegative("preload_force", self.preload_force, f"{remedy}, in N")
+            plausible("force", "preload_force", force)
         free = self.arrangement != "DT" or not (self.preload or self.preload_force)
         require(
             free, "arrangement", self.arrangement, "a tandem has no preload of its own: load it from outside"
@@ -151,19 +157,24 @@ class Pair:
         length = np.array([1, 1, 1, 1 / self.row.arm, 1 / self.row.arm])
 
         def law(u: Array) -> tuple[float, Array, Array, float]:
-            q = np.append(u * length, 0.0)
-            energy = sum(self.row.energy(x, angle) for x in self.row_displacements(q))
-            g, K = self.force(q, angle)[:5] * length, self.stiffness(q, angle)[:5, :5]
-            held = float(sum(loads.sum() for loads in self.ball_loads(q, angle)))
-            return energy, g, K * np.outer(length, length), held
+            q, kappa = np.append(u * length, 0.0), self.row.kappa
+            energy, g, K, held = 0.0, np.zeros(5), np.zeros((5, 5)), 0.0
+            for (T, _), x in zip(self._rows, self.row_displacements(q), strict=True):
+                # as far out as the search goes, whatever the pressures there
+                B = self.row.coefficients() @ T[:, :5] * length
+                g_row, K_row, _, loads = self.row.evaluate(x, angle)
+                energy += float(0.4 * (loads * (loads / kappa) ** (2 / 3)).sum())
+                g, K, held = g + B.T @ g_row, K + B.T @ K_row @ B, held + float(loads.sum())
+            return energy, g, K, held
 
+        check_load("load", f)
         target = f[:5] * length
         expected = (float(np.linalg.norm(target)) / self.row.kappa) ** (2 / 3) + self.approach
         q = np.append(minimum(law, target, expected or 1e-9) * length, 0.0)
-        places = zip(("first", "second"), self.row_displacements(q), strict=True)
-        for name, place in places:
-            loads = self.row.ball_loads(place, angle)
+        places = zip(("first", "second"), self.row_displacements(q), self.ball_loads(q, angle), strict=True)
+        for name, place, loads in places:
             astray = runs_off(self.row.kernel(), self.row.relative(place), loads, self.row.angle0 + angle)
             if astray:
                 raise ValueError(f"load is {f.tolist()}; in the {name} row {astray}; {REMEDY}")
+            check_bearing_pressure(self.row, loads)
         return q

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.checks import number, require
+from bearingdyn.checks import instance, number, require
 
 
 def fault_lines(
@@ -38,6 +38,7 @@ def fault_lines(
     >>> round(lines["BPFO"], 2), round(lines["BPFI"], 2)
     (107.36, 162.19)
     """
+    instance("bearing", bearing, BallBearing, "give a BallBearing")
     _whole("harmonics", harmonics)
     f = bearing.frequencies(number("speed", speed), contact_angle)
     lines = {"shaft": abs(speed) / (2 * math.pi), "FTF": f.FTF}
@@ -80,6 +81,7 @@ def waviness_lines(
     ValueError
         For an odd order of a ball, or a value that is no positive whole number.
     """
+    instance("bearing", bearing, BallBearing, "give a BallBearing")
     _whole("multiples", multiples)
     for n in ball_orders:
         even = isinstance(n, int) and n > 0 and n % 2 == 0

@@ -11,6 +11,7 @@ import numpy as np
 
 from bearingdyn.bearing.excitation import BODIES, Body, Pit, Waviness
 from bearingdyn.checks import nonnegative, number, positive, require
+from bearingdyn.magnitude import plausible
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,8 @@ class WavinessSpectrum:
     scatter: Literal["none", "rayleigh"] = "none"
 
     def __post_init__(self) -> None:
-        nonnegative("spectrum.amplitude", self.amplitude, "it must be zero or positive, and finite, in m")
+        remedy = "it must be zero or positive, and finite, in m"
+        plausible("waviness", "spectrum.amplitude", nonnegative("spectrum.amplitude", self.amplitude, remedy))
         number("spectrum.exponent", self.exponent)
         whole = isinstance(self.order, int) and self.order >= 1
         require(whole, "spectrum.order", self.order, "it must be a whole number of waves, one or more")
@@ -122,6 +124,7 @@ def diameter_scatter(Z: int, deviation: float, seed: int) -> tuple[float, ...]:
     require(isinstance(Z, int) and Z >= 1, "Z", Z, "it must be a whole number of balls")
     require(isinstance(seed, int) and seed >= 0, "seed", seed, "it must be a whole number, zero or more")
     sigma = nonnegative("deviation", deviation, "it must be zero or positive, and finite, in m")
+    plausible("oversize", "deviation", sigma)
     return tuple(float(x) for x in sigma * np.random.default_rng(seed).standard_normal(Z))
 
 

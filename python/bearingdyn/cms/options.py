@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from bearingdyn.checks import require
+from bearingdyn.checks import number, numbers, require
 
 F_MAX = 20e3  # Hz, the end of what is heard
 
@@ -21,6 +21,7 @@ def check_f_max(f_max: float, *, may_be_zero: bool = True, may_be_infinite: bool
 
     A part whose mesh follows from f_max lets it be neither.
     """
+    f_max = _ordered("f_max", f_max, "it must be a frequency in Hz")
     good = (f_max >= 0 if may_be_zero else f_max > 0) and (may_be_infinite or f_max < math.inf)
     none, every = (
         ", 0 for no modes" if may_be_zero else " above 0",
@@ -29,8 +30,17 @@ def check_f_max(f_max: float, *, may_be_zero: bool = True, may_be_infinite: bool
     require(good, "f_max", f_max, f"it must be a frequency in Hz{none}{every}")
 
 
+def _ordered(field: str, value: Any, remedy: str) -> float:
+    """The value as a number, which may be infinite."""
+    try:
+        return math.inf if value == math.inf else number(field, value, remedy)
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; {remedy}") from None
+
+
 def check_damping(damping: float, field: str = "damping") -> None:
     """Raise ValueError unless 0 <= damping < 1."""
+    number(field, damping, f"it must be a damping ratio, 0 <= {field} < 1")
     require(0 <= damping < 1, field, damping, f"it must be a damping ratio, 0 <= {field} < 1")
 
 
@@ -42,13 +52,15 @@ def check_held(held: str | None, interfaces: Iterable[str]) -> None:
 
 def check_rounds(inertia: Any) -> None:
     """Raise ValueError unless the number of rounds of inertia shapes is 0, 1, 2, ..."""
+    number("inertia", inertia, "it must be a number of rounds: 0, 1, 2, ...")
     good = inertia >= 0 and inertia % 1 == 0
     require(good, "inertia", inertia, "it must be a number of rounds: 0, 1, 2, ...")
 
 
 def check_moduli(moduli: Sequence[float]) -> tuple[float, ...]:
     """The moduli as floats. Raises ValueError unless they are one or more positive shear moduli, Pa."""
-    values = tuple(float(G) for G in moduli)
+    remedy = "it must hold one or more positive shear moduli, Pa"
+    values = tuple(numbers("moduli", moduli, remedy).tolist())
     good = bool(values) and all(0 < G < math.inf for G in values)
     require(good, "moduli", values, "it must hold one or more positive shear moduli, Pa")
     return values

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from bearingdyn.checks import positive
-from bearingdyn.magnitude import LONGEST_SHAFT, THICKEST_SHAFT, check_length
+from bearingdyn.checks import number, positive
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.types import Array
 
@@ -45,12 +45,13 @@ class Section:
     def __post_init__(self) -> None:
         positive("Section length", self.length, "it must be a positive length in m")
         positive("Section d_outer", self.d_outer, "it must be a positive diameter in m")
+        number("Section d_inner", self.d_inner, "it must be a diameter in m, 0 for a full section")
         if not 0 <= self.d_inner < self.d_outer:
             raise ValueError(
                 f"Section d_inner is {self.d_inner}; it must lie from 0 to below d_outer = {self.d_outer} m"
             )
-        check_length("Section length", self.length, LONGEST_SHAFT)
-        check_length("Section d_outer", self.d_outer, THICKEST_SHAFT)
+        plausible("shaft length", "Section length", self.length)
+        plausible("shaft diameter", "Section d_outer", self.d_outer)
 
     @property
     def area(self) -> float:

@@ -16,7 +16,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import positive, require
-from bearingdyn.magnitude import check_density
+from bearingdyn.magnitude import check_density, check_waves, plausible
 from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable
@@ -31,6 +31,8 @@ def _check(owner: str, values: dict[str, float]) -> None:
     for name, value in values.items():
         positive(f"{owner}.{name}", value)
     check_density(f"{owner}.density", values["density"])
+    plausible("bulk modulus", f"{owner}.K", values["K"])
+    check_waves(f"{owner}.K", values["K"], values["density"])
 
 
 def _approximate(

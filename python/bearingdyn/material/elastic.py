@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bearingdyn.checks import positive
-from bearingdyn.magnitude import SOFTEST, check_density
+from bearingdyn.checks import number, positive
+from bearingdyn.magnitude import check_density, check_waves, plausible
 
 
 @dataclass(frozen=True)
@@ -40,18 +40,15 @@ class Elastic:
 
     def __post_init__(self) -> None:
         positive("Elastic.E", self.E, "Young's modulus must be positive and finite, Pa")
-        if not self.E >= SOFTEST:
-            raise ValueError(
-                f"Elastic.E is {self.E!r} Pa; below {SOFTEST:g} Pa, softer than any rubber; is it in GPa or "
-                "MPa? E is in Pa"
-            )
-        if not -1 < self.nu < 0.5:
+        plausible("Young's modulus", "Elastic.E", self.E)
+        if not -1 < number("Elastic.nu", self.nu, "Poisson's ratio must lie between -1 and 0.5") < 0.5:
             raise ValueError(
                 f"Elastic.nu is {self.nu!r}; Poisson's ratio must lie strictly between -1 and 0.5 "
                 "(for a nearly incompressible material take 0.4999, or Maxwell with a bulk modulus)"
             )
         positive("Elastic.density", self.density, "it must be positive and finite, kg/m³")
         check_density("Elastic.density", self.density)
+        check_waves("Elastic.E", self.E, self.density)
 
     @property
     def G(self) -> float:

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, number, positive
-from bearingdyn.magnitude import check_bulk, check_density
+from bearingdyn.checks import nonnegative, number, positive, real, vector
+from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.retuning import Retunable
@@ -22,7 +22,10 @@ _ROUNDING = 1.001  # of the edges of a band
 
 
 def _branches(name: str, values: ArrayLike) -> Array:
-    array = np.array(values, dtype=np.float64)
+    try:
+        array = real(values)
+    except (TypeError, ValueError):
+        raise ValueError(f"Maxwell.{name} is {values!r}; it must be real numbers, one per branch") from None
     if array.ndim != 1:
         raise ValueError(
             f"Maxwell.{name} has shape {array.shape}; it must be one-dimensional, a value per branch"
@@ -110,19 +113,20 @@ class Maxwell(Retunable):
     ) -> None:
         if band is None and fit is not None:
             band = fit.band
+        edges = band if band is None else vector("Maxwell.band", band, (2,), "lowest and highest, in Hz")
         if temperature is None and law is not None:
             temperature = law.T_ref
         values = {
-            "G0": float(G0),
+            "G0": number("Maxwell.G0", G0, "it must be zero or positive, and finite, Pa"),
             "G": _branches("G", G),
             "tau": _branches("tau", tau),
-            "eta0": float(eta0),
-            "K": float(K),
-            "density": float(density),
+            "eta0": number("Maxwell.eta0", eta0, "it must be zero or positive, and finite, Pa s"),
+            "K": number("Maxwell.K", K, "it must be positive and finite, Pa"),
+            "density": number("Maxwell.density", density, "it must be positive and finite, kg/m³"),
             "law": law,
             "temperature": temperature,
             "vertical": vertical,
-            "band": None if band is None else (float(band[0]), float(band[1])),
+            "band": None if edges is None else (float(edges[0]), float(edges[1])),
             "fit": fit,
         }
         for name, value in values.items():
@@ -142,14 +146,20 @@ class Maxwell(Retunable):
         for i, (G, tau) in enumerate(zip(self.G.tolist(), self.tau.tolist(), strict=True)):
             nonnegative(f"Maxwell.G[{i}]", G, "it must be zero or positive, and finite, Pa")
             positive(f"Maxwell.tau[{i}]", tau, "it must be positive and finite, s")
+            plausible("branch modulus", f"Maxwell.G[{i}]", G)
+            plausible("relaxation time", f"Maxwell.tau[{i}]", tau)
         if not self.G0 + self.eta0 + self.G.sum() > 0:
             raise ValueError(
                 "Maxwell: G0, every G and eta0 are zero: the material would carry no shear at all"
             )
         check_density("Maxwell.density", self.density)
+        plausible("shear modulus", "Maxwell.G0", self.G0)
+        plausible("dashpot viscosity", "Maxwell.eta0", self.eta0)
         check_bulk("Maxwell.K", self.K, self._stiffest())
+        plausible("bulk modulus", "Maxwell.K", self.K)
+        check_waves("Maxwell.K", self.K, self.density)
         if self.temperature is not None:
-            number("Maxwell.temperature", self.temperature, "it must be finite, °C")
+            plausible("temperature", "Maxwell.temperature", self.temperature, "it must be finite, °C")
         if self.band is not None and not 0 < self.band[0] < self.band[1] < math.inf:
             raise ValueError(f"Maxwell.band is {self.band!r} Hz; it must be a lower and a higher frequency")
 
@@ -330,6 +340,7 @@ class Maxwell(Retunable):
         ValueError
             If the material has no law.
         """
+        T = plausible("temperature", "T", T, "it must be one finite temperature, in °C")
         if self.law is None or self.temperature is None:
             raise ValueError(
                 "Maxwell.law is None: a material can be moved to another temperature only by a shift law "

@@ -10,9 +10,10 @@ from typing import Literal
 
 import numpy as np
 
-from bearingdyn.checks import one_of, positive
+from bearingdyn.checks import instance, one_of, positive
 from bearingdyn.cms import Superelement
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.faces import Cylinder, Face, Groove, Line, Where
 from bearingdyn.parts.layer import Layer
@@ -84,9 +85,17 @@ class FlexibleRing:
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
+        positive("r_outer", self.r_outer, "it must be a positive radius in m")
         if not self.r_inner < self.r_outer < math.inf:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
         positive("width", self.width, "it must be a positive length in m")
+        positive("refinement", self.refinement, "it must be a positive mesh density, 1 by default")
+        for name in ("r_outer", "width"):
+            plausible("length", name, getattr(self, name))
+        plausible("length", "arm", positive("arm", self.arm, "it must be a positive radius in m"))
+        for name in ("groove", "groove_radius"):
+            if getattr(self, name) is not None:
+                positive(name, getattr(self, name), "it must be a positive length in m")
         if self.groove is not None and not 0 < self.groove <= self.width:
             raise ValueError(f"groove is {self.groove}; it must lie in 0...width = {self.width} m")
         if self.groove_radius is not None:
@@ -100,6 +109,7 @@ class FlexibleRing:
                 raise ValueError(f"the groove is {self.depth:g} m deep and cuts the ring; make it narrower")
         one_of("outside", self.outside, ("rigid", "flexible"))
         if self.layer is not None:
+            instance("layer", self.layer, Layer, "it must be a bd.Layer(…), or None")
             if not math.isclose(self.layer.r_inner, self.r_outer, rel_tol=1e-9):
                 raise ValueError(
                     f"layer.r_inner is {self.layer.r_inner}; a layer is bonded to the ring at "

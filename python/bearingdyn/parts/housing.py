@@ -9,10 +9,10 @@ from functools import cached_property
 
 import numpy as np
 
-from bearingdyn.checks import nonnegative, positive
+from bearingdyn.checks import instance, named, nonnegative, positive, vector
 from bearingdyn.cms import F_MAX, Superelement, check_damping, check_f_max
 from bearingdyn.fem import block_with_bore
-from bearingdyn.magnitude import check_length
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.round_face import RoundFace
@@ -101,7 +101,19 @@ class Housing:
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "length", "bore_diameter"):
-            check_length(name, positive(name, getattr(self, name), "it must be a positive length in m"))
+            plausible(
+                "length", name, positive(name, getattr(self, name), "it must be a positive length in m")
+            )
+        instance(
+            "material", self.material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL"
+        )
+        if self.feet is not None:
+            instance("feet", self.feet, Feet, "it must be bd.Feet(width, height), or None for the whole base")
+        for name in ("bore_height", "element_size"):
+            if getattr(self, name) is not None:
+                positive(name, getattr(self, name), "it must be a positive length in m")
+        for name, at in named("points", self.points, "it must be a dict, name -> (x, y, z) in m").items():
+            vector(f"points[{name!r}]", at, (3,), "x, y and z in m")
         check_f_max(self.f_max)
         check_damping(self.damping)
         d, axis = self.bore_diameter, self.axis

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import positive
 from bearingdyn.cms import Superelement, check_moduli
-from bearingdyn.magnitude import check_length
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
@@ -70,11 +70,13 @@ class Layer:
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
+        positive("r_outer", self.r_outer, "it must be a positive radius in m")
         if not self.r_inner < self.r_outer < math.inf:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
         positive("width", self.width, "it must be a positive length in m")
+        positive("refinement", self.refinement, "it must be a positive mesh density, 1 by default")
         for name in ("r_outer", "width"):
-            check_length(name, getattr(self, name))
+            plausible("length", name, getattr(self, name))
         if self.moduli is not None:
             object.__setattr__(self, "moduli", check_moduli(self.moduli))
         _ = self.body

@@ -11,7 +11,7 @@ import numpy as np
 
 from bearingdyn.cms import modulus_levels
 from bearingdyn.fem import Rectangle
-from bearingdyn.magnitude import check_length
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 
 
@@ -61,8 +61,8 @@ class Region:
 
     def __post_init__(self) -> None:
         Rectangle(self.r, self.z)
-        check_length("r[1]", self.r[1])
-        check_length("z[1] - z[0]", self.z[1] - self.z[0])
+        plausible("length", "r[1]", self.r[1])
+        plausible("length", "z[1] - z[0]", self.z[1] - self.z[0])
         _check_material(self.material)
 
     @property

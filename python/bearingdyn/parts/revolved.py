@@ -33,7 +33,7 @@ from bearingdyn.fem import (
     lowest_modes,
     revolution_mesh,
 )
-from bearingdyn.magnitude import check_length
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
 from bearingdyn.parts.faces import Cylinder, EndFace, Face, Groove
@@ -156,7 +156,7 @@ class Revolved:
                 where = "without a mesh in section" if self.section is None else "for a mesh in section"
                 raise ValueError(f"regions[{k}] is {q!r}; {where} it must be a {kind.__name__}")
         if self.section is not None:
-            check_length("the size of the section", self.section.size)
+            plausible("length", "the size of the section", self.section.size)
         if self.section is not None and int(self.section.region.max()) + 1 != len(self.regions):
             raise ValueError(
                 f"section has {int(self.section.region.max()) + 1} regions and there are materials for "

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearingdyn.checks import positive
+from bearingdyn.checks import instance, nonnegative, positive, vector
 from bearingdyn.cms import Superelement
-from bearingdyn.magnitude import check_length
+from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, box, carried, cylinder
 from bearingdyn.parts.round_face import RoundFace
@@ -51,16 +51,23 @@ class RigidBody:
     measures: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
-        positive("mass", self.mass, "it must be a positive mass in kg")
-        inertia = tuple(float(i) for i in self.inertia)
-        if len(inertia) != 3:
-            raise ValueError(f"inertia is {self.inertia!r}; it must hold three moments (Ix, Iy, Iz) in kg m²")
+        plausible("mass", "mass", positive("mass", self.mass, "it must be a positive mass in kg"))
+        instance("rotating", self.rotating, (bool, np.bool_), "it must be True or False")
+        if self.measures is not None:
+            meaning = "r_inner, r_outer and width in m"
+            object.__setattr__(
+                self, "measures", tuple(vector("measures", self.measures, (3,), meaning).tolist())
+            )
+        moments = vector("inertia", self.inertia, (3,), "three moments (Ix, Iy, Iz) in kg m²")
+        inertia = tuple(moments.tolist())
         for name, value in zip(("Ix", "Iy", "Iz"), inertia, strict=True):
             positive(f"inertia {name}", value, "it must be a positive moment in kg m²")
         if not 2.0 * max(inertia) <= sum(inertia) * (1.0 + 1e-9):
             raise ValueError(f"inertia is {inertia}; no moment may exceed the sum of the other two")
         if self.rotating and not math.isclose(inertia[0], inertia[1], rel_tol=1e-9):
             raise ValueError(f"inertia is {inertia}; a rotating body needs Ix = Iy")
+        for name, value in zip(("Ix", "Iy", "Iz"), inertia, strict=True):
+            check_gyration(f"inertia {name}", value, self.mass)
         object.__setattr__(self, "inertia", inertia)
 
     @classmethod
@@ -80,12 +87,14 @@ class RigidBody:
         ValueError
             Unless 0 <= r_inner < r_outer <= 10 m and 0 < width <= 10 m.
         """
+        instance("material", material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL")
         positive("r_outer", r_outer, "it must be a positive radius in m")
+        nonnegative("r_inner", r_inner, "it must be a radius in m, 0 for a disc")
         if not 0 <= r_inner < r_outer:
             raise ValueError(f"r_inner is {r_inner}; it must be at least 0 and below r_outer = {r_outer} m")
         positive("width", width, "it must be a positive width in m")
-        check_length("r_outer", r_outer)
-        check_length("width", width)
+        plausible("length", "r_outer", r_outer)
+        plausible("length", "width", width)
         mass = material.density * math.pi * (r_outer**2 - r_inner**2) * width
         square = r_inner**2 + r_outer**2
         across = mass * (square / 4.0 + width**2 / 12.0)

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from bearingdyn.checks import positive
 from bearingdyn.cms import Superelement
-from bearingdyn.magnitude import check_length
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
@@ -51,11 +51,13 @@ class Ring:
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
+        positive("r_outer", self.r_outer, "it must be a positive radius in m")
         if not self.r_outer > self.r_inner:
             raise ValueError(f"r_outer is {self.r_outer}; it must exceed r_inner = {self.r_inner} m")
         positive("width", self.width, "it must be a positive length in m")
+        positive("refinement", self.refinement, "it must be a positive mesh density, 1 by default")
         for name in ("r_outer", "width"):
-            check_length(name, getattr(self, name))
+            plausible("length", name, getattr(self, name))
         _ = self.body
 
     @cached_property

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 import scipy
 
-from bearingdyn.checks import nonnegative, number, positive
+from bearingdyn.checks import instance, items, named, nonnegative, number, positive
 from bearingdyn.cms import (
     F_MAX,
     Basis,
@@ -24,7 +24,7 @@ from bearingdyn.cms import (
     project,
 )
 from bearingdyn.fem import Section, assemble_beam, bending_wavelength
-from bearingdyn.magnitude import LONGEST_SHAFT, check_length
+from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 from bearingdyn.parts.round_face import RoundFace
@@ -61,11 +61,12 @@ class Disc:
 
     def __post_init__(self) -> None:
         number("Disc z", self.z, "it must be a position in m")
-        positive("Disc mass", self.mass, "it must be a positive mass in kg")
+        plausible("mass", "Disc mass", positive("Disc mass", self.mass, "it must be a positive mass in kg"))
         nonnegative("Disc Id", self.Id, "it must be a moment in kg m², not negative")
         nonnegative("Disc Ip", self.Ip, "it must be a moment in kg m², not negative")
         if not self.Ip <= 2.0 * self.Id * (1.0 + 1e-9):
             raise ValueError(f"Disc Ip is {self.Ip}; no disc has Ip above 2 Id = {2.0 * self.Id} kg m²")
+        check_gyration("Disc Id", self.Id, self.mass)
 
     @classmethod
     def cylinder(
@@ -78,6 +79,7 @@ class Disc:
         ValueError
             For measures that make no cylinder.
         """
+        instance("material", material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL")
         body = Section(width, d_outer, d_inner)
         mass = material.density * body.area * width
         square = d_outer**2 + d_inner**2
@@ -139,16 +141,28 @@ class Shaft:
     element_length: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sections", tuple(self.sections))
-        object.__setattr__(self, "discs", tuple(self.discs))
-        object.__setattr__(self, "seats", {k: float(v) for k, v in self.seats.items()})
-        object.__setattr__(self, "points", {k: float(v) for k, v in self.points.items()})
+        instance(
+            "material", self.material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL"
+        )
+        for name, kind in (("sections", Section), ("discs", Disc)):
+            remedy = f"it must be a list of bd.{kind.__name__}"
+            given = tuple(items(name, getattr(self, name), remedy))
+            for k, one in enumerate(given):
+                instance(f"{name}[{k}]", one, kind, f"it must be a bd.{kind.__name__}(…)")
+            object.__setattr__(self, name, given)
+        for name in ("seats", "points"):
+            given_places = named(name, getattr(self, name), "it must be a dict, name -> position z in m")
+            found = {
+                k: number(f"{name}[{k!r}]", z, "it must be a position z in m")
+                for k, z in given_places.items()
+            }
+            object.__setattr__(self, name, found)
         if not self.sections:
             raise ValueError("sections is empty; a shaft needs at least one Section")
         if not self.seats:
             raise ValueError("seats is empty; a shaft needs at least one seat to be joined by")
         L = self.length
-        check_length("the length of all sections", L, LONGEST_SHAFT)
+        plausible("shaft length", "the length of all sections", L)
         places = [(f"seats[{k!r}]", v) for k, v in self.seats.items()]
         places += [(f"points[{k!r}]", v) for k, v in self.points.items()]
         places += [(f"discs[{i}].z", d.z) for i, d in enumerate(self.discs)]
@@ -164,7 +178,7 @@ class Shaft:
                 raise ValueError(f"seats {a!r} and {b!r} are both at z = {za} m; move one, or keep one")
         check_damping(self.damping)
         check_f_max(self.f_max, may_be_zero=False)
-        if self.element_length is not None and not self.element_length > 1e-4 * L:
+        if self.element_length is not None and not positive("element_length", self.element_length) > 1e-4 * L:
             raise ValueError(f"element_length is {self.element_length}; it must exceed {1e-4 * L:.3g} m")
 
     @property

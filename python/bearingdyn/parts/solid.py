@@ -28,7 +28,7 @@ from bearingdyn.cms import (
     project,
 )
 from bearingdyn.fem import SolidMesh, SurfaceSamples, assemble_solid, face_shapes, factorise, rigid_motion
-from bearingdyn.magnitude import LARGEST_SOLID, check_length
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import ViscoelasticSolid
@@ -152,7 +152,7 @@ class Solid:
         check_damping(self.damping)
         if self.moduli is not None:
             object.__setattr__(self, "moduli", check_moduli(self.moduli))
-        check_length("the body's extent", float(np.ptp(self.mesh.points, axis=0).max()), LARGEST_SOLID)
+        plausible("solid length", "the body's extent", float(np.ptp(self.mesh.points, axis=0).max()))
         self._check_materials()
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")

@@ -8,6 +8,7 @@ from bearingdyn.system.arrays import (
     SpringTerm,
     System,
     factor,
+    natural,
 )
 from bearingdyn.system.assembly import assemble
 
@@ -20,4 +21,5 @@ __all__ = [
     "System",
     "assemble",
     "factor",
+    "natural",
 ]

@@ -19,8 +19,8 @@ import scipy.linalg
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Channel, Part
 from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, LooseFit, RacewaySeries
-from bearingdyn.checks import number
 from bearingdyn.cms import Superelement, coupled_blocks
+from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import Maxwell
 from bearingdyn.types import Array, Index
 
@@ -247,7 +247,10 @@ class System:
             For a speed (rad/s) that is not finite, and for any but 0 where the damping of a part that turns
             is known at rest only; names the part.
         """
-        number("speed", speed, "it must be finite, in rad/s")
+        plausible("speed", "speed", speed, "it must be one finite number, in rad/s")
+        for term in self.bearings:
+            if isinstance(term.bearing, BallBearing):
+                check_speed_value(f"bearing {term.name!r}: speed", speed, term.bearing.Dpw)
         if speed != 0.0 and self.standstill:
             raise ValueError(
                 f"{self.standstill[0]!r} turns with the shaft, and its damping is known for a part at rest "

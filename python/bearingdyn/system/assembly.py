@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from bearingdyn.application import GRAVITY, GROUND, Application, Load, LooseJoint, Place, Plan
+from bearingdyn.application import GRAVITY, GROUND, Application, Load, LooseJoint, Place, Plan, Unbalance
 from bearingdyn.bearing import RIGID
+from bearingdyn.magnitude import plausible
 from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System, factor
 from bearingdyn.system.held import check_held
 from bearingdyn.system.origin import noted
@@ -58,6 +59,7 @@ def assemble(app: Application) -> System:
         for name in (*element.interfaces, *element.outputs):
             outputs[str(Place(part, name))] = element.rows(name) @ select[part]
 
+    check_unbalance(plan)
     loads = [_load(plan, load, outputs, inertia) for load in plan.loads]
     springs: list[SpringTerm] = []
     for spring, offset in _springs(plan, outputs):
@@ -115,6 +117,25 @@ def assemble(app: Application) -> System:
     )
     check_held(system, firm)
     return noted(system, app)
+
+
+def check_unbalance(plan: Plan) -> None:
+    """Compare each unbalance with the mass that moves with its place: eccentricities are micrometres.
+
+    Raises
+    ------
+    ValueError
+        For an eccentricity that no rotor has; the unbalance was given in g mm or kg mm.
+    """
+    for load in plan.loads:
+        if isinstance(load, Unbalance):
+            masses = [plan.mass(part) for part in plan.joined_parts(load.where.part)]
+            mass = sum(m for m in masses if m is not None)
+            if mass > 0.0 and load.moment > 0.0:
+                name = (
+                    f"unbalance at {load.where} is {load.moment:.6g} kg m on {mass:.4g} kg; its eccentricity"
+                )
+                plausible("eccentricity", name, load.moment / mass)
 
 
 def _between(ends: Mapping[str, Array], outputs: Mapping[str, Array]) -> Array:

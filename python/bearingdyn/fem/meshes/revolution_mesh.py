@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from bearingdyn.checks import vector
 from bearingdyn.types import Array, Index
 
 SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
@@ -36,6 +37,8 @@ class Rectangle:
     graded: bool = False
 
     def __post_init__(self) -> None:
+        for name in ("r", "z"):
+            vector(name, getattr(self, name), (2,), "(from, to) in m")
         if not 0.0 <= self.r[0] < self.r[1] < math.inf:
             raise ValueError(f"r is {self.r}; a section needs 0 <= r[0] < r[1], m")
         if not -math.inf < self.z[0] < self.z[1] < math.inf:

@@ -1,0 +1,67 @@
+"""Whether the bearings of a march bore what they were asked to, by all that is known at its end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bearingdyn import core
+from bearingdyn.analysis.march import March
+from bearingdyn.bearing import STATIC_PRESSURE, BallBearing
+from bearingdyn.notice import BearingWarning, warn
+from bearingdyn.types import Array
+
+
+def warn_of_overload(
+    march: March, model: core.Model, state: Array, record: Sequence[str], rows: Array
+) -> None:
+    """Warn of every bearing whose contacts went over 4.2 GPa (ISO 76).
+
+    Known are its balls' loads in the last state, those recorded, and, of a recorded force F along an axis,
+    that one ball of Z bears F/Z or more. The pressures of the first state were checked with the equilibrium.
+
+    Parameters
+    ----------
+    march, model, state
+        As they ended.
+    record, rows
+        Channels and their samples (n, channels).
+
+    Warns
+    -----
+    BearingWarning
+        Naming the bearing, its pressure and its static rating.
+    """
+    t, x, *_ = model.unpack(state)
+    turned = shaft_angle(march.stepping, t)
+    for term in march.modal.bearings:
+        bearing = term.bearing
+        if not isinstance(bearing, BallBearing):
+            continue
+        loads = [0.0]
+        if np.isfinite(x).all():
+            z, kernel = term.B @ x, term.kernel()
+            cage = kernel.angle0 + bearing.cage_ratio * turned
+            loads.append(core.bearing_force(kernel, z, np.zeros_like(z), cage, 0.0, turned)[3].max())
+        for name, samples in zip(record, rows.T, strict=True):
+            if samples.size and name.startswith(f"{term.name}.ball"):
+                loads.append(samples.max())
+            elif samples.size and name.startswith(f"{term.name}.force."):
+                loads.append(np.abs(samples).max() / bearing.Z)
+        peak = float(np.nanmax(loads))
+        pressure = bearing.pressure(peak)
+        if pressure > STATIC_PRESSURE:
+            warn(
+                f"bearing {term.name!r}: a ball bore {peak:.4g} N in this march, {pressure / 1e9:.3g} GPa, "
+                f"over {STATIC_PRESSURE / 1e9:g} GPa (ISO 76); its static radial rating is "
+                f"{bearing.static_rating:.3g} N: are the loads, the unbalance and the speed in SI units?",
+                BearingWarning,
+            )
+
+
+def shaft_angle(stepping: core.Stepping, t: float) -> float:
+    """Angle, rad, through which the shaft has turned from 0 to t, s."""
+    times, speeds = stepping.profile
+    knots = np.unique(np.concatenate([[0.0, t], times[(times > 0.0) & (times < t)]]))
+    return float(np.trapezoid(np.interp(knots, times, speeds), knots))
