@@ -36,6 +36,7 @@ PUBLIC = {
         "radiated_power",
         "shaft_angle",
         "spectrum",
+        "static_summary",
         "track_orders",
         "transient",
         "transients",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -10,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import QUANTITIES, RATES, Application
 from bearingdyn.checks import name_list, numbers
-from bearingdyn.material import Maxwell
+from bearingdyn.material import Maxwell, warn_beyond
 from bearingdyn.system import System, assemble
 from bearingdyn.types import Array, Complex
 
@@ -117,6 +118,11 @@ def frequency_response(
         response (frequency, output, input), complex. At 0 Hz it is the static response, without the free spin
         of a shaft unless a force drives it.
 
+    Warns
+    -----
+    BeyondData
+        At 0 Hz, where layers have their relaxed modulus, if their data do not speak of it.
+
     Raises
     ------
     ValueError
@@ -150,6 +156,14 @@ def frequency_response(
     force = np.array([i.force for i in given]).reshape(-1, state.system.n)
 
     omega = 2 * np.pi * f
+    if (f == 0).any():
+        warn_beyond(
+            [(layer.part, layer.material) for layer in state.system.layers],
+            math.inf,
+            "the response at 0 Hz, which is relaxed,",
+            "take the lowest frequency that the data reach instead, or equilibrium(app, after=...) for a "
+            "deflection, ",
+        )
     x = state.solve(omega, force, requested(wanted, state.system.n), speed, progress)
     response = recovered(wanted, given, x, omega, speed, QUANTITIES.index(quantity), state.K, state.C)
 
@@ -168,6 +182,7 @@ def frequency_response(
             "analysis": "frequency response",
             "speed": speed,
             "quantity": quantity,
+            **state_of(source),
             **inputs_of(state.system.inputs),
         },
         {"frequency": (f, "Hz"), "output": (list(outputs), ""), "input": (list(inputs), "")},
