@@ -116,7 +116,7 @@ def _number(value: float | None) -> float:
 
 
 def _known(material: Any, time: float, value: float) -> tuple[float, float]:
-    """Lowest and highest modulus, Pa, that the data allow after a time; the value itself if there are none."""
+    """Lowest and highest modulus, Pa, that the data allow after a time; else the value itself."""
     end = getattr(material, "low_end", None)
     return (value, value) if end is None or time == 0.0 else end.bounds(time, value)
 

@@ -153,7 +153,7 @@ def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, firs
 def _numbers(material: Any, after: float) -> str:
     """The value, what the data reach, and the interval."""
     end: LowEnd = material.low_end
-    value = material.G0 if math.isinf(after) else float(material.relaxation(after))
+    value = material.complex_modulus(0.0).real if math.isinf(after) else float(material.relaxation(after))
     low, high = end.bounds(after, value)
     state = "relaxed" if math.isinf(after) else f"after {after:.3g} s"
     at = "" if material.temperature is None else f" at {material.temperature:g} °C"
