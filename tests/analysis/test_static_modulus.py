@@ -142,7 +142,7 @@ SOURCES: dict[str, Callable[[bd.Maxwell], object]] = {
     "0 Hz": lambda m: bd.frequency_response(loaded(m), [0.0, 20.0], ["ring.inner.y"], ["ring.inner.y"]),
     "stiffness": lambda m: ring(m).stiffness(),
     "stiffness after": lambda m: ring(m).stiffness(after=1.0),
-    "sample": lambda m: bd.damping_sample(m).stiffness(),
+    "sample": lambda m: bd.damping_sample(m, refinement=0.3).stiffness(),
 }
 
 

@@ -124,7 +124,7 @@ def _known(material: Any, time: float, value: float) -> tuple[float, float]:
 def _meant(material: Any, time: float) -> float:
     """The time, s, that the state stands for: the relaxed one of a pinned fit is that of the pin."""
     end = getattr(material, "low_end", None)
-    return end.pinned[0] if math.isinf(time) and end is not None and end.pinned is not None else time
+    return time if end is None else float(end.meant(time))
 
 
 def _motions(eq: Equilibrium, moduli: list[float]) -> Array | None:

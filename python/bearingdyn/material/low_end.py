@@ -10,6 +10,7 @@ from typing import Any
 from bearingdyn.notice import BeyondData, warn
 
 FALL = 0.05  # of G′ a decade: what moduli from one specimen to the next are good to
+LATE = 10.0  # times the reach: a pin this late is the relaxed state, with branches up to a tenth of it
 SLACK = 2.0  # times the reach: a third of a decade, as a band may go beyond the curve
 
 
@@ -28,9 +29,9 @@ class LowEnd:
     measured
         Lowest frequency of the whole master curve, Hz.
     modulus
-        G′ at the low end, Pa: the line through ln G′ of the lowest decade, at its lowest frequency.
+        G′ at the low end, Pa: a parabola through ln G′ of the lowest decade, at its lowest frequency.
     slope, slope_error
-        d ln G′/d ln ω of that line, and its standard error; NaN if fewer than three points lie there.
+        d ln G′/d ln ω of the line through that decade, and its standard error; NaN if fewer than three points lie there.
     tan_delta
         Mean loss factor of the lowest decade.
     scatter
@@ -45,7 +46,8 @@ class LowEnd:
         best rms deviation, as n="auto" judges a fit, and the fit's own G0. Without: from 0 to G′ at the low
         end, as G0 ≤ G′(ω) at every ω, with twice the scatter.
     pinned
-        Time, s, and modulus, Pa, at which the fit was pinned; then the relaxed state stands for that time.
+        Time, s, and modulus, Pa, at which the fit was pinned. If that is ten times the reach or more, all
+        branches of the fit have relaxed by then, and the relaxed state stands for that time.
     """
 
     frequency: float
@@ -77,9 +79,13 @@ class LowEnd:
         """Whether the data speak of the modulus after a time, s; inf is the relaxed state."""
         if self.plateau:
             return True
-        if self.pinned is not None:
-            return math.isinf(time) or time <= SLACK * max(self.reach, self.pinned[0])
-        return time <= SLACK * self.reach
+        return self.meant(time) <= SLACK * max(self.reach, self.pinned[0] if self.pinned else 0.0)
+
+    def meant(self, time: float) -> float:
+        """The time, s, that the model's modulus after a time, s, stands for; inf may be that of the pin."""
+        if self.pinned is not None and math.isinf(time) and self.pinned[0] >= LATE * self.reach:
+            return self.pinned[0]
+        return time
 
     def bounds(self, time: float, value: float) -> tuple[float, float]:
         """Lowest and highest modulus, Pa, after a time, s, at which the model says `value`.
@@ -87,9 +93,8 @@ class LowEnd:
         Inside the data: twice the scatter. Beyond: it cannot rise, and it falls no more steeply than at their
         end, in logarithms, as rubber below its transition does; after an infinite time, the interval.
         """
-        if self.pinned is not None and (math.isinf(time) or time >= self.reach):
-            if math.isinf(time) or time <= SLACK * self.pinned[0]:
-                time = min(time, self.reach)  # as good as what was pinned: the scatter
+        if not self.plateau and self.covers(time):  # at a pin as good as what it was read from: the scatter
+            time = min(time, self.reach)
         if time <= SLACK * self.reach:
             return value * math.exp(-2 * self.scatter), value * math.exp(2 * self.scatter)
         low, high = self.interval

@@ -78,8 +78,9 @@ def fit_maxwell(
     pin
         Hold the low end: a time, s, and the relaxation modulus, Pa, that the model shall have there, from a
         relaxation test or a static one, say; a time alone takes the modulus from the whole master curve, its
-        points below the band too. A branch may then relax as late as that. It is for models that live in a
-        band far above the load's duration: few branches, and the right sag.
+        points below the band too. It is for models that live in a band far above the load's duration: few
+        branches, and the right sag. A pin ten times later than the points reach is the relaxed modulus:
+        branches may relax up to a tenth of its time.
 
     Returns
     -------

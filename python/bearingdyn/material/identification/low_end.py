@@ -29,6 +29,8 @@ def low_end(points: Points, G0: float, deviation: Array, measured: float) -> Low
         (level, slope), *_ = np.linalg.lstsq(A, y, rcond=None)
         left = y - A @ [level, slope]
         error = math.sqrt(float(left @ left) / (x.size - 2) / float(((x - x.mean()) ** 2).sum()))
+    if x.size >= 5:  # a chord would lie below the end of a curve that flattens
+        level = float(np.polyfit(x, y, 2)[-1])
     tan_delta = float(np.mean(points.loss[near] / points.storage[near]))
     high = math.exp(level + 2 * scatter)
     end = LowEnd(

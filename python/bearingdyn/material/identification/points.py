@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.material.low_end import LATE
 from bearingdyn.material.spectrum import branch_columns, dense_times, solve_strengths
 from bearingdyn.types import Array, Complex
 
@@ -34,8 +35,9 @@ class Points:
         """ln of the shortest and the longest relaxation time the band can tell, s."""
         f_lo, f_hi = self.band
         longest = -math.log(2 * math.pi * f_lo) + MARGIN
-        if self.pin is not None:  # what lies between the points and the pin needs a branch there
-            longest = max(longest, math.log(self.pin[0]))
+        if self.pin is not None and self.pin[0] >= LATE / self.omega.min():
+            # what lies between the points and the pin needs a branch there, and it has relaxed at the pin
+            longest = math.log(self.pin[0] / LATE)
         return -math.log(2 * math.pi * f_hi) - MARGIN, longest
 
     def take(self, index: NDArray[np.int64]) -> Points:
