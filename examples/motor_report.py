@@ -114,8 +114,8 @@ def describe_rubber(material: bd.Maxwell) -> None:
         end = fit.low_end
         assert end is not None
         print(
-            f"  at rest: G after {motor.RESTED:g} s, {material.G0 / 1e6:.2f} MPa, is read from the master curve, "
-            f"which reaches {1 / (2 * math.pi * end.measured):.0f} s"
+            f"  at rest: G after {motor.RESTED:g} s is {material.G0 / 1e6:.2f} MPa, by the master curve, which "
+            f"reaches {1 / (2 * math.pi * end.measured):.0f} s"
         )
 
 
@@ -142,7 +142,7 @@ def describe_layer(state: State) -> None:
 
 
 def receptances(found: Mapping[str, Harmonic]) -> None:
-    """Compliance to a load that rests and at 10 Hz, and the highest peaks of the shaft's end and of what the housings radiate."""
+    """Compliance at rest and at 10 Hz, and the highest peaks of the shaft's end and of what housings radiate."""
     print("\nreceptance, vertical force at mid-shaft (zero-to-peak, per N)")
     print(
         f"  {'':<24}{'mid y, rested':>14}{'mid y, 10 Hz':>14}"

@@ -103,8 +103,8 @@ axial = float(frequency[np.abs(struck["response"].values[:, 0, 0]).argmax()])
 zeta = float(modes["damping_ratio"][np.abs(modes["frequency"].values - axial).argmin()])
 tan_delta = float(rubber.loss_factor(2 * math.pi * axial))
 print(
-    f"Take {chosen}: {share[chosen]:.2f} of the bearing's stiffness at 1 kHz, {strain[chosen]:.1%} strain after "
-    f"{motor.RESTED / 60:g} min.\n"
+    f"Take {chosen}: {share[chosen]:.2f} of the bearing's stiffness at 1 kHz, {strain[chosen]:.1%} strain\n"
+    f"after {motor.RESTED / 60:g} minutes.\n"
     f"Ask the laboratory for the sample's axial mode: {axial:.0f} Hz with a damping ratio of {zeta:.3f},\n"
     f"near half of tan δ = {tan_delta:.3f} of the rubber there. If it comes out elsewhere, the model of\n"
     "the rubber is wrong, not the machine."

@@ -60,7 +60,8 @@ allowed = found.isel(
 best = allowed.isel(case=int(allowed["isolation"].values.argmax()))
 print(
     f"Take {best.thickness * 1e3:.0f} mm of the rubber with a loss factor of {best.loss_factor:.2f}.\n"
-    f"The housing is {best.isolation:.1f} dB quieter, the shaft sags by {best.sag * 1e6:.0f} µm in five "
-    f"minutes,\nthe layer strains by {best.strain:.1%}, and the highest resonance gives {best.peak * 1e9:.0f} nm/N.\n"
+    f"The housing is {best.isolation:.1f} dB quieter, the shaft sags by {best.sag * 1e6:.0f} µm,\n"
+    f"the layer strains by {best.strain:.1%} in five minutes, and the highest resonance gives "
+    f"{best.peak * 1e9:.0f} nm/N.\n"
     f"{allowed.sizes['case']} of {found.sizes['case']} designs keep both limits and are not beaten."
 )

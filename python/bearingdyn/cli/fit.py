@@ -159,6 +159,6 @@ def _low_end(end: LowEnd | None) -> list[str]:
         return []
     plateau = "a plateau" if end.plateau else f"no plateau, G' falls up to {end.fall:.0%} a decade"
     return [
-        f"at rest: the points reach {end.reach:.3g} s and show {plateau}; G0 between {end.interval[0]:.4g} and "
-        f"{end.interval[1]:.4g} Pa"
+        f"at rest: the points reach {end.reach:.3g} s and show {plateau}",
+        f"  they allow G0 from {end.interval[0]:.4g} to {end.interval[1]:.4g} Pa",
     ]

@@ -31,7 +31,7 @@ class LowEnd:
     modulus
         G′ at the low end, Pa: a parabola through ln G′ of the lowest decade, at its lowest frequency.
     slope, slope_error
-        d ln G′/d ln ω of the line through that decade, and its standard error; NaN if fewer than three points lie there.
+        d ln G′/d ln ω of the line through that decade, and its standard error; NaN below three points.
     tan_delta
         Mean loss factor of the lowest decade.
     scatter
