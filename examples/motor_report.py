@@ -114,7 +114,7 @@ def describe_rubber(material: bd.Maxwell) -> None:
         end = fit.low_end
         assert end is not None
         print(
-            f"  at rest: G after {motor.RESTED:g} s is {material.G0 / 1e6:.2f} MPa, by the master curve, which "
+            f"  at rest: G after {motor.RESTED:g} s is {material.G0 / 1e6:.2f} MPa; the master curve "
             f"reaches {1 / (2 * math.pi * end.measured):.0f} s"
         )
 
@@ -142,7 +142,7 @@ def describe_layer(state: State) -> None:
 
 
 def receptances(found: Mapping[str, Harmonic]) -> None:
-    """Compliance at rest and at 10 Hz, and the highest peaks of the shaft's end and of what housings radiate."""
+    """Compliance at rest and at 10 Hz, and the highest peaks of the shaft's end and of the radiation."""
     print("\nreceptance, vertical force at mid-shaft (zero-to-peak, per N)")
     print(
         f"  {'':<24}{'mid y, rested':>14}{'mid y, 10 Hz':>14}"
