@@ -118,11 +118,6 @@ def frequency_response(
         response (frequency, output, input), complex. At 0 Hz it is the static response, without the free spin
         of a shaft unless a force drives it.
 
-    Warns
-    -----
-    BeyondData
-        At 0 Hz, where layers have their relaxed modulus, if their data do not speak of it.
-
     Raises
     ------
     ValueError
@@ -130,6 +125,11 @@ def frequency_response(
         would turn although its damping is known at rest only.
     ArithmeticError
         Where the dynamic stiffness is singular.
+
+    Warns
+    -----
+    BeyondData
+        At 0 Hz, where layers have their relaxed modulus, if their data do not speak of it.
 
     References
     ----------

@@ -103,15 +103,15 @@ class Layer:
         after
             Take G(t) after this time at rest, s, instead of the relaxed modulus that ω = 0 has.
 
-        Warns
-        -----
-        BeyondData
-            At rest, where the data of the material do not speak of the time.
-
         Raises
         ------
         ValueError
             Where the material has no shear stiffness, as G0 = 0 at ω = 0; for `after` together with ω.
+
+        Warns
+        -----
+        BeyondData
+            At rest, where the data of the material do not speak of the time.
         """
         return self.body.stiffness(omega, after)
 

@@ -220,15 +220,15 @@ class Revolved:
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
         `after` takes G(t) after that time, s, instead of the relaxed modulus that ω = 0 has.
 
-        Warns
-        -----
-        BeyondData
-            At rest, where the data of a material do not speak of the time.
-
         Raises
         ------
         ValueError
             Where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
+
+        Warns
+        -----
+        BeyondData
+            At rest, where the data of a material do not speak of the time.
         """
         if not self.interfaces:
             raise ValueError("interfaces is empty; a stiffness needs at least one")

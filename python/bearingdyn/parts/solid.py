@@ -340,15 +340,15 @@ class Solid:
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
         `after` takes G(t) after that time, s, instead of the relaxed modulus that ω = 0 has.
 
-        Warns
-        -----
-        BeyondData
-            At rest, where the data of a material do not speak of the time.
-
         Raises
         ------
         ValueError
             Where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
+
+        Warns
+        -----
+        BeyondData
+            At rest, where the data of a material do not speak of the time.
         """
         model = self._full_model
         shear = [quasi_static(part.material, omega, after) for part in model.viscoelastic]
