@@ -111,32 +111,41 @@ def describe_rubber(material: bd.Maxwell) -> None:
             f"  error of the fit: G′ {100 * fit.storage_rms:.1f} % rms, "
             f"tan δ {100 * fit.tan_delta_rms:.1f} % rms"
         )
+        end = fit.low_end
+        assert end is not None
+        print(
+            f"  at rest: G after {motor.RESTED:g} s is {material.G0 / 1e6:.2f} MPa; the master curve "
+            f"reaches {1 / (2 * math.pi * end.measured):.0f} s"
+        )
 
 
 def describe_layer(state: State) -> None:
-    """Stiffness of a layer against the bearing's, and its static strain under the radial load."""
+    """Stiffness of a layer against the bearing's, and what it does under a radial load that rests."""
     design, loaded = state.design, state.loaded
     layer, material = design.layer, design.rubber
     assert layer is not None
     assert material is not None
     dynamic = abs(layer.stiffness(motor.ONE_KHZ)[0, 0])
-    relative = loaded.displacement("left_ring.centre") - loaded.displacement("left_housing.bore")
-    strain = float(np.max(layer.nominal_strain(relative)))
+    still = bd.static_summary(loaded).sel(layer="left_layer")
+    strain = float(still["strain"])
     bearing_k = state.rest.bearings["left"].radial_stiffness
     print(
         f"  {design.label:<22}|k| at 1 kHz {dynamic / 1e6:5.1f} N/µm, {dynamic / bearing_k:.2f} of the "
         f"bearing's {bearing_k / 1e6:.0f}; tan δ {float(material.loss_factor(motor.ONE_KHZ)):.2f}; "
-        f"G0 {material.G0 / 1e6:.1f} MPa; static strain {100 * strain:.1f} %"
+        f"after {float(still['time']):g} s at {float(still['temperature']):g} °C: "
+        f"G {float(still['modulus']) / 1e6:.2f} MPa, {float(still['deflection']) * 1e6:.0f} µm, strain "
+        f"{100 * strain:.1f} % ({100 * float(still['strain_low']):.1f} to "
+        f"{100 * float(still['strain_high']):.1f})"
     )
     if strain > STRAIN:
         print(f"    warning: above {100 * STRAIN:g} %, where the measured rubber is no longer linear")
 
 
 def receptances(found: Mapping[str, Harmonic]) -> None:
-    """Static compliance, and the highest peaks of the shaft's end and of what the housings radiate."""
+    """Compliance at rest and at 10 Hz, and the highest peaks of the shaft's end and of the radiation."""
     print("\nreceptance, vertical force at mid-shaft (zero-to-peak, per N)")
     print(
-        f"  {'':<24}{'mid y, static':>14}{'mid y, 10 Hz':>14}"
+        f"  {'':<24}{'mid y, rested':>14}{'mid y, 10 Hz':>14}"
         f"{'peak end y':>14}{'at':>9}{'peak ERP':>14}{'at':>8}"
     )
     for label, harmonic in found.items():

@@ -15,7 +15,7 @@
 #
 # A motor on two 6305 bearings is too loud from 1 to 5 kHz: its housings follow what happens on the shaft. A
 # ring of rubber between each outer ring and its housing should keep vibration out. By how much, with which
-# rubber, and how far does the shaft sag for it? This is the paper's section 4; `examples/motor.py` holds the
+# rubber, and how far does the shaft give for it? This is the paper's section 4; `examples/motor.py` holds the
 # machine.
 
 # %%

@@ -114,6 +114,7 @@ PUBLIC = {
             "radiated_power",
             "shaft_angle",
             "spectrum",
+            "static_summary",
             "track_orders",
             "transient",
             "transients",

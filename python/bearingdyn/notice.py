@@ -83,6 +83,17 @@ class UnloadedBearing(Notice):
     """
 
 
+class BeyondData(Notice):
+    """A static answer rests on a modulus at longer times than the rubber's data speak of.
+
+    When: `equilibrium`, a response at 0 Hz or a stiffness at rest takes the modulus of a layer relaxed, or
+    `after` a time more than twice the longest that its fit reaches, and the data show no plateau there.
+
+    Remedy: ask for the state `after` a time that the data reach; fit from a lower frequency; pin the low end
+    (`fit_maxwell(pin=...)`); measure longer, or warmer.
+    """
+
+
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Warn at the nearest caller that is not of this package.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import runpy
+import warnings
 from pathlib import Path
 
 import matplotlib
@@ -13,6 +14,7 @@ import pytest
 import scipy.optimize
 
 import bearingdyn as bd
+from bearingdyn.notice import BeyondData
 
 matplotlib.use("Agg")
 
@@ -69,7 +71,9 @@ def test_the_rotor_of_the_first_hour_peaks_where_a_rigid_one_on_springs_does(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    names = runpy.run_path(str(SCRIPT))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", BeyondData)
+        names = runpy.run_path(str(SCRIPT))
     printed = re.findall(
         r"^(no layer|layer): (\S+) m/N \(zero-to-peak\) at (\d+) Hz$", capsys.readouterr().out, re.M
     )

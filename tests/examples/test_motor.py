@@ -7,6 +7,7 @@ from functools import cache
 from itertools import pairwise
 
 import motor
+import motor_report
 import numpy as np
 import pytest
 import xarray
@@ -45,9 +46,7 @@ def test_bending_modes_lie_near_the_papers() -> None:
 
 
 @pytest.mark.parametrize("design", [1, 2])
-def test_the_layer_is_at_most_a_third_as_stiff_as_the_bearing_and_strained_by_at_most_5_percent(
-    design: int,
-) -> None:
+def test_the_layer_is_at_most_a_third_as_stiff_as_the_bearing(design: int) -> None:
     variant = motor.designs(rubber())[design]
     layer = variant.layer
     assert layer is not None
@@ -56,8 +55,46 @@ def test_the_layer_is_at_most_a_third_as_stiff_as_the_bearing_and_strained_by_at
     # in the harmonic analysis' state (axial preload alone) and under the transient's radial load
     for state in (eq, loaded):
         assert dynamic <= state.bearings["left"].radial_stiffness / 3
-    relative = loaded.displacement("left_ring.centre") - loaded.displacement("left_housing.bore")
-    assert float(np.max(layer.nominal_strain(relative))) <= 0.05
+
+
+@pytest.mark.parametrize("design", [1, 2])
+def test_under_the_papers_resting_load_the_layers_are_strained_beyond_5_percent_and_the_report_warns(
+    design: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    variant, rest, loaded = (
+        motor.designs(rubber())[design],
+        equilibrium(design),
+        equilibrium(design, motor.RADIAL),
+    )
+    layer, material = variant.layer, variant.rubber
+    assert layer is not None
+    assert material is not None
+    still = bd.static_summary(loaded).sel(layer="left_layer")
+    # the force of the left bearing on the layer alone, solved in full at G(t)
+    force = abs(loaded.bearings["left"].force[1])
+    sag = force / layer.stiffness(after=motor.RESTED)[1, 1].real
+    # the reduced layer's shapes are taken at G0 and at the top of the band: at G0 it is the full one
+    assert float(still["deflection"]) == pytest.approx(sag, rel=0.02)
+    assert float(still["strain"]) >= sag / layer.thickness * 0.98  # its tilt adds to it
+    assert 0.05 < float(still["strain"]) < 0.10
+    motor_report.describe_layer(motor_report.State(variant, rest, loaded))
+    printed = capsys.readouterr().out
+    assert "warning: above 5 %" in printed
+
+
+def test_the_motors_rubber_carries_at_rest_what_the_master_curve_has_after_five_minutes() -> None:
+    if not motor.MEASURED.exists():
+        pytest.skip(f"{motor.MEASURED} is not here")
+    material, _, master = motor.rubber()
+    assert material.fit is not None
+    near = np.abs(np.log(2 * np.pi * master.frequency * motor.RESTED)) < 0.5
+    # G(t) ≈ G′(1/t), a little above it: a spectrum that falls by 15 % a decade differs by some 2 %
+    assert material.G0 == pytest.approx(np.exp(np.log(master.storage[near]).mean()), rel=0.03)
+    assert bd.equilibrium(
+        motor.motor(motor.designs(material)[1], motor.RADIAL), after=motor.RESTED
+    ).displacement("shaft.middle")[1] == pytest.approx(
+        equilibrium(1, motor.RADIAL).displacement("shaft.middle")[1], rel=1e-6
+    )
 
 
 def test_both_bearings_share_the_axial_preload() -> None:

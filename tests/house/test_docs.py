@@ -8,10 +8,13 @@ import os
 import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import matplotlib
 import pytest
+
+from bearingdyn.notice import BeyondData
 
 matplotlib.use("Agg")
 
@@ -41,7 +44,8 @@ def test_the_snippets_of_the_guide_run_and_print_what_stands_beside_them(
         if kind == "text":
             assert printed == body, f"{page.name}, line {line}: printed\n{printed}"
             continue
-        with contextlib.redirect_stdout(io.StringIO()) as out:
+        with contextlib.redirect_stdout(io.StringIO()) as out, warnings.catch_warnings():
+            warnings.simplefilter("error", BeyondData)
             exec(compile("\n" * line + body, str(page), "exec"), names)
         printed = out.getvalue()
     plt.close("all")

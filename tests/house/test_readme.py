@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
+
+from bearingdyn.notice import BeyondData
 
 README = Path(__file__).resolve().parents[2] / "README.md"
 
@@ -15,7 +18,9 @@ def test_the_ten_lines_of_the_readme_run() -> None:
     block = re.search(r"```python\n(.*?)```", text, re.DOTALL)
     assert block is not None
     names: dict[str, object] = {}
-    exec(compile(block[1].replace("100_000", "4_000"), str(README), "exec"), names)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", BeyondData)
+        exec(compile(block[1].replace("100_000", "4_000"), str(README), "exec"), names)
     run = names["run"]
     y = run["record"].values[:, 0]  # type: ignore[index]
     assert y.shape == (4000,)

@@ -12,6 +12,7 @@ from bearingdyn.analysis.shares import energy_shares
 from bearingdyn.analysis.spectra import orbit, spectrum
 from bearingdyn.analysis.spectra_orders import order_spectrum, shaft_angle, track_orders
 from bearingdyn.analysis.spectra_time import envelope_spectrum, waterfall
+from bearingdyn.analysis.static_summary import static_summary
 from bearingdyn.analysis.statics import BearingState
 from bearingdyn.analysis.transient import transient, transients
 from bearingdyn.analysis.unbalance import unbalance_response
@@ -36,6 +37,7 @@ __all__ = [
     "radiated_power",
     "shaft_angle",
     "spectrum",
+    "static_summary",
     "track_orders",
     "transient",
     "transients",

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import ArrayLike
 
-from bearingdyn.analysis.equilibrium import Equilibrium, system_of
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of, system_of
 from bearingdyn.analysis.modes import modes
 from bearingdyn.application import Application, Place
 from bearingdyn.checks import numbers, whole
@@ -128,6 +128,7 @@ def campbell(
             "analysis": "Campbell diagram",
             "damped": int(damped),
             "modulus": modulus,
+            **state_of(source),
             **inputs_of(system.inputs),
         },
         {"speed": (given, "rad/s")},

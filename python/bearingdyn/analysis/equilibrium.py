@@ -12,8 +12,9 @@ import numpy as np
 from bearingdyn.analysis.statics import BearingState, Statics, diagonal_blocks
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, check_bearing_pressure, runs_off
-from bearingdyn.checks import one_of, require, whole
+from bearingdyn.checks import one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
+from bearingdyn.material import warn_beyond
 from bearingdyn.notice import UnloadedBearing, warn
 from bearingdyn.system import BearingTerm, LoadTerm, System, assemble
 from bearingdyn.types import Array
@@ -37,7 +38,9 @@ class Equilibrium:
     bearings
         State of every bearing and loose fit, by name.
     modulus
-        Modulus that the layers have: "relaxed" or "instantaneous".
+        Modulus that the layers have: "relaxed", "instantaneous" or "after" a time.
+    after
+        That time, s, for which the load has rested on them; None otherwise.
 
     References
     ----------
@@ -48,6 +51,18 @@ class Equilibrium:
     x: Array
     bearings: Mapping[str, BearingState]
     modulus: str = "relaxed"
+    after: float | None = None
+
+    @property
+    def layers(self) -> str:
+        """State of the layers in words: "relaxed", "instantaneous" or "after 3600 s"."""
+        return self.modulus if self.after is None else f"after {self.after:g} s"
+
+    @property
+    def moduli(self) -> dict[str, float]:
+        """Shear modulus of each layer in this state, Pa, by part."""
+        G = self.system.static_moduli(self.modulus if self.after is None else self.after)
+        return {t.part: value for t, value in zip(self.system.layers, G, strict=True)}
 
     def __repr__(self) -> str:
         """One line; the matrices are in `system`."""
@@ -56,7 +71,7 @@ class Equilibrium:
             for name, b in self.bearings.items()
         ]
         balls = f", balls loaded: {', '.join(loaded)}" if loaded else ""
-        return f"<Equilibrium of {self.system.n} coordinates, layers {self.modulus}{balls}>"
+        return f"<Equilibrium of {self.system.n} coordinates, layers {self.layers}{balls}>"
 
     def displacement(self, name: str) -> Array:
         """Static motion of an interface or point, (6,) or (3,), m and rad."""
@@ -111,7 +126,8 @@ def equilibrium(
     angle: float = 0.0,
     *,
     start: Equilibrium | None = None,
-    modulus: str = "relaxed",
+    modulus: str | None = None,
+    after: float | None = None,
     average: int = 1,
 ) -> Equilibrium:
     """Find the nonlinear static state under the constant loads, with the cages at `angle`.
@@ -129,8 +145,12 @@ def equilibrium(
     start
         A state of the same application to begin from; it saves time and does not change the result.
     modulus
-        Of the layers: "relaxed", their G0, which the other analyses start from, or "instantaneous", as right
-        after a sudden load.
+        Of the layers: "relaxed", their G0, which marches start from and which is the default, or
+        "instantaneous", as right after a sudden load.
+    after
+        Instead: the layers at G(t) after this time, s, at the temperature that they have. Where data still
+        fall at their low end, G0 is an extrapolation, and the choice of a fit decides it; a sag is G(t) at a
+        stated time.
     average
         Number of cage angles within one ball passage over which the tangents of the bearings are averaged,
         so that a harmonic response favours no angle. The state itself is that of `angle`.
@@ -142,8 +162,8 @@ def equilibrium(
     Raises
     ------
     ValueError
-        Where a body is free to move, where a load presses balls onto the open side of a bearing, and where a
-        contact pressure is above 21 GPa.
+        Where a body is free to move, where a load presses balls onto the open side of a bearing, where a
+        contact pressure is above 21 GPa; for `after` that is not positive, or together with `modulus`.
     ArithmeticError
         Where there is no balance; names the body that lost its support.
 
@@ -151,6 +171,8 @@ def equilibrium(
     -----
     BearingWarning
         Where a contact pressure exceeds 4.2 GPa (ISO 76); the bearing and the ball are named.
+    BeyondData
+        Where the data of a layer's material do not speak of the time asked for, and show no plateau.
 
     References
     ----------
@@ -158,16 +180,23 @@ def equilibrium(
     """
     angle = plausible("turned angle", "angle", angle, "give one finite angle, in rad")
     average = whole("average", average, 1)
+    if after is not None:
+        require(modulus is None, "modulus", modulus, f"with after={after!r}, leave it out: give one of them")
+        after = positive("after", after, "it must be a positive and finite time, s")
+    if modulus is not None:
+        one_of("modulus", modulus, ("relaxed", "instantaneous"))
     system = system_of("app", app)
     if start is not None:
         require(isinstance(start, Equilibrium), "start", start, "it must be an Equilibrium")
-    one_of("modulus", modulus, ("relaxed", "instantaneous"))
     if start is not None and start.x.shape != (system.n,):
         raise ValueError(
             f"start has {start.x.size} coordinates and the system {system.n}; start from a state of the same "
             f"application"
         )
-    rest = Statics.of(system, modulus)
+    state = modulus or "relaxed"
+    rest = Statics.of(system, state if after is None else after)
+    if state == "relaxed":
+        warn_at_rest(system, math.inf if after is None else after)
     q = None if start is None else rest.T.T @ (system.M @ start.x)
     passage: list[dict[str, BearingState]] = []
     first, x = system, np.zeros(system.n)
@@ -193,7 +222,23 @@ def equilibrium(
         )
         for name, state in passage[0].items()
     }
-    return Equilibrium(first, x, mean, modulus)
+    return Equilibrium(first, x, mean, state if after is None else "after", after)
+
+
+def state_of(source: object) -> dict[str, str]:
+    """Attribute of a result that says which state of the layers it started from."""
+    layered = isinstance(source, Equilibrium) and source.system.layers
+    return {"layers": source.layers} if isinstance(source, Equilibrium) and layered else {}
+
+
+def warn_at_rest(system: System, time: float) -> None:
+    """Warn of layers whose data do not speak of a time, s, after loading; inf: relaxed (BeyondData)."""
+    warn_beyond(
+        [(layer.part, layer.material) for layer in system.layers],
+        time,
+        "the static state",
+        "take equilibrium(app, after=...) at a time that the data reach, ",
+    )
 
 
 def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, BearingState]) -> None:

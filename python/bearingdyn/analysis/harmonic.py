@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -10,12 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.equilibrium import Equilibrium, system_of
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of, system_of
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import COMPONENTS, QUANTITIES, RATES, Application
 from bearingdyn.checks import name_list, numbers, one_of
 from bearingdyn.magnitude import plausible
+from bearingdyn.material import warn_beyond
 from bearingdyn.system import System, natural
 from bearingdyn.types import Array, Complex
 
@@ -184,6 +186,8 @@ def frequency_response(
     -----
     UnloadedBearing
         Where a bearing carries nothing, and so has no stiffness.
+    BeyondData
+        At 0 Hz, where layers have their relaxed modulus, if their data do not speak of it.
 
     References
     ----------
@@ -209,6 +213,14 @@ def frequency_response(
     force = np.array([i.force for i in given]).reshape(-1, state.system.n)
 
     omega = 2 * np.pi * f
+    if (f == 0).any():
+        warn_beyond(
+            [(layer.part, layer.material) for layer in state.system.layers],
+            math.inf,
+            "the response at 0 Hz, which is relaxed,",
+            "take the lowest frequency that the data reach instead, or equilibrium(app, after=...) for a "
+            "deflection, ",
+        )
     x = state.solve(omega, force, requested(wanted, state.system.n), speed, progress)
     response = recovered(wanted, given, x, omega, speed, QUANTITIES.index(quantity), state.K, state.C)
 
@@ -227,6 +239,7 @@ def frequency_response(
             "analysis": "frequency response",
             "speed": speed,
             "quantity": quantity,
+            **state_of(source),
             **inputs_of(state.system.inputs),
         },
         {"frequency": (f, "Hz"), "output": (list(outputs), ""), "input": (list(inputs), "")},

@@ -97,9 +97,11 @@ class March:
         elif not isinstance(source, Equilibrium):
             source = system_of("source", source)
         if isinstance(source, Equilibrium) and source.modulus != "relaxed":
+            state = f"state {source.layers}" if source.after is not None else f"{source.modulus} modulus"
+            without = "" if source.after is None else ", without after="
             raise ValueError(
-                f"the equilibrium has its layers at their {source.modulus} modulus; a march starts with "
-                f'relaxed layers: take equilibrium(app, modulus="relaxed")'
+                f"the equilibrium has its layers at their {state}; a march starts with relaxed layers: take "
+                f'equilibrium(app, modulus="relaxed"){without}'
             )
         system, x = (
             (source.system, source.x.copy())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.application import Application
 from bearingdyn.system import System
@@ -103,6 +103,7 @@ def modes(
             "speed": speed,
             "damped": int(damped),
             "modulus": modulus,
+            **state_of(source),
             **inputs_of(system.inputs),
         },
     )

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.harmonic import frequencies, linear
 from bearingdyn.analysis.recovery import Input
 from bearingdyn.application import Application, Place
@@ -117,6 +117,7 @@ def radiated_power(
             "speed": speed,
             "density": density,
             "sound_speed": sound_speed,
+            **state_of(source),
             **inputs_of(state.system.inputs),
         },
         {"frequency": (f, "Hz"), "surface": (list(surfaces), ""), "input": (list(inputs), "")},

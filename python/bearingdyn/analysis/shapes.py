@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.application import COMPONENTS, Application, arm
 from bearingdyn.checks import name_list
 from bearingdyn.parts import Outlined
@@ -90,7 +90,7 @@ def mode_shapes(source: Equilibrium | Application | System, found: xarray.Datase
             ),
             "frequency": ("mode", found["frequency"].values, "Hz", "undamped natural frequency |λ|/2π"),
         },
-        {"analysis": "mode shapes", **inputs_of(system.inputs)},
+        {"analysis": "mode shapes", **state_of(source), **inputs_of(system.inputs)},
         {"place": (places, ""), "component": (list(COMPONENTS), ""), "axis": (["x", "y", "z"], "")},
     )
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.application import Application
 from bearingdyn.system import System
@@ -92,7 +92,13 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
             "damping": (over, damping, "1", "part of the damping ratio −Re λ/|λ|"),
             "frequency": ("mode", found["frequency"].values, "Hz", "undamped natural frequency |λ|/2π"),
         },
-        {"analysis": "energy shares", "speed": speed, "damped": int(damped), **inputs_of(system.inputs)},
+        {
+            "analysis": "energy shares",
+            "speed": speed,
+            "damped": int(damped),
+            **state_of(source),
+            **inputs_of(system.inputs),
+        },
         {"part": ([s.name for s in stores], "")},
     )
 

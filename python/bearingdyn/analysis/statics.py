@@ -16,7 +16,7 @@ import scipy.linalg
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Place
 from bearingdyn.bearing import NET, RIGID, NoBalance, RacewaySeries, minimum
-from bearingdyn.system import BearingTerm, System
+from bearingdyn.system import BearingTerm, Modulus, System
 from bearingdyn.types import Array
 
 # ω², 1/s², of the test spring on free motions: of the order of a rotor's on its bearings, else of no effect
@@ -85,7 +85,7 @@ class Statics:
     load: Array
 
     @classmethod
-    def of(cls, system: System, modulus: str) -> Statics:
+    def of(cls, system: System, modulus: Modulus) -> Statics:
         """The structure with its layers at a modulus, under its constant loads."""
         squares, T = system.basis(modulus)
         B = system.B @ T

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.harmonic import linear
 from bearingdyn.analysis.recovery import Input, Output, recovered, requested
 from bearingdyn.application import QUANTITIES, Application
@@ -97,7 +97,12 @@ def unbalance_response(
                 f"complex {quantity}, zero-to-peak, at the frequency of the speed",
             )
         },
-        {"analysis": "unbalance response", "quantity": quantity, **inputs_of(system.inputs)},
+        {
+            "analysis": "unbalance response",
+            "quantity": quantity,
+            **state_of(source),
+            **inputs_of(system.inputs),
+        },
         {"speed": (given, "rad/s"), "output": (list(outputs), "")},
     )
     return made.assign_coords(unit=("output", units))

@@ -10,6 +10,7 @@ from typing import Any
 from bearingdyn.cli.outcome import GOOD
 from bearingdyn.material import (
     DMAData,
+    LowEnd,
     MasterCurve,
     Maxwell,
     ReadingError,
@@ -147,5 +148,17 @@ def _fit_table(curve: MasterCurve, model: Maxwell, K_given: bool, density_given:
         f"errors of the {report.points} points from {report.covered[0]:.4g} to {report.covered[1]:.4g} Hz",
         f"  storage modulus  rms {report.storage_rms:.2%}   largest {report.storage_max:.2%}",
         f"  tan delta        rms {report.tan_delta_rms:.2%}   largest {report.tan_delta_max:.2%}",
+        *_low_end(report.low_end),
     ]
     return "\n".join(lines)
+
+
+def _low_end(end: LowEnd | None) -> list[str]:
+    """What the points say of the modulus at rest."""
+    if end is None:
+        return []
+    plateau = "a plateau" if end.plateau else f"no plateau, G' falls up to {end.fall:.0%} a decade"
+    return [
+        f"at rest: the points reach {end.reach:.3g} s and show {plateau}",
+        f"  they allow G0 from {end.interval[0]:.4g} to {end.interval[1]:.4g} Pa",
+    ]

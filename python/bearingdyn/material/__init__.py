@@ -6,6 +6,7 @@ from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification import fit_dense, fit_maxwell
+from bearingdyn.material.low_end import LowEnd, warn_beyond
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.reading import ReadingError, read_dma, sample_dma_path
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
@@ -22,6 +23,7 @@ __all__ = [
     "FitReport",
     "FractionalZener",
     "Joined",
+    "LowEnd",
     "MasterCurve",
     "Maxwell",
     "OutsideBand",
@@ -43,4 +45,5 @@ __all__ = [
     "to_abaqus_prony",
     "to_ansys",
     "to_calculix",
+    "warn_beyond",
 ]

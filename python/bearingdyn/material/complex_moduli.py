@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_density, check_waves, plausible
 from bearingdyn.material.identification import fit_maxwell
+from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable
 from bearingdyn.material.superposition import MasterCurve
@@ -113,6 +114,11 @@ class TabulatedModulus:
             object.__setattr__(self, name, values)
         if not np.all(np.diff(self.frequency) > 0):
             raise ValueError(f"TabulatedModulus.frequency is {self.frequency!r}; it must rise strictly, Hz")
+
+    @property
+    def low_end(self) -> LowEnd:
+        """The table says nothing of times beyond its lowest frequency; a static answer there warns."""
+        return LowEnd.of_band(float(self.frequency[0]), float(self.storage[0]))
 
     @classmethod
     def from_master(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bearingdyn.material.low_end import LowEnd
 from bearingdyn.types import Array
 
 
@@ -44,6 +45,8 @@ class FitReport:
         rms deviation of G′ and of tan δ that the best dense non-negative spectrum leaves in the band.
     bootstrap
         Those parameters in refits to isotherms drawn with replacement, (refits, len(names)).
+    low_end
+        What the points say of the modulus at long times: plateau, reach, an interval for G0.
     """
 
     band: tuple[float, float]
@@ -57,6 +60,7 @@ class FitReport:
     covariance: Array = field(compare=False, repr=False)
     floor: tuple[float, float] = (0.0, 0.0)
     bootstrap: Array = field(default_factory=_none, compare=False, repr=False)
+    low_end: LowEnd | None = None
 
     @property
     def standard_errors(self) -> dict[str, float]:

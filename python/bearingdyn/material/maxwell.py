@@ -13,6 +13,7 @@ from bearingdyn.checks import nonnegative, number, positive, real, vector
 from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
+from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict
 from bearingdyn.notice import warn
@@ -65,8 +66,12 @@ class Maxwell(Retunable):
         outside it comes with a warning (OutsideBand), except at rest.
     fit
         Report of the fit the model comes from.
+    low_end
+        What data say of its modulus at long times; that of the fit unless given, else of the band, if there
+        is one: then the modulus is known down to its lower edge. A static answer beyond it comes with a
+        warning (BeyondData). A model without fit and band is believed.
 
-    Two materials are equal if they agree in everything but `band` and `fit`.
+    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
 
     Raises
     ------
@@ -95,6 +100,7 @@ class Maxwell(Retunable):
     vertical: RhoT | None
     band: tuple[float, float] | None = field(repr=False)
     fit: FitReport | None = field(repr=False)
+    low_end: LowEnd | None = field(repr=False)
 
     def __init__(
         self,
@@ -110,6 +116,7 @@ class Maxwell(Retunable):
         vertical: RhoT | None = None,
         band: tuple[float, float] | None = None,
         fit: FitReport | None = None,
+        low_end: LowEnd | None = None,
     ) -> None:
         if band is None and fit is not None:
             band = fit.band
@@ -128,10 +135,14 @@ class Maxwell(Retunable):
             "vertical": vertical,
             "band": None if edges is None else (float(edges[0]), float(edges[1])),
             "fit": fit,
+            "low_end": low_end if low_end is not None or fit is None else fit.low_end,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
         self._validate()
+        if self.low_end is None and self.band is not None:
+            known = LowEnd.of_band(self.band[0], self._at(self.band[0]).real)
+            object.__setattr__(self, "low_end", known)
 
     def _validate(self) -> None:
         for name, value, unit in (("G0", self.G0, "Pa"), ("eta0", self.eta0, "Pa s")):
@@ -167,8 +178,12 @@ class Maxwell(Retunable):
         """|G*| at the upper end of the band, or right after a step where there is none, Pa."""
         if self.band is None:
             return self.G_instantaneous
-        x = 2 * math.pi * self.band[1] * self.tau
-        return abs(self.G0 + complex(x / (1 + x * x) * (x + 1j) @ self.G))
+        return abs(self._at(self.band[1]))
+
+    def _at(self, frequency: float) -> complex:
+        """G*, Pa, of spring and branches at a frequency, Hz."""
+        x = 2 * math.pi * frequency * self.tau
+        return self.G0 + complex(x / (1 + x * x) * (x + 1j) @ self.G)
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
@@ -359,6 +374,7 @@ class Maxwell(Retunable):
             temperature=float(T),
             band=None if self.band is None else (self.band[0] / aT, self.band[1] / aT),
             fit=None,
+            low_end=None if self.low_end is None else self.low_end.moved(aT, bT),
         )
 
     def to_json(self) -> str:
@@ -377,6 +393,10 @@ class Maxwell(Retunable):
             data["vertical"] = {"T_ref": self.vertical.T_ref, "expansion": self.vertical.expansion}
         if self.band is not None:
             data["band"] = list(self.band)
+        if self.low_end is not None:
+            # JSON has no NaN
+            known = vars(self.low_end).items()
+            data["low_end"] = {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in known}
         return json.dumps(data, indent=1)
 
     @classmethod
@@ -389,12 +409,15 @@ class Maxwell(Retunable):
         required = {"G0", "G", "tau", "K", "density"}
         if not isinstance(data, dict) or not required <= data.keys():
             raise ValueError(f"Maxwell.from_json: needs a JSON object with {', '.join(sorted(required))}")
-        unknown = data.keys() - required - {"eta0", "law", "temperature", "vertical", "band"}
+        unknown = data.keys() - required - {"eta0", "law", "temperature", "vertical", "band", "low_end"}
         if unknown:
             raise ValueError(f"Maxwell.from_json: unknown entries {', '.join(sorted(unknown))}")
         law = data.pop("law", None)
         vertical = data.pop("vertical", None)
+        known = data.pop("low_end", None)
         try:
+            if known is not None:
+                data["low_end"] = LowEnd.from_numbers(known)
             shift = None if vertical is None else RhoT(**vertical)
             return cls(**data, law=None if law is None else law_from_dict(law), vertical=shift)
         except TypeError as error:

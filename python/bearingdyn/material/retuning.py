@@ -9,6 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from bearingdyn.checks import positive, require
+from bearingdyn.material.low_end import LowEnd
 from bearingdyn.types import Array, Complex
 
 
@@ -19,12 +20,16 @@ class Retunable:
     G: Array
     tau: Array
     eta0: float
+    low_end: LowEnd | None
 
     def complex_modulus(self, omega: Any) -> Complex:
         """Complex shear modulus at ω rad/s, Pa; given by the model."""
         raise TypeError("Retunable has no modulus of its own")
 
     def _with(self, **change: Any) -> Self:
+        """With these values; what is known of long times goes along with the spring."""
+        if self.low_end is not None and self.G0 > 0:
+            change["low_end"] = self.low_end.moved(1.0, change.get("G0", self.G0) / self.G0)
         return replace(self, **change)  # type: ignore[type-var]
 
     def with_modulus(self, modulus: float, omega: float) -> Self:

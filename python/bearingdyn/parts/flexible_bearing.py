@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, minimum, runs_off
 from bearingdyn.checks import vector
 from bearingdyn.cms import Superelement
+from bearingdyn.material import warn_beyond
 from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.types import Array
 
@@ -59,6 +60,11 @@ class FlexibleBearing:
     def raceway_stiffness(self) -> Array:
         """Static stiffness (n, n) of the raceway's coefficients, the ring's outside held, N/m."""
         element = self._element
+        warn_beyond(
+            [("the ring", term.material) for term in element.viscoelastic],
+            math.inf,
+            "the static stiffness",
+        )
         K = element.stiffness().real
         held = element.interfaces["outer"]
         rows = element.raceways["raceway"].rows

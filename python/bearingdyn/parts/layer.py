@@ -97,20 +97,27 @@ class Layer:
             refinement=self.refinement,
         )
 
-    def stiffness(self, omega: float = 0.0) -> Complex:
+    def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
         """Quasi-static stiffness (12, 12), inner interface then outer, N/m, N, N m: solved anew at G*(ω).
 
         Parameters
         ----------
         omega
             rad/s.
+        after
+            Take G(t) after this time at rest, s, instead of the relaxed modulus that ω = 0 has.
 
         Raises
         ------
         ValueError
-            Where the material has no shear stiffness, as G0 = 0 at ω = 0.
+            Where the material has no shear stiffness, as G0 = 0 at ω = 0; for `after` together with ω.
+
+        Warns
+        -----
+        BeyondData
+            At rest, where the data of the material do not speak of the time.
         """
-        return self.body.stiffness(omega)
+        return self.body.stiffness(omega, after)
 
     def superelement(self) -> Superelement:
         """Reduced matrices: 12 interface coordinates, and up to 5 internal ones for each further modulus."""

@@ -38,7 +38,7 @@ from bearingdyn.material import Elastic
 from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
 from bearingdyn.parts.faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.outline import Outline, azimuths, revolved
-from bearingdyn.parts.regions import Patch, Region, shape_moduli
+from bearingdyn.parts.regions import Patch, Region, quasi_static, shape_moduli
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
@@ -215,29 +215,25 @@ class Revolved:
             inertia_rounds=self.inertia,
         )
 
-    def stiffness(self, omega: float = 0.0) -> Complex:
+    def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
 
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
+        `after` takes G(t) after that time, s, instead of the relaxed modulus that ω = 0 has.
 
         Raises
         ------
         ValueError
             Where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
+
+        Warns
+        -----
+        BeyondData
+            At rest, where the data of a material do not speak of the time.
         """
         if not self.interfaces:
             raise ValueError("interfaces is empty; a stiffness needs at least one")
-        shear: list[complex] = []
-        for q in self.regions:
-            G = complex(
-                q.material.G if isinstance(q.material, Elastic) else q.material.complex_modulus(omega)
-            )
-            if not abs(G) > 1e-12 * q.material.K:
-                raise ValueError(
-                    f"material has |G*| = {abs(G):.3g} Pa at omega = {omega} rad/s: no stiffness "
-                    "in shear to solve with; give a material with G0 > 0, or omega > 0"
-                )
-            shear.append(G)
+        shear = [quasi_static(q.material, omega, after) for q in self.regions]
         rigid = Boundaries(self._boundaries.faces, {})
         S = np.zeros((rigid.n, rigid.n), dtype=np.complex128)
         for order, components, copies in rigid.families():

@@ -31,7 +31,7 @@ from bearingdyn.fem import SolidMesh, SurfaceSamples, assemble_solid, face_shape
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.regions import ViscoelasticSolid
+from bearingdyn.parts.regions import ViscoelasticSolid, quasi_static
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
 from bearingdyn.types import Array, Complex, Index
 
@@ -344,24 +344,24 @@ class Solid:
         W = rows.T @ (samples.weights[:, None] * rows)
         return Surface(samples.area, np.asarray(0.5 * (W + W.T)))
 
-    def stiffness(self, omega: float = 0.0) -> Complex:
+    def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
 
         The whole finite element model is solved anew at G*(ω), without inertia: exact but for the mesh.
+        `after` takes G(t) after that time, s, instead of the relaxed modulus that ω = 0 has.
 
         Raises
         ------
         ValueError
             Where a viscoelastic material has no shear stiffness, as G0 = 0 at ω = 0.
+
+        Warns
+        -----
+        BeyondData
+            At rest, where the data of a material do not speak of the time.
         """
         model = self._full_model
-        shear = [complex(part.material.complex_modulus(omega)) for part in model.viscoelastic]
-        for G, part in zip(shear, model.viscoelastic, strict=True):
-            if not abs(G) > 1e-12 * getattr(part.material, "K", 0.0):
-                raise ValueError(
-                    f"material has |G*| = {abs(G):.3g} Pa at omega = {omega} rad/s: no stiffness "
-                    "in shear to solve with; give a material with G0 > 0, or omega > 0"
-                )
+        shear = [quasi_static(part.material, omega, after) for part in model.viscoelastic]
         K = model.stiffness(shear).tocsr()
         faces = list(model.interfaces.values())
         at = np.concatenate([f.dofs for f in faces])

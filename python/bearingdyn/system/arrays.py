@@ -9,9 +9,9 @@ property of time or frequency, not of the matrices.
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import scipy.linalg
@@ -23,6 +23,9 @@ from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import Maxwell
 from bearingdyn.types import Array, Index
+
+# of layers at rest: "relaxed", "instantaneous", a time after loading, s, or a modulus for each, Pa
+Modulus: TypeAlias = str | float | Sequence[float]
 
 # below this share of the largest eigenvalue of (K, M) its round-off may hide a slow mode
 SLOW = 1e-6
@@ -261,11 +264,18 @@ class System:
         """Sum of the constant loads, (n,)."""
         return sum((p.p_cos for p in self.loads if p.kind == "constant"), np.zeros(self.n))
 
-    def stiffness(self, modulus: str = "relaxed") -> Array:
-        """K with every layer at its "relaxed" modulus G0 or its "instantaneous" one, (n, n)."""
+    def static_moduli(self, modulus: Modulus = "relaxed") -> list[float]:
+        """Shear modulus of each layer, Pa, at "relaxed" G0, "instantaneous", or G(t) at a time t, s."""
+        return [static_modulus(layer, modulus) for layer in self.layers]
+
+    def stiffness(self, modulus: Modulus = "relaxed") -> Array:
+        """K (n, n) with every layer at its "relaxed" modulus G0, its "instantaneous" one, or G(t), t in s.
+
+        A sequence gives the modulus of each layer itself, Pa.
+        """
         K = self.K.copy()
-        for layer in self.layers:
-            G = static_modulus(layer, modulus)
+        moduli = modulus if isinstance(modulus, Sequence) and not isinstance(modulus, str) else None
+        for G, layer in zip(moduli or self.static_moduli(modulus), self.layers, strict=True):
             K += 2.0 * G * (layer.L @ layer.L.T)
         return K
 
@@ -303,7 +313,7 @@ class System:
         touched = [np.abs(layer.L).sum(axis=1) for layer in self.layers]
         return coupled_blocks(self.M, self.C, self.G, self.K, self.N, *(np.outer(t, t) for t in touched))
 
-    def basis(self, modulus: str = "relaxed") -> tuple[Array, Array]:
+    def basis(self, modulus: Modulus = "relaxed") -> tuple[Array, Array]:
         """ω² (n,) and modes T (n, n), x = T q, of the structure, its bearings left out, block by block."""
         K = self.stiffness(modulus)
         T = np.zeros((self.n, self.n))
@@ -421,13 +431,15 @@ def factor(A: Array) -> Array:
     return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
 
 
-def static_modulus(layer: LayerTerm, modulus: str) -> float:
-    """The "relaxed" or "instantaneous" shear modulus of a layer, Pa; ValueError for any other word or law."""
+def static_modulus(layer: LayerTerm, modulus: Modulus) -> float:
+    """The "relaxed" or "instantaneous" shear modulus of a layer, or G(t), Pa; ValueError for another word."""
     if not isinstance(layer.material, Maxwell):
         raise ValueError(
             f"layer {layer.part!r} has the material {type(layer.material).__name__}; statics and the time "
             f"domain need a Maxwell model: fit one with fit_maxwell"
         )
+    if isinstance(modulus, float):
+        return float(layer.material.relaxation(modulus))
     if modulus == "relaxed":
         return float(layer.material.G0)
     if modulus == "instantaneous":

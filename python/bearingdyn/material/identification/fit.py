@@ -8,19 +8,23 @@ is polished on the deviations of ln G′ and ln tan δ, which are what the user 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import shear_modulus
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification.bounds import Limits
+from bearingdyn.material.identification.low_end import low_end
 from bearingdyn.material.identification.points import Points
 from bearingdyn.material.identification.polish import Polished, polish
 from bearingdyn.material.identification.projection import Projection
+from bearingdyn.material.low_end import SLACK
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.superposition import MasterCurve
 from bearingdyn.notice import warn
@@ -42,6 +46,7 @@ def fit_maxwell(
     fixed: Mapping[str, float] | None = None,
     tolerance: float = 0.02,
     bootstrap: int = 0,
+    pin: float | Sequence[float] | None = None,
 ) -> Maxwell:
     """Fit spring, n branches and dashpot to the points of a master curve inside a band.
 
@@ -70,17 +75,25 @@ def fit_maxwell(
     bootstrap
         Number of refits to isotherms drawn with replacement, for standard errors that know of the
         correlation within isotherms. Shifts are kept; the draws are the same every time.
+    pin
+        Hold the low end: a time, s, and the relaxation modulus, Pa, that the model shall have there, from a
+        relaxation test or a static one, say; a time alone takes the modulus from the whole master curve, its
+        points below the band too. It is for models that live in a band far above the load's duration: few
+        branches, and the right sag. A pin ten times later than the points reach is the relaxed modulus:
+        branches may relax up to a tenth of its time.
 
     Returns
     -------
     Maxwell
-        Relaxation times rising; `fit` reports the errors inside the band and the covariance; `law` is the
-        master curve's, so that ``.at(T)`` works. The same data give the same model, bit for bit.
+        Relaxation times rising; `fit` reports the errors inside the band, the covariance, and in `low_end`
+        what the points say of long times; `law` is the master curve's, so that ``.at(T)`` works. The same
+        data give the same model, bit for bit.
 
     Raises
     ------
     ValueError
-        If the band is empty or holds too few points, or a value is out of range.
+        If the band is empty or holds too few points, a value is out of range, or a pin lies at a time that
+        the master curve does not reach and has no modulus.
 
     Reference: paper §3.2, eqs 18 and 19.
 
@@ -98,7 +111,7 @@ def fit_maxwell(
         positive(name, value)
     remedy = "the number of refits must be zero or a positive integer"
     require(isinstance(bootstrap, int) and bootstrap >= 0, "bootstrap", bootstrap, remedy)
-    points = _inside(master, band, K, 1 if n == "auto" else n)
+    points = replace(_inside(master, band, K, 1 if n == "auto" else n), pin=_pinned(master, K, pin))
     held = dict(fixed or {}) | ({} if dashpot else {"eta0": 0.0})
     limits = {k: v for k, v in (bounds or {}).items() if dashpot or k != "eta0"}
     floor = points.floor()
@@ -117,7 +130,7 @@ def fit_maxwell(
         law=master.law,
         temperature=master.T_ref,
         vertical=master.vertical,
-        fit=_report(points, best, floor, _refits(points, best, bound, bootstrap)),
+        fit=_report(points, best, floor, _refits(points, best, bound, bootstrap), float(master.frequency[0])),
     )
 
 
@@ -170,6 +183,7 @@ def fit_dense(
         (),
         np.empty((0, 0)),
         (rms[0], rms[1]),
+        low_end=low_end(points, float(x[0]), storage, float(master.frequency[0])),
     )
     used = x[1:-1] > 0
     return Maxwell(
@@ -211,7 +225,7 @@ def _smallest(
     for n in range(max([1, *named]), max([most, *named]) + 1):
         limits = Limits.of(n, points.limits, bounds, fixed)
         found = _best(points, limits)
-        storage, tan = (float(np.sqrt(np.mean(r**2))) for r in np.split(found.residual, 2))
+        storage, tan = (float(np.sqrt(np.mean(r**2))) for r in found.deviations)
         excess = max(storage / max(tolerance, 1.2 * floor[0]), tan / max(tolerance, 1.2 * floor[1]))
         if best is None or excess < best[0]:
             best = excess, found, limits
@@ -223,6 +237,27 @@ def _smallest(
         f"times the floor {floor[0]:.3g}, {floor[1]:.3g}; the best is {best[0]:.2g} times that",
     )
     return best[1], best[2]
+
+
+def _pinned(master: MasterCurve, K: float, pin: float | Sequence[float] | None) -> tuple[float, float] | None:
+    """Time, s, and modulus, Pa, of a pin; of a time alone by the best dense spectrum of the whole curve."""
+    if pin is None:
+        return None
+    given = list(pin) if isinstance(pin, Sequence) else [pin]
+    remedy = "it must be a time, or a time and a modulus, both positive and finite, s and Pa"
+    require(len(given) in (1, 2) and not isinstance(pin, str), "pin", pin, remedy)
+    time, *modulus = (positive("pin", value, remedy) for value in given)
+    if modulus:
+        return time, modulus[0]
+    reach = 1 / (2 * math.pi * float(master.frequency[0]))
+    require(
+        time <= SLACK * reach,
+        "pin",
+        pin,
+        f"the master curve reaches {reach:.4g} s; for longer times give the modulus too, pin=(time, modulus)",
+    )
+    tau, x = _points(master, np.ones(master.frequency.size, dtype=np.bool_), K)[0].dense()
+    return time, float(x[0] + np.exp(-time / tau) @ x[1:-1])
 
 
 def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: int | str) -> Points:
@@ -248,10 +283,17 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
             OutsideBand,
         )
         f_lo, f_hi = max(f_lo, 0.5 * low), min(f_hi, 2 * high)
-    modulus = master.storage[keep] + 1j * master.loss[keep]
+    points, note = _points(master, keep, K)
+    if note:
+        warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand")
+    return replace(points, band=(f_lo, f_hi))
+
+
+def _points(master: MasterCurve, keep: NDArray[np.bool_], K: float) -> tuple[Points, str]:
+    """Points of a master curve in shear, and what was converted for it."""
+    modulus, note = master.storage[keep] + 1j * master.loss[keep], ""
     if master.mode == "tension":
         modulus, note = shear_modulus(modulus, K, None)
-        warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand")
     elif master.K is not None and not math.isclose(master.K, K, rel_tol=1e-6):
         raise ValueError(
             f"K is {K:g} Pa; the curve was turned into shear with K = {master.K:g} Pa; both must be the same"
@@ -264,7 +306,8 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
     else:
         isotherm = np.unique(T, return_inverse=True)[1].reshape(-1).astype(np.int64)
     omega = 2 * np.pi * master.frequency[keep]
-    return Points(omega, modulus.real, modulus.imag, isotherm, (f_lo, f_hi))
+    band = (float(master.frequency[0]), float(master.frequency[-1]))
+    return Points(omega, modulus.real, modulus.imag, isotherm, band), note
 
 
 def _refits(points: Points, best: Polished, limits: Limits, count: int) -> Array:
@@ -302,12 +345,14 @@ def _like(limits: Limits, best: Polished) -> Limits:
     )
 
 
-def _report(points: Points, best: Polished, floor: tuple[float, float], refits: Array) -> FitReport:
-    """Errors inside the band, the covariance of the parameters, and the bootstrap."""
+def _report(
+    points: Points, best: Polished, floor: tuple[float, float], refits: Array, measured: float
+) -> FitReport:
+    """Errors inside the band, covariance, bootstrap, and the low end; the curve's lowest frequency, Hz."""
     J = best.jacobian
     freedom = max(1, J.shape[0] - J.shape[1])
     covariance = float(best.residual @ best.residual) / freedom * np.linalg.pinv(J.T @ J)
-    storage, tan_delta = np.split(best.residual, 2)
+    storage, tan_delta = best.deviations
     return FitReport(
         points.band,
         _covered(points),
@@ -320,4 +365,5 @@ def _report(points: Points, best: Polished, floor: tuple[float, float], refits: 
         covariance,
         floor,
         refits,
+        low_end(points, float(best.strengths[0]), storage, measured),
     )

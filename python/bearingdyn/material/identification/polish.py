@@ -9,7 +9,7 @@ import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.material.identification.bounds import Limits
-from bearingdyn.material.identification.points import Points
+from bearingdyn.material.identification.points import PIN_WEIGHT, Points
 from bearingdyn.material.spectrum import branch_columns, branch_slopes
 from bearingdyn.types import Array, Index
 
@@ -18,8 +18,8 @@ from bearingdyn.types import Array, Index
 class Polished:
     """A fit: strengths (spring, branches, dashpot), times in rising order, and the problem around it.
 
-    `names` are those of the columns of `jacobian` (2 p, free parameters), all logarithms;
-    `theta` has their values.
+    `names` are those of the columns of `jacobian`, all logarithms; `theta` has their values. Rows are the
+    deviations of ln G′, those of ln tan δ, and that of the pin, weighted, if there is one.
     """
 
     strengths: Array
@@ -29,6 +29,12 @@ class Polished:
     theta: Array
     residual: Array
     jacobian: Array
+
+    @property
+    def deviations(self) -> tuple[Array, Array]:
+        """Of ln G′ and of ln tan δ at the points, (p,) each."""
+        p = self.residual.size // 2  # a pin is one row more
+        return self.residual[:p], self.residual[p : 2 * p]
 
 
 def polish(points: Points, limits: Limits, tau: Array, strengths: Array) -> Polished:
@@ -72,14 +78,18 @@ def polish(points: Points, limits: Limits, tau: Array, strengths: Array) -> Poli
     def residual(theta: Array) -> Array:
         _, storage, loss = columns(theta)
         s, t = storage.sum(axis=1), loss.sum(axis=1)
-        return np.asarray(np.concatenate([np.log(s), np.log(t / s)]) - target)
+        held = PIN_WEIGHT * np.log(points.pin_row(np.exp(full(theta)[:m])) @ columns(theta)[0])
+        return np.concatenate([np.concatenate([np.log(s), np.log(t / s)]) - target, held])
 
     def jacobian(theta: Array) -> Array:
         x, storage, loss = columns(theta)
         slope_s, slope_l = branch_slopes(omega, np.exp(full(theta)[:m]))
         ds = np.hstack([slope_s * x[1:-1], storage[:, present]]) / storage.sum(axis=1)[:, None]
         dl = np.hstack([slope_l * x[1:-1], loss[:, present]]) / loss.sum(axis=1)[:, None]
-        return np.vstack([ds, dl - ds])[:, free]
+        tau = np.exp(full(theta)[:m])
+        row = points.pin_row(tau) * x
+        held = np.hstack([points.pin_slope(tau) * x[1:-1], row[:, present]]) / row.sum(axis=1, keepdims=True)
+        return np.vstack([ds, dl - ds, PIN_WEIGHT * held])[:, free]
 
     theta = first[free]
     if theta.size:

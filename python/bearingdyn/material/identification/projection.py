@@ -6,7 +6,7 @@ import numpy as np
 import scipy
 
 from bearingdyn.material.identification.bounds import Limits
-from bearingdyn.material.identification.points import MARGIN, Points
+from bearingdyn.material.identification.points import MARGIN, PIN_WEIGHT, Points
 from bearingdyn.material.spectrum import Strengths, branch_columns, branch_slopes, solve_strengths
 from bearingdyn.types import Array
 
@@ -31,7 +31,10 @@ class Projection:
             storage, loss = branch_columns(omega, self._times(theta))
             one, none = np.ones((omega.size, 1)), np.zeros((omega.size, 1))
             A = self.points.stack(np.hstack([one, storage, none]), np.hstack([none, loss, omega[:, None]]))
-            found = solve_strengths(A, np.ones(A.shape[0]), self.limits.lower, self.limits.upper)
+            A = np.vstack([A, PIN_WEIGHT * self.points.pin_row(self._times(theta))])
+            target = np.ones(A.shape[0])
+            target[2 * omega.size :] = PIN_WEIGHT
+            found = solve_strengths(A, target, self.limits.lower, self.limits.upper)
             self._last = key, found
         return self._last[1]
 
@@ -39,7 +42,9 @@ class Projection:
         solution = self._solve(theta)
         storage, loss = branch_slopes(self.points.omega, self._times(theta))
         G = solution.x[1:-1]
-        return solution.project_out(self.points.stack(storage * G, loss * G))[:, self.free]
+        pinned = PIN_WEIGHT * self.points.pin_slope(self._times(theta)) * G
+        slopes = np.vstack([self.points.stack(storage * G, loss * G), pinned])
+        return solution.project_out(slopes)[:, self.free]
 
     def run(self, spread: float) -> tuple[Array, Array]:
         """Times and strengths from a start equispaced over the band, widened by `spread` decades on both
