@@ -132,7 +132,7 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             (1e-10, 1e-6),
             (2e-9, 6e-8),
             "oils have 1e-8 to 3e-8 1/Pa",
-            (Slip("1/GPa", 1e-9), Slip("1/MPa", 1e-6), Slip("mm²/N", 1e-6)),
+            (Slip("1/GPa", 1e-9), Slip("mm²/N", 1e-6)),
         ),
         "oil density": Magnitude(
             "kg/m³", (100.0, 5000.0), (500.0, 3000.0), "oils have 800 to 1000 kg/m³", (Slip("g/cm³", 1e3),)

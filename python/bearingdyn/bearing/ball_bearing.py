@@ -252,6 +252,7 @@ class BallBearing:
 
         The shaft has turned by angle/cage_ratio and the balls have spun: waves and pits stand accordingly.
         """
+        angle = number("angle", angle, "it must be a finite angle in rad")
         shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
         # a wave's argument is order·(azimuth − shaft) on the inner race and order·spin on a ball
         carried = {"inner": shaft, "outer": 0.0, "ball": -self.geometry.ball_spin(1.0) * shaft}
