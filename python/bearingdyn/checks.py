@@ -62,7 +62,10 @@ def real(value: ArrayLike) -> Array:
         # numbers of another kind, as Fraction, come as objects
         if found.dtype.kind != "O" or any(isinstance(x, str | bool) or x is None for x in found.flat):
             raise TypeError(f"{found.dtype} are no real numbers")
-    return np.array(found, dtype=np.float64)
+    try:
+        return np.array(found, dtype=np.float64)
+    except OverflowError as error:
+        raise ValueError(str(error)) from None
 
 
 def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> Array:

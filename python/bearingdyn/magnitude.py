@@ -89,7 +89,7 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             (1e4, 1e18),
             (1e5, 1.3e12),
             "a gel has 1e4 Pa, rubber 1e6, steel 2.1e11, diamond 1.2e12",
-            _STRESSES,
+            (_GPA, _MPA, _KPA),
         ),
         "shear modulus": Magnitude(
             "Pa", (1e2, 1e12), (1e3, 6e11), "a gel has 1e3 Pa, rubber 1e5 to 1e9, diamond 5e11", _STRESSES
@@ -132,7 +132,7 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             (1e-10, 1e-6),
             (2e-9, 6e-8),
             "oils have 1e-8 to 3e-8 1/Pa",
-            (Slip("1/GPa", 1e-9), Slip("1/MPa", 1e-6), Slip("mm²/N", 1e-6)),
+            (Slip("1/GPa", 1e-9), Slip("mm²/N", 1e-6)),
         ),
         "oil density": Magnitude(
             "kg/m³", (100.0, 5000.0), (500.0, 3000.0), "oils have 800 to 1000 kg/m³", (Slip("g/cm³", 1e3),)
@@ -381,7 +381,8 @@ def check_gyration(field: str, inertia: float, mass: float) -> None:
     name = f"{field} is {inertia:.6g} kg m² with a mass of {mass:.6g} kg; its radius of gyration"
     plausible("gyration", name, radius)
     row = MAGNITUDES["gyration ratio"]
-    if not row.within(radius / side, row.usual):
+    # a body of less than 0.1 g stands for none, and its moments for nothing
+    if mass > 1e-4 and not row.within(radius / side, row.usual):
         text = f"{name} is {radius:.4g} m, {radius / side:.3g} times the side of a steel cube of that mass; "
         meant = f"is the inertia in kg mm²? give {inertia * 1e-6:.4g} kg m²"
         if not row.within(radius / side, row.possible):

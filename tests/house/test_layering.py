@@ -288,6 +288,7 @@ MAY_NAME_WORDS = {
         "bearingdyn.analysis.harmonic",
         "CHANNEL_KINDS",
     ): "the units of a response",
+    ("bearingdyn.analysis.coarseness", "PIT_KINDS"): "how fast a ball runs over the surface of each body",
     ("bearingdyn.bearing.ball_bearing", "PIT_KINDS"): "how far each body turns as the balls go round",
     ("bearingdyn.runfile", "REPORT_FIELDS"): "what files of version 1 hold, which will not change",
 }
@@ -347,7 +348,7 @@ def test_types_spell_out_the_words_of_c(name: str) -> None:
 
 def test_a_report_has_the_fields_that_c_lists() -> None:
     assert [(f.name, str(f.type)) for f in dataclasses.fields(core.Report)] == [
-        (name, "float" if name in ("t", "residual") else "int") for name in core.REPORT_FIELDS
+        (name, "float" if name in ("t", "residual", "open_t") else "int") for name in core.REPORT_FIELDS
     ]
 
 

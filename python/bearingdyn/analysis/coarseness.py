@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bearingdyn import core
-from bearingdyn.bearing.kernel import BearingKernel
+from bearingdyn.bearing import BearingKernel
 from bearingdyn.notice import CoarseStep, warn
 from bearingdyn.system import System
 from bearingdyn.types import Array
@@ -57,7 +57,8 @@ def _of_bearing(kernel: BearingKernel, speed: float) -> list[tuple[float, str]]:
     """(angular frequency, name) of what passes in one bearing."""
     flaws, cage = kernel.imperfections, kernel.cage_ratio * speed
     # angular speed at which a ball runs over the surface of each body
-    over = {"outer": abs(cage), "inner": abs(speed - cage), "ball": abs(flaws.spin_ratio * speed)}
+    inner, outer = kernel.inner_ratio * speed, kernel.outer_ratio * speed
+    over = {"outer": abs(outer - cage), "inner": abs(inner - cage), "ball": abs(flaws.spin_ratio * speed)}
     found = [(kernel.Z * over["outer"], f"the passage of the {kernel.Z} balls")]
     kinds = {number: name for name, number in core.WAVE_KINDS.items()}
     for kind, order, _, amplitude, _ in flaws.waves:

@@ -12,7 +12,7 @@ from bearingdyn.application.loads import Load
 from bearingdyn.application.place import GRAVITY, GROUND, Place
 from bearingdyn.application.rigid import arm, rigid_shapes
 from bearingdyn.cms import Raceway, Superelement
-from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
+from bearingdyn.parts import HasRoundFaces, RoundFace
 from bearingdyn.types import Array
 
 
@@ -84,7 +84,7 @@ class Plan:
 
     def check_part(self, name: str) -> None:
         """Check that there is a part of that name; ValueError otherwise."""
-        if name not in self.parts:
+        if not isinstance(name, str) or name not in self.parts:
             raise ValueError(f"{name!r} names no part of the application; there are {sorted(self.parts)}")
 
     def place(self, name: str | Place) -> Place:
@@ -123,11 +123,11 @@ class Plan:
 
     def interface_or_ground(self, name: str | Place) -> Place:
         """An interface, or GROUND for "ground"; ValueError for anything else."""
-        return GROUND if name in (GROUND, str(GROUND)) else self.interface(name)
+        return GROUND if isinstance(name, str | Place) and str(name) == str(GROUND) else self.interface(name)
 
     def raceway_or_interface(self, name: str | Place) -> Place:
         """A raceway, an interface, or GROUND for "ground"; ValueError for anything else."""
-        if name in (GROUND, str(GROUND)):
+        if isinstance(name, str | Place) and str(name) == str(GROUND):
             return GROUND
         place = self.place(name)
         return self.interface(place) if self.raceway(place) is None else place

@@ -310,6 +310,7 @@ class BallBearing:
 
         The shaft has turned by angle/cage_ratio and the balls have spun: waves and pits stand accordingly.
         """
+        angle = number("angle", angle, "it must be a finite angle in rad")
         shaft = angle / self.cage_ratio if self.cage_ratio else 0.0
         inner, outer = self.ring_speeds
         # a wave's argument is order·(azimuth − turn of its ring) on a race and order·spin on a ball

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from bearingdyn import core
-from bearingdyn.checks import items, positive, require, whole
+from bearingdyn.checks import items, one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
@@ -59,13 +59,12 @@ class Waviness:
     ball: int | None = None
 
     def __post_init__(self) -> None:
-        require(self.body in BODIES, "waviness.body", self.body, f"it must be one of {BODIES}")
+        one_of("waviness.body", self.body, BODIES)
         waves = isinstance(self.order, int) and not isinstance(self.order, bool) and self.order >= 0
         require(waves, "waviness.order", self.order, "it must be a whole number of waves, zero or more")
         plausible("waviness", "waviness.amplitude", self.amplitude, "it must be a finite length in m")
         plausible("angle", "waviness.phase", self.phase, "it must be a finite angle in rad")
-        known = self.direction in ("radial", "axial")
-        require(known, "waviness.direction", self.direction, 'it must be "radial" or "axial"')
+        one_of("waviness.direction", self.direction, ("radial", "axial"))
         if self.ball is not None:
             remedy = 'it names a ball from 1, with body "ball"'
             whole("waviness.ball", self.ball, 1, remedy=remedy)
@@ -113,7 +112,7 @@ class Pit:
     ball: int = 1
 
     def __post_init__(self) -> None:
-        require(self.body in BODIES, "defects.body", self.body, f"it must be one of {BODIES}")
+        one_of("defects.body", self.body, BODIES)
         plausible("angle", "defects.angle", self.angle, "it must be a finite angle in rad")
         for name in ("width", "depth"):
             field, value = f"defects.{name}", getattr(self, name)

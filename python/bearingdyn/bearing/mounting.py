@@ -98,13 +98,14 @@ class Mounting:
     ball_expansion: float = _STEEL_EXPANSION
 
     def __post_init__(self) -> None:
-        plausible("length", "bore", positive("bore", self.bore, "it must be positive and finite, in m"))
+        positive("bore", self.bore, "it must be positive and finite, in m")
         for name in ("shaft", "housing"):
             require(isinstance(getattr(self, name), Seat), name, getattr(self, name), "give a Seat")
         require(
             positive("outside", self.outside) > self.bore, "outside", self.outside, "it must exceed the bore"
         )
         plausible("length", "outside", self.outside)
+        plausible("length", "bore", self.bore)
         for name in ("inner", "outer", "balls"):
             plausible("warming", name, getattr(self, name), "it must be a finite temperature difference in K")
         for name in ("expansion", "ball_expansion"):

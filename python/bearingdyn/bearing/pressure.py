@@ -61,7 +61,17 @@ def check_pressure(race: str, p: Array, who: str = "", rating: float | None = No
 
 
 def check_bearing_pressure(bearing: Contacts, loads: Array, who: str = "") -> None:
-    """Check a bearing whose balls carry `loads` (Z,), N, by its heavier contact; as `check_pressure`."""
+    """Check a bearing by the heavier contact of its balls, as `check_pressure`.
+
+    Parameters
+    ----------
+    bearing
+        With its contacts and static rating.
+    loads
+        Of the balls (Z,), N.
+    who
+        What the message begins with.
+    """
     peaks = {"inner": bearing.inner_contact.pressure(1.0), "outer": bearing.outer_contact.pressure(1.0)}
     race = max(peaks, key=peaks.__getitem__)
     p = peaks[race] * np.cbrt(loads)

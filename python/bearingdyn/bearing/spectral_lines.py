@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.checks import instance, number, require
+from bearingdyn.checks import instance, number, require, whole
 
 
 def fault_lines(
@@ -113,4 +113,4 @@ def waviness_lines(
 
 
 def _whole(field: str, value: object) -> None:
-    require(isinstance(value, int) and value >= 1, field, value, "it must be a whole number, one or more")
+    whole(field, value, 1, 10_000)

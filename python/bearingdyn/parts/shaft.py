@@ -151,10 +151,9 @@ class Shaft:
                 instance(f"{name}[{k}]", one, kind, f"it must be a bd.{kind.__name__}(…)")
             object.__setattr__(self, name, given)
         for name in ("seats", "points"):
-            given_places = named(name, getattr(self, name), "it must be a dict, name -> position z in m")
+            by_name = named(name, getattr(self, name), "it must be a dict, name -> position z in m")
             found = {
-                k: number(f"{name}[{k!r}]", z, "it must be a position z in m")
-                for k, z in given_places.items()
+                k: number(f"{name}[{k!r}]", z, "it must be a position z in m") for k, z in by_name.items()
             }
             object.__setattr__(self, name, found)
         if not self.sections:
