@@ -160,7 +160,7 @@ static bd_status iterate(const bd_model *model, bd_work *work, bd_state *state, 
     int limit = scheme->max_iterations, held = 0;
 
     for (int iteration = 0; iteration < limit; iteration++) {
-        double residual, scale, slip = 0.0;
+        double residual, scale;
         work->kernels->displace(model, work);
         bd_force_bearings(model, work);
         report->iterations++;

@@ -96,6 +96,7 @@ def test_run_up_through_two_criticals_is_the_integrated_one() -> None:
             dt=dt,
             steps=round(end / dt),
             decimate=round(5e-4 / dt),
+            filter=False,
             record=names,
         )
         got = found.record.values[: len(at)].T

@@ -201,6 +201,7 @@ def test_smooth_motion_converges_to_second_order_while_no_contact_is_lost():
             dt=2e-5 / n,
             steps=1500 * n,
             decimate=n,
+            filter=False,
             record=["shaft.end.y", "ring.centre.y", "left.loaded", "right.loaded"],
         )
         assert (found.record.values[:, 2:] == 8).all()
@@ -246,7 +247,7 @@ def test_settling_is_the_same_march_with_its_beginning_left_out(state):
 
 
 def test_decimation_keeps_every_nth_sample(state):
-    whole, thin = march(state), march(state, decimate=7)
+    whole, thin = march(state), march(state, decimate=7, filter=False)
     assert np.array_equal(thin.record.values, whole.record.values[6::7])
     assert np.array_equal(thin.time.values, whole.time.values[6::7])
     np.testing.assert_allclose(whole.time.values, 1e-5 * np.arange(1, 1001), rtol=1e-14)

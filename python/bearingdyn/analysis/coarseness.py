@@ -55,28 +55,34 @@ def rhythms(system: System, speed: float) -> list[Rhythm]:
 
 def _of_bearing(kernel: BearingKernel, speed: float) -> list[tuple[float, str]]:
     """(angular frequency, name) of what passes in one bearing."""
-    flaws, cage = kernel.imperfections, kernel.cage_ratio * speed
-    # angular speed at which a ball runs over the surface of each body
-    inner, outer = kernel.inner_ratio * speed, kernel.outer_ratio * speed
-    over = {"outer": abs(outer - cage), "inner": abs(inner - cage), "ball": abs(flaws.spin_ratio * speed)}
-    found = [(kernel.Z * over["outer"], f"the passage of the {kernel.Z} balls")]
+    flaws = kernel.imperfections
+    found = [(kernel.Z * _met(kernel, "outer", speed)[0], f"the passage of the {kernel.Z} balls")]
     kinds = {number: name for name, number in core.WAVE_KINDS.items()}
     for kind, order, _, amplitude, _ in flaws.waves:
         body, _, direction = kinds[int(kind)].partition("_")
         if amplitude == 0 or (body == "ball" and order % 2):
             continue
         of = "of the balls," if body == "ball" else f"of the {body} race, {direction},"
-        found.append((order * over[body], f"wave {of} order {int(order)}"))
-    radii = {"inner": flaws.inner_radius, "outer": flaws.outer_radius, "ball": flaws.ball_diameter / 2}
+        found.append((order * _met(kernel, body, speed)[0], f"wave {of} order {int(order)}"))
     pits = {number: name for name, number in core.PIT_KINDS.items()}
     for kind, _, _, width, depth in flaws.pits:
         body = pits[int(kind)]
         # a ball drops in over this arc, and comes out over another; 'drop' in csrc/imperfection.c
         sunk = min(depth, flaws.ball_diameter / 2)
         ramp = min(width / 2, math.sqrt(sunk * (flaws.ball_diameter - sunk)))
-        length, pace = 2 * ramp, radii[body] * over[body]
-        found.append((2 * math.pi * pace / length, f"pit of the {body}, {width:.3g} m wide,"))
+        turning, radius = _met(kernel, body, speed)
+        found.append((math.pi * radius * turning / ramp, f"pit of the {body}, {width:.3g} m wide,"))
     return found
+
+
+def _met(kernel: BearingKernel, body: str, speed: float) -> tuple[float, float]:
+    """Angular speed at which contacts run over the surface of a body, and its radius there."""
+    flaws, cage = kernel.imperfections, kernel.cage_ratio * speed
+    if body == "inner":
+        return abs(kernel.inner_ratio * speed - cage), flaws.inner_radius
+    if body == "outer":
+        return abs(kernel.outer_ratio * speed - cage), flaws.outer_radius
+    return abs(flaws.spin_ratio * speed), flaws.ball_diameter / 2
 
 
 def _quickness(time: Array, value: Array) -> float:

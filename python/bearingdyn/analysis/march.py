@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from bearingdyn import core, inputs, runfile
 from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.coarseness import warn_if_coarse
+from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, system_of
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
@@ -26,6 +27,8 @@ from bearingdyn.types import Array
 if TYPE_CHECKING:
     import xarray
 
+# words of a state: steps since its clock began, and their size (csrc/state.c)
+STEPS, STEP = 1, 2
 NEVER = 2**62  # a decimation that keeps nothing
 # steps between two chunks on the disk: a tenth of a second or so, which a kill may cost
 CHUNK_STEPS = 50_000
@@ -49,6 +52,8 @@ class March:
         Step, speed, audit and scheme.
     settle, steps, decimate
         Steps before the record, steps of the record, and every how many a sample is kept.
+    filter
+        Whether what is kept is low-passed.
     """
 
     system: System
@@ -59,6 +64,7 @@ class March:
     settle: int
     steps: int
     decimate: int
+    filter: bool = False
 
     @classmethod
     def of(
@@ -70,6 +76,7 @@ class March:
         steps: int,
         settle: int = 0,
         decimate: int = 1,
+        filter: bool = False,
         audit: bool = False,
         scheme: core.Scheme | None = None,
         least_steps: int = 0,
@@ -113,12 +120,17 @@ class March:
         warn_if_coarse(system, fastest, dt)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
-        return cls(system=system, modal=modal, T=T, x=x, stepping=stepping, **counts)
+        return cls(system=system, modal=modal, T=T, x=x, stepping=stepping, filter=bool(filter), **counts)
 
     @property
     def total(self) -> int:
         """Steps of the whole march, those before the record included."""
         return self.settle + self.steps
+
+    @property
+    def filters(self) -> bool:
+        """Whether there is anything to filter."""
+        return self.filter and self.decimate > 1
 
     def start(self, model: core.Model, initial: Mapping[str, ArrayLike] | None = None) -> Array:
         """State at rest in the start displacement, with the places of `initial` put where they are wanted.
@@ -149,6 +161,16 @@ class March:
         self._check_origin(result, state.size, self.start(model).size)
         check_state("resume", state)
         return state
+
+    def past(self, result: xarray.Dataset, channels: Sequence[str]) -> Array | None:
+        """The steps before the end of an earlier march, as its filter and this one's need them; or None."""
+        same = (
+            self.filters
+            and "tail" in result
+            and list(map(str, result["channel"].values)) == list(channels)
+            and (result.attrs["dt"], result.attrs["decimate"]) == (self.stepping.dt, self.decimate)
+        )
+        return np.asarray(result["tail"].values, dtype=np.float64) if same else None
 
     def _check_origin(self, result: xarray.Dataset, size: int, own_size: int) -> None:
         """Refuse a result that was not marched with this very system: ValueError."""
@@ -181,6 +203,7 @@ class March:
             "dt": self.stepping.dt,
             "speed": [part.tolist() for part in self.stepping.profile],
             "decimate": self.decimate,
+            "filter": self.filters,
             "settle": self.settle,
             "steps": self.steps,
             "inputs": self.system.inputs,
@@ -256,6 +279,77 @@ class March:
             OpenSideWarning,
         )
 
+    def filtered(
+        self,
+        model: core.Model,
+        state: Array,
+        sieve: Decimator,
+        *,
+        start: bool,
+        size: int | None = None,
+        done: int = 0,
+        progress: core.Progress | None = None,
+    ) -> Iterator[tuple[Array, Array, core.Report]]:
+        """As `pieces`, with the rows low-passed; what is marched ahead of a piece for that is thrown away."""
+        status, size = 0, max(size or CHUNK_STEPS, 4 * sieve.half)
+        blind = max(self.settle - sieve.half, 0)  # so many steps leave no trace in the record
+        told = False
+        while status == 0 and (done < self.total or start):
+            goal = next((g for g in (blind, self.settle) if done < g), self.total)
+            every = NEVER if goal == blind and done < blind else 1
+            rows, state, report = core.march(
+                model,
+                state,
+                self.stepping,
+                min(goal - done, size),
+                every,
+                start=start,
+                progress=part_of(progress, done, self.total),
+            )
+            start, status, done = False, report.status, done + report.steps
+            if every == NEVER:
+                sieve.skip(report.steps)
+            else:
+                sieve.add(rows)
+            if done <= self.settle:
+                sieve.drop()
+            if report.open_steps and not told:
+                told = True
+                self._tell_open_side(report)
+            ahead, after = rows[:0], status
+            if done > self.settle and status in (0, core.INTERRUPTED):
+                ahead, _, looked = core.march(model, state, self.stepping, sieve.half, 1)
+                after = core.INTERRUPTED if looked.status == core.INTERRUPTED else status
+            report, status = replace(report, status=after), after
+            yield sieve.take(ahead), state, report
+
+    def sieve(
+        self,
+        model: core.Model,
+        state: Array,
+        *,
+        start: bool,
+        plain: Array,
+        past: Array | None,
+        chunks: Sequence[runfile.Chunk],
+    ) -> Decimator:
+        """What filters this march from the end of its chunks; the rows before that end are marched again."""
+        own = not start and state[STEP] == self.stepping.dt
+        begun = int(state[STEPS]) if own else 0
+        done, half = sum(chunk.report.steps for chunk in chunks), half_length(self.decimate)
+        if done == 0:
+            return Decimator(self.decimate, plain, begun, past)
+        at, rows = 0, None
+        for chunk in chunks:
+            if at + chunk.report.steps > max(done - half, 0):
+                break
+            at, state, start = at + chunk.report.steps, chunk.state, False
+        if done > self.settle - half:
+            again, _, _ = core.march(model, state, self.stepping, done - at, 1, start=start)
+            before = np.repeat(again[:1], half, axis=0) if past is None or at > 0 else past
+            rows = np.concatenate([before, again])[-half:]
+        return Decimator(self.decimate, plain, begun + done, rows)
+
     def run(
         self,
         model: core.Model,
@@ -265,8 +359,12 @@ class March:
         progress: core.Progress | None = None,
         stream: str | os.PathLike[str] | None = None,
         header: Mapping[str, Any] | None = None,
-    ) -> tuple[Array, Array, core.Report]:
-        """March to the end: rows (n, channels), state and report.
+        plain: Array | None = None,
+        past: Array | None = None,
+    ) -> tuple[Array, Array, core.Report, Array | None]:
+        """March to the end: rows (n, channels), state, report, and the last steps if there is a filter.
+
+        `plain` (channels,) says which channels are not filtered; `past` are the steps before the start.
 
         With `stream`, every CHUNK_STEPS steps are on the disk before the next begin; a run file that holds
         the beginning of this very march is continued, bit for bit. The report counts what this call and, from
@@ -283,17 +381,18 @@ class March:
         try:
             kept = [] if writer is None else [c.rows for c in writer.chunks]
             report = core.Report(t=core.time_of(model, state))
+            sieve = None
+            if self.filters and plain is not None:
+                known = [] if writer is None else writer.chunks
+                sieve = self.sieve(model, state, start=start, plain=plain, past=past, chunks=known)
             if writer is not None and writer.chunks:
                 state, start = writer.chunks[-1].state.copy(), False
                 check_state(f"stream {writer.path}", state)
                 report = runfile.report_of(writer.chunks)
-            for rows, after, part in self.pieces(
-                model,
-                state,
-                start=start,
-                size=None if writer is None else CHUNK_STEPS,
-                done=report.steps,
-                progress=progress,
+            size = None if writer is None else CHUNK_STEPS
+            go: dict[str, Any] = {"start": start, "size": size, "done": report.steps, "progress": progress}
+            for rows, after, part in (
+                self.pieces(model, state, **go) if sieve is None else self.filtered(model, state, sieve, **go)
             ):
                 state = after
                 kept.append(rows)
@@ -303,7 +402,8 @@ class March:
         finally:
             if writer is not None:
                 writer.close()
-        return np.concatenate([np.zeros((0, model.channels)), *kept]), state, report
+        tail = None if sieve is None else sieve.rows
+        return np.concatenate([np.zeros((0, model.channels)), *kept]), state, report, tail
 
     def energies(self, model: core.Model, state: Array) -> dict[str, float]:
         """What the audit integrated, J, by the names of core.ENERGIES; NaN where they have overflowed."""

@@ -127,6 +127,7 @@ def march_dataset(
             **({} if constant else {"speed_time": times}),
             "dt": facts["dt"],
             "decimate": decimate,
+            **({"filter": int(facts["filter"])} if "filter" in facts else {}),
             "settle": facts["settle"],
             **report.counts,
             "steps": max(report.steps - facts["settle"], 0),
