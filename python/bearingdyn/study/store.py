@@ -49,8 +49,8 @@ class Store:
         except (ValueError, RecursionError) as error:
             raise ValueError(
                 f"function {name} cannot be told by its content, and a store would mix up its results "
-                f"({error}); pass what it needs as parameters of the cases, give the object that holds it an attribute "
-                f"told_as, a text that says all its results depend on, or leave store out"
+                f"({error}); pass what it needs as parameters of the cases, give the object that holds it an "
+                f"attribute told_as, a text that says all its results depend on, or leave store out"
             ) from None
         self.folder.mkdir(parents=True, exist_ok=True)
 
