@@ -36,9 +36,8 @@ SEED = 20261129
 # what people and broken programs write for a number
 NUMBERS = [
     b"1e400", b"-1", b"0", b"nan", b"inf", b"99999999999999999999", b"9" * 400, b"2,5", b"2.0D+08", b"",
-    b"\0",     b"1e-400", b"0x10", b"1.5", b"1_0", b"-0", b"1e", b"2147483648",
-    b"9223372036854775807", b"true", b'"a"',
-    b"[1]", b"{}", b"null", b"\xef\xbc\x91", b"1.0-100", b"1 2", b"1;2",
+    b"\0", b"1e-400", b"0x10", b"1.5", b"1_0", b"-0", b"1e", b"2147483648", b"9223372036854775807", b"true",
+    b'"a"', b"[1]", b"{}", b"null", b"\xef\xbc\x91", b"1.0-100", b"1 2", b"1;2",
 ]  # fmt: skip
 
 Mutate = Callable[[bytes], bytes]
@@ -376,7 +375,7 @@ def _dma() -> Reader:
     )
 
     def write(folder: Path) -> None:
-        head = "Temperature (C),Frequency (Hz),Storage modulus G' (Pa),Loss modulus G'' (Pa)\n"
+        head = "temperature_C,frequency_Hz,G_storage_Pa,G_loss_Pa\n"
         (folder / "d.csv").write_text(head + rows)
 
     return Reader(write, lambda f: bd.read_dma(f / "d.csv"))
@@ -392,7 +391,7 @@ def _abaqus_mesh() -> Reader:
             "*NSET, NSET=top\n5,6,\n7,8\n*ELSET, ELSET=e\n1\n*SURFACE, NAME=s\ne, S1\n"
         )
 
-    return Reader(write, lambda f: bd.read_mesh(f / "m.inp"))
+    return Reader(write, lambda f: bd.read_mesh(f / "m.inp", upgrade=True))
 
 
 def _gmsh() -> Reader:
@@ -406,7 +405,7 @@ def _gmsh() -> Reader:
             "2 4 2 1 1 1 2 3 4\n$EndElements\n"
         )
 
-    return Reader(write, lambda f: bd.read_mesh(f / "m.msh"))
+    return Reader(write, lambda f: bd.read_mesh(f / "m.msh", upgrade=True))
 
 
 READERS: dict[str, Callable[[], Reader]] = {

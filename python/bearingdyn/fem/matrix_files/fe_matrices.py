@@ -421,7 +421,11 @@ def _check_pivots(model: FEMatrices) -> None:
 
 
 def _of_six_digits(values: Array) -> bool:
-    """Whether no number has more than six digits, to round-off; zeros say nothing."""
-    v = np.abs(values[values != 0])
-    mantissa = v * 10.0 ** (5.0 - np.floor(np.log10(v)))
+    """Whether no number has more than six digits, or is the mean of two of them.
+
+    What is zero but for round-off says nothing.
+    """
+    v = np.abs(values)
+    v = v[v > 1e-9 * v.max()]
+    mantissa = 2.0 * v * 10.0 ** (5.0 - np.floor(np.log10(v)))
     return bool(np.all(np.abs(mantissa - np.rint(mantissa)) < 1e-3))

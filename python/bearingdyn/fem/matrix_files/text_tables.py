@@ -28,6 +28,8 @@ ROWS = 2_000_000  # beyond, a matrix must have as many entries as rows, or its n
 _WHOLE = rb"[+-]?+\d{1,18}+"
 _COUNT = rb"0*+[1-9]\d{0,17}+"
 _NUMBER = rb"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[eEdD][+-]?+\d++|[+-]\d++)?+"
+_BLANK = re.compile(rb"\n[ \t]*\n")
+_PLUS = re.compile(rb"(?<!e)\+")  # SciPy takes none before a number
 _NO_LETTER = re.compile(rb"(?<=[\d.])(?=[+-])")  # Fortran leaves the letter out: 1.5-100
 
 
@@ -103,7 +105,10 @@ def triples(path: Path, stream: BinaryIO, form: Form, line: int = 1) -> tuple[In
     rows, columns, values = [], [], []
     head = b"%%%%MatrixMarket matrix coordinate real general\n%d %d %d\n"
     for at, block, count in _clean(path, stream, form, line):
-        A = scipy.io.mmread(io.BytesIO(head % (10**18, 10**18, count) + block))
+        try:
+            A = scipy.io.mmread(io.BytesIO(head % (10**18, 10**18, count) + block))
+        except (ValueError, OverflowError) as error:
+            raise ValueError(f"{path}, in line {at} or below: {error}; {form.what}") from None
         rows.append(np.asarray(A.row, dtype=np.intp))
         columns.append(np.asarray(A.col, dtype=np.intp))
         values.append(_finite(path, np.asarray(A.data, dtype=np.float64), at))
@@ -175,7 +180,8 @@ def _clean(path: Path, stream: BinaryIO, form: Form, line: int) -> Iterator[tupl
     """Blocks of good lines alone, columns between blanks and exponents after e; line of the first; lines."""
     good = form.pattern()
     left_out = re.compile(rb"(?m)^[ \t]*(?:" + (re.escape(form.comment.encode()) or b"(?!)") + rb".*)?\n")
-    letters = bytes.maketrans(b"Dd,\r", b"ee  ")
+    comment = form.comment.encode()
+    letters = bytes.maketrans(b"DdE,\r", b"eee  ")
     for at, block in _blocks(stream, path, line):
         end = good.match(block).end()  # type: ignore[union-attr]  # it matches nothing at all, too
         if end < len(block):
@@ -183,9 +189,14 @@ def _clean(path: Path, stream: BinaryIO, form: Form, line: int) -> Iterator[tupl
             number = at + block.count(b"\n", 0, end)
             shown = wrong if len(wrong) <= SHOWN else wrong[:SHOWN] + "…"
             raise ValueError(f"{path}, line {number} is {shown!r}; {form.what}")
-        numbers = left_out.sub(b"", block.translate(letters))
-        if _NO_LETTER.search(numbers):
-            numbers = _NO_LETTER.sub(b"e", numbers)
+        numbers = block.translate(letters)
+        # counting is ten times as fast as a search that finds nothing
+        if (comment and comment in numbers) or numbers[:1] in b" \t\n" or _BLANK.search(numbers):
+            numbers = left_out.sub(b"", numbers)
+        powers = numbers.count(b"e+"), numbers.count(b"e-")
+        front = sum(numbers.count(b + b"-") for b in (b" ", b"\t", b"\n")) + numbers.startswith(b"-")
+        if (numbers.count(b"+"), numbers.count(b"-")) != (powers[0], powers[1] + front):
+            numbers = _PLUS.sub(b" ", _NO_LETTER.sub(b"e", numbers))
         if numbers.strip():
             yield at, numbers, numbers.count(b"\n")
     if stream.seekable() and stream.tell() > 0:
