@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -175,7 +175,7 @@ class Report:
     def __add__(self, later: Report) -> Report:
         mine, its = vars(self), vars(later)
 
-        def both(a: float, b: float, how: str) -> float:
+        def both(a: Any, b: Any, how: str) -> Any:
             if how == "sum":
                 return a + b
             return a if how == "first" and a >= 0 else b
