@@ -10,7 +10,7 @@ import numpy as np
 
 from bearingdyn.analysis.statics import BearingState, Statics, diagonal_blocks
 from bearingdyn.application import Application
-from bearingdyn.bearing.open_side import REMEDY, runs_off
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.checks import number, whole
 from bearingdyn.system import BearingTerm, LoadTerm, System, assemble
 from bearingdyn.types import Array
@@ -162,7 +162,7 @@ def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, Bear
         astray = runs_off(kernel, state.z, state.loads, kernel.angle0)
         if astray:
             force = ", ".join(f"{f:.4g}" for f in state.force)
-            raise ValueError(f"bearing {term.name!r} is loaded by ({force}) N; {astray}; {REMEDY}")
+            raise ValueError(f"bearing {term.name!r} is loaded by ({force}) N; {astray}; {OPEN_SIDE_REMEDY}")
 
 
 def with_loads(system: System, loads: tuple[LoadTerm, ...]) -> System:

@@ -14,8 +14,7 @@ from bearingdyn import core, inputs, runfile
 from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.application import Application
-from bearingdyn.bearing import ConstantDamping
-from bearingdyn.bearing.open_side import REMEDY
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, ConstantDamping
 from bearingdyn.checks import number, numbers, positive, require, whole
 from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.results import inputs_of
@@ -244,7 +243,7 @@ class March:
         warn(
             f"bearing {name!r}: from t = {report.open_t:.6g} s on, in {report.open_steps} of the "
             f"{report.steps} steps marched, balls are pressed onto its open side, where no shoulder holds "
-            f"them; {REMEDY}",
+            f"them; {OPEN_SIDE_REMEDY}",
             OpenSideWarning,
         )
 

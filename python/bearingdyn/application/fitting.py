@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 from bearingdyn.application.place import GROUND, Place
 from bearingdyn.bearing import BallBearing
 from bearingdyn.notice import FitWarning, warn
-from bearingdyn.parts.round_face import RoundFace
+from bearingdyn.parts import RoundFace
 
 Ring: TypeAlias = Literal["inner", "outer"]
 

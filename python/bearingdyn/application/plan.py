@@ -12,7 +12,7 @@ from bearingdyn.application.loads import Load
 from bearingdyn.application.place import GRAVITY, GROUND, Place
 from bearingdyn.application.rigid import arm, rigid_shapes
 from bearingdyn.cms import Raceway, Superelement
-from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
+from bearingdyn.parts import HasRoundFaces, RoundFace
 from bearingdyn.types import Array
 
 

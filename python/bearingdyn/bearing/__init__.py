@@ -19,6 +19,7 @@ from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.lubrication import Lubrication, lubricate
 from bearingdyn.bearing.mounting import Mounting, Seat
+from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
 from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
@@ -26,6 +27,7 @@ from bearingdyn.bearing.surface_generation import WavinessSpectrum, dent, diamet
 
 __all__ = [
     "NET",
+    "OPEN_SIDE_REMEDY",
     "RIGID",
     "BallBearing",
     "Balls",
@@ -68,6 +70,7 @@ __all__ = [
     "passage",
     "resultant_damping",
     "resultant_deflection_coefficient",
+    "runs_off",
     "spall",
     "waviness_lines",
     "without_spin",

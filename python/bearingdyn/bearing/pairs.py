@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.energy_minimum import minimum
-from bearingdyn.bearing.open_side import REMEDY, runs_off, shoulder
+from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
 from bearingdyn.checks import nonnegative, positive, require, vector
 from bearingdyn.types import Array
 
@@ -165,5 +165,5 @@ class Pair:
             loads = self.row.ball_loads(place, angle)
             astray = runs_off(self.row.kernel(), self.row.relative(place), loads, self.row.angle0 + angle)
             if astray:
-                raise ValueError(f"load is {f.tolist()}; in the {name} row {astray}; {REMEDY}")
+                raise ValueError(f"load is {f.tolist()}; in the {name} row {astray}; {OPEN_SIDE_REMEDY}")
         return q

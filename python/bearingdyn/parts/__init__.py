@@ -12,6 +12,7 @@ from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring, damping_sample
+from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Disc, Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
 
@@ -23,6 +24,7 @@ __all__ = [
     "FlexibleBearing",
     "FlexibleRing",
     "Groove",
+    "HasRoundFaces",
     "Housing",
     "Imported",
     "Layer",
@@ -38,6 +40,7 @@ __all__ = [
     "RigidBody",
     "RigidSurface",
     "Ring",
+    "RoundFace",
     "Section",
     "Shaft",
     "Solid",

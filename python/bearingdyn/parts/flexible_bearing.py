@@ -11,8 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing import BallBearing, minimum
-from bearingdyn.bearing.open_side import REMEDY, runs_off
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, minimum, runs_off
 from bearingdyn.checks import vector
 from bearingdyn.cms import Superelement
 from bearingdyn.parts.flexible_ring import FlexibleRing
@@ -154,5 +153,5 @@ class FlexibleBearing:
         kernel, relative = self.bearing.kernel(self._element.raceways["raceway"].series), J @ x
         astray = runs_off(kernel, relative, self._press(relative, angle)[3], self.bearing.angle0 + angle)
         if astray:
-            raise ValueError(f"load is {f.tolist()}; {astray}; {REMEDY}")
+            raise ValueError(f"load is {f.tolist()}; {astray}; {OPEN_SIDE_REMEDY}")
         return np.concatenate([unit @ x[:5], [0.0]])
