@@ -18,17 +18,17 @@ master = bd.master_curve(bd.read_dma(csv), T_ref=20.0)
 rubber = bd.fit_maxwell(master, n=5, band=(10.0, 5e3), pin=60.0, K=2e9, density=1150.0)
 layer = bd.Layer(r_inner=0.026, r_outer=0.030, width=0.015, material=rubber)
 ball = bd.BallBearing(Z=9, Dw=7.94e-3, Dpw=39.04e-3, fi=0.52, fo=0.53, clearance=10e-6, damping=30.0)
-shaft = bd.Shaft([bd.Section(0.20, 0.05)], seats={"left": 0.04, "right": 0.16}, points={"mid": 0.10})
+steps = [bd.Section(0.05, 0.025), bd.Section(0.10, 0.066), bd.Section(0.05, 0.025)]  # length, diameter
+shaft = bd.Shaft(steps, seats={"left": 0.04, "right": 0.16}, points={"mid": 0.10})
 responses = {}
-for label in ("no layer", "layer"):
+for label, outer in (("no layer", "ground"), ("layer", "{}_layer.inner")):
     app = bd.Application()
     app.add("shaft", shaft)
     for side in ("left", "right"):
         if label == "layer":
             app.add(f"{side}_layer", layer)
             app.ground(f"{side}_layer.outer")
-        outer = f"{side}_layer.inner" if label == "layer" else "ground"
-        app.bearing(side, ball, inner=f"shaft.{side}", outer=outer)
+        app.bearing(side, ball, inner=f"shaft.{side}", outer=outer.format(side))
     app.load("shaft.mid", (0, -500, 200, 0, 0, 0))  # N: what hangs on the shaft, and an axial preload
     state = bd.equilibrium(app, after=60.0)
     responses[label] = frf = bd.frequency_response(state, range(10, 3001), ["shaft.mid.y"], ["shaft.mid.y"])

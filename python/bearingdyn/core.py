@@ -163,8 +163,7 @@ class Stepping:
 class Report:
     """Where and how a march ended (bd_report); the sum of two is that of one march after the other.
 
-    The fields are those of REPORT_FIELDS, which says of each whether it adds, or
-    the first or the last one counts.
+    The fields are those of REPORT_FIELDS, which says of each whether it adds, or the first or last counts.
     """
 
     status: int = 0

@@ -95,8 +95,9 @@ def two_bearings(preload: float, load: tuple[float, ...] = (0,) * 6) -> Applicat
     app.add("shaft", Shaft([Section(0.2, 0.06)], seats={"left": 0.05, "right": 0.15}, f_max=2e3))
     app.add("block", RigidBody(1.0, (0.01,) * 3))
     app.ground("block.centre", stiffness=(1e12, 1e12, 0, 1e9, 1e9, 1e9))
-    app.bearing("left", B6306, inner="shaft.left", outer="ground")
-    app.bearing("right", B6306, inner="shaft.right", outer="block.centre")
+    # thicker than the bearings' bore, so that it is stiff
+    app.bearing("left", B6306, inner="shaft.left", outer="ground", fits=False)
+    app.bearing("right", B6306, inner="shaft.right", outer="block.centre", fits=False)
     app.load("block.centre", (0, 0, preload, 0, 0, 0))
     app.load("shaft.left", load)
     return app

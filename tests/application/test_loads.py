@@ -267,8 +267,9 @@ def opposed(offset: float = 0.0, force: float = 0.0) -> Application:
     app.add("shaft", Shaft([Section(0.2, 0.06)], seats={"left": 0.05, "right": 0.15}, f_max=2e3))
     app.add("block", RigidBody(1.0, (0.01,) * 3))
     app.ground("block.centre", stiffness=(1e12, 1e12, 0.0 if force else 1e13, 1e9, 1e9, 1e9))
-    app.bearing("left", BEARING, inner="shaft.left", outer="ground")
-    app.bearing("right", BEARING, inner="shaft.right", outer="block.centre", offset=offset)
+    # thicker than the bearings' bore, so that it is stiff
+    app.bearing("left", BEARING, inner="shaft.left", outer="ground", fits=False)
+    app.bearing("right", BEARING, inner="shaft.right", outer="block.centre", offset=offset, fits=False)
     if force:
         app.load("block.centre", (0, 0, force, 0, 0, 0))
     return app

@@ -37,8 +37,11 @@ class RigidRotor:
 
     def __init__(self, ball: bd.BallBearing, layer: bd.Layer | None) -> None:
         self.layer = layer
-        mass = 7850.0 * np.pi / 4 * 0.05**2 * 0.20
-        self.M = np.diag([mass, mass, mass * (3 * 0.025**2 + 0.20**2) / 12])
+        # a cylinder with a journal at either end, 75 mm from the middle
+        body, journal = (7850.0 * np.pi / 4 * d**2 * length for d, length in ((0.066, 0.10), (0.025, 0.05)))
+        across = body * (3 * 0.033**2 + 0.10**2) / 12
+        across += 2 * journal * ((3 * 0.0125**2 + 0.05**2) / 12 + 0.075**2)
+        self.M = np.diag([body + 2 * journal] * 2 + [across])
         tilting = 0.0 if layer is None else layer.stiffness(0.0)[3, 3].real
         scale = np.array([1e-5, 1e-4, 1e-3])
 
@@ -93,8 +96,11 @@ def test_the_rotor_of_the_first_hour_peaks_where_a_rigid_one_on_springs_does(
     peaks = f[1:-1][[H[1] > max(H[0], H[2]) for H in triples([plain.receptance(x) for x in f])]]
     assert np.abs(peaks / found["no layer"][1] - 1).min() < 0.04  # (1.2/6)²
     # far below resonance the compliance, to which bending and shear of the shaft between its seats add
-    L, area, inertia = 0.12, np.pi / 4 * 0.05**2, np.pi / 64 * 0.05**4
-    shaft = L**3 / (48 * 210e9 * inertia) + L / (4 * 0.886 * 80.8e9 * area)
+    # by Castigliano: ½∫x²/EI dx + ½∫dx/κGA from a seat to the middle, the first 10 mm of it journal
+    shaft = 0.0
+    for d, start, end in ((0.025, 0.0, 0.01), (0.066, 0.01, 0.06)):
+        shaft += (end**3 - start**3) / (6 * 210e9 * np.pi / 64 * d**4)
+        shaft += (end - start) / (2 * 0.886 * 80.8e9 * np.pi / 4 * d**2)
     low = abs(names["responses"]["no layer"]["response"]).values[0, 0, 0]
     assert low == pytest.approx(plain.receptance(10.0) + shaft, rel=0.01)
 

@@ -22,8 +22,7 @@ from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.lubrication import Lubrication, lubricate
 from bearingdyn.bearing.mounting import Mounting, Seat
-from bearingdyn.bearing.open_side import REMEDY as OPEN_SIDE_REMEDY
-from bearingdyn.bearing.open_side import runs_off
+from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.pressure import STATIC_PRESSURE, check_bearing_pressure
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries

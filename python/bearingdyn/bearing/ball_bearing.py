@@ -22,7 +22,7 @@ from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.geometry import Frequencies, Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
-from bearingdyn.bearing.open_side import REMEDY, OpenSide, open_sine, runs_off, shoulder
+from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, runs_off, shoulder
 from bearingdyn.bearing.pressure import STATIC_PRESSURE, check_bearing_pressure, check_load, check_motion
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.turning import Turning, ring_speeds
@@ -491,7 +491,7 @@ class BallBearing:
         loads = core.bearing_force(self._kernel, z, still, turn, 0.0, shaft)[3]
         astray = runs_off(self._kernel, z, loads, turn) if self._kernel.shoulder else ""
         if astray:
-            raise ValueError(f"load is {f.tolist()}; {astray}; {REMEDY}")
+            raise ValueError(f"load is {f.tolist()}; {astray}; {OPEN_SIDE_REMEDY}")
         check_bearing_pressure(self, loads)
         return np.array([z[0], z[1], z[2], z[4] / R, -z[3] / R, 0.0])
 

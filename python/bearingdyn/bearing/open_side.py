@@ -78,7 +78,7 @@ def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str 
     )
 
 
-REMEDY = (
+OPEN_SIDE_REMEDY = (
     "hang the bearing the other way round, bearing.mirrored(), or set it against a second one that carries "
     "this direction (a Pair, or a preload by offset=); one with shoulders on both sides has open_side=None"
 )

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.energy_minimum import minimum
-from bearingdyn.bearing.open_side import REMEDY, runs_off, shoulder
+from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
 from bearingdyn.bearing.pressure import check_bearing_pressure, check_load
 from bearingdyn.checks import nonnegative, positive, require, vector
 from bearingdyn.magnitude import plausible
@@ -175,6 +175,6 @@ class Pair:
         for name, place, loads in places:
             astray = runs_off(self.row.kernel(), self.row.relative(place), loads, self.row.angle0 + angle)
             if astray:
-                raise ValueError(f"load is {f.tolist()}; in the {name} row {astray}; {REMEDY}")
+                raise ValueError(f"load is {f.tolist()}; in the {name} row {astray}; {OPEN_SIDE_REMEDY}")
             check_bearing_pressure(self.row, loads)
         return q
