@@ -15,6 +15,7 @@ FOUND = re.compile(r"^from bearingdyn\.material\.(\w+)(\.\w+)? import (.+?)$", r
 
 # A room may import those of earlier rows, by their doors.
 ORDER = (
+    ("low_end",),
     ("creep", "dma", "elastic", "fit_report", "retuning", "shift_laws", "spectrum"),
     ("maxwell",),
     ("reading", "superposition"),
