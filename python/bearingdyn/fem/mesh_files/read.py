@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from bearingdyn.fem.mesh_files.abaqus import read_inp
-from bearingdyn.fem.mesh_files.gmsh_and_vtk import read_with_meshio
+from bearingdyn.fem.mesh_files.gmsh import read_msh
 from bearingdyn.fem.mesh_files.raw_mesh import finished
+from bearingdyn.fem.mesh_files.vtk import read_with_meshio
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 from bearingdyn.magnitude import LARGEST_BODY
 
@@ -62,7 +63,12 @@ def read_mesh(
     if suffix not in (".msh", ".inp", ".vtk", ".vtu"):
         raise ValueError(f"{file.name} has the suffix {suffix!r}; meshes are .msh, .inp, .vtk or .vtu files")
     try:
-        raw = read_inp(file) if suffix == ".inp" else read_with_meshio(file, region_data)
+        if suffix == ".inp":
+            raw = read_inp(file)
+        elif suffix == ".msh":
+            raw = read_msh(file, region_data)
+        else:
+            raw = read_with_meshio(file, region_data)
         return finished(
             raw,
             scale=scale,
