@@ -17,6 +17,9 @@ from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_ma
 from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
 from bearingdyn.types import Array, Index
 
+# keywords that read_nodes cannot follow
+GEOMETRY = ("SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "IMPERFECTION")
+
 
 def read_abaqus(
     stiffness: str | Path, mass: str | Path, points: Points | None = None, **check: Any
@@ -89,8 +92,18 @@ def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
         For a file that is not there, without nodes, or with a line that is no node.
     """
     p = existing(path)
+    nodes: dict[int, tuple[float, float, float]] = {}
     try:
-        nodes = dict(node(line) for keyword, _, lines in blocks(p) if keyword == "NODE" for line in lines)
+        for block in blocks(p):
+            moved = block.keyword == "INSTANCE" and block.lines
+            turned = block.keyword == "NODE" and block.options.get("SYSTEM", "R").upper() != "R"
+            if block.keyword in GEOMETRY or moved or turned:
+                raise block.fault("it moves or makes nodes, which is not followed here; write the nodes out")
+            for k, line in enumerate(block.lines if block.keyword == "NODE" else ()):
+                try:
+                    nodes.update([node(line)])
+                except ValueError as error:
+                    raise block.fault(error, k) from error
     except ValueError as error:
         raise ValueError(f"{p}: {error}") from error
     if not nodes:
