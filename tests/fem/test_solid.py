@@ -62,7 +62,14 @@ def tetrahedra():
 
 
 WEDGES = [(0, 1, 2, 4, 5, 6), (0, 2, 3, 4, 6, 7)]  # each half of a brick
-PYRAMIDS = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]  # to its middle
+PYRAMIDS = [
+    (0, 3, 2, 1),
+    (4, 5, 6, 7),
+    (0, 1, 5, 4),
+    (1, 2, 6, 5),
+    (2, 3, 7, 6),
+    (3, 0, 4, 7),
+]  # to its middle
 
 
 def wedges():

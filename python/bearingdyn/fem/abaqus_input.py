@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 INCLUDES = 1000  # files that one file may include, some ten times what a large assembly has
-AGAIN = 2**26  # bytes of files that may be read a second time; 22 files that include twice would be 4 million
+AGAIN = 2**25  # bytes of files that may be read a second time; 22 files that include twice would be 4 million
 LARGEST_NUMBER = 2**31 - 1  # of a node or element; Abaqus' own limit is 999 999 999
 WITH_FILE = ("NODE", "ELEMENT")  # keywords whose INPUT= names a file of more data lines
 
@@ -113,7 +113,9 @@ def _finished(block: Block, chain: tuple[Path, ...], budget: _Budget) -> Iterato
             for number, raw in enumerate(file, 1):
                 line = raw.strip()
                 if line.startswith("*") and not line.startswith("**"):
-                    raise ValueError(f"{other.name}, line {number}: {line[:40]!r}; INPUT= names a file of data lines")
+                    raise ValueError(
+                        f"{other.name}, line {number}: {line[:40]!r}; INPUT= names a file of data lines"
+                    )
                 if line and not line.startswith("*"):
                     block.lines.append(line)
                     block.places.append(number)
@@ -134,8 +136,8 @@ def _other(block: Block, chain: tuple[Path, ...], budget: _Budget) -> Path:
     budget.seen.add(other)
     if budget.includes < 0 or budget.again < 0:
         raise block.fault(
-            f"more than {INCLUDES} files are included, or {AGAIN >> 20} MB a second time; do the files include "
-            "each other?"
+            f"more than {INCLUDES} files are included, or {AGAIN >> 20} MB a second time; do the files "
+            "include each other?"
         )
     return other
 
@@ -161,7 +163,9 @@ def fields(line: str) -> list[str]:
 def whole(text: str) -> int:
     """A number of a node or element. Raises ValueError for what is none."""
     if not (text.isascii() and text.isdigit() and len(text) < 20 and int(text) <= LARGEST_NUMBER):
-        raise ValueError(f"{text[:40]!r} is not the number of a node or element; it must be in 0...{LARGEST_NUMBER}")
+        raise ValueError(
+            f"{text[:40]!r} is not the number of a node or element; it must be in 0...{LARGEST_NUMBER}"
+        )
     return int(text)
 
 

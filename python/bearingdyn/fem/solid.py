@@ -64,10 +64,10 @@ def assemble_solid(
         Take from div u only what the element can keep as ν → ½: in 27-node bricks its part linear in each
         element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987, ch. 4), in 20-node
         bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra and 13-node pyramids
-        its mean (P2/P0: free of locking, but too soft, and of first order), in 15-node wedges its part linear
-        along the axis, likewise too soft. A bonded ring of ν = 0.499 with 4×8×24 elements is within 0.2 % with
-        27-node bricks and 3 % with 20-node ones; a bonded strip with two tetrahedra through its thickness is
-        7 % too soft, with six 3 %; with two wedges 22 % or less, as they lie, and with four 10 %.
+        its mean (P2/P0: free of locking, but too soft, and of first order), in 15-node wedges its part
+        linear along the axis, too soft as well. A bonded ring of ν = 0.499 with 4×8×24 elements is within 0.2 %
+        with 27-node bricks and 3 % with 20-node ones; a bonded strip with two tetrahedra through its thickness
+        is 7 % too soft, with six 3 %; with two wedges 22 % or less, as they lie, and with four 10 %.
     """
     chosen = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
     n = len(mesh.points)
@@ -147,9 +147,9 @@ def _gradients(kind: SolidElement, p: Array, X: Array, w: Array) -> tuple[Array,
 def _pressures(kind: SolidElement, p: Array, X: Array, N: Array) -> Array:
     """Functions that keep the pressure of nearly incompressible elements, (m, q, modes).
 
-    1 in tetrahedra and pyramids, 1 and z in wedges, 1, x, y, z in bricks, in the place itself, not on the unit
-    element: there a skewed one would lose an order (Arnold, Boffi & Falk, SIAM J. Numer. Anal. 42 (2005) 2429).
-    Scaled by the edges. In a wedge x and y would keep all of div u in its triangles, and lock.
+    1 in tetrahedra and pyramids, 1 and z in wedges, 1, x, y, z in bricks, in the place itself, not on the
+    unit element: there a skewed one would lose an order (Arnold, Boffi & Falk, SIAM J. Numer. Anal. 42 (2005)
+    2429). Scaled by the edges. In a wedge x and y would keep all of div u in its triangles, and lock.
     """
     one = np.ones((len(p), len(X), 1))
     if kind not in (HEX27, WEDGE15):

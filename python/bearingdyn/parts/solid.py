@@ -27,7 +27,15 @@ from bearingdyn.cms import (
     check_rounds,
     project,
 )
-from bearingdyn.fem import SolidMesh, SurfaceSamples, assemble_solid, by_size, face_shapes, factorise, rigid_motion
+from bearingdyn.fem import (
+    SolidMesh,
+    SurfaceSamples,
+    assemble_solid,
+    by_size,
+    face_shapes,
+    factorise,
+    rigid_motion,
+)
 from bearingdyn.magnitude import LARGEST_SOLID, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
@@ -318,7 +326,9 @@ class Solid:
         parts, faces, count = [scipy.sparse.eye(len(p), format="csr")[used]], [], used.size
         for rows, n in by_size(boundary):
             f, corners = rows.size, 3 if n == 6 else 4
-            around = np.arange(2 * corners).reshape(2, -1).T.ravel()  # corner, middle of the side, corner, ...
+            around = (
+                np.arange(2 * corners).reshape(2, -1).T.ravel()
+            )  # corner, middle of the side, corner, ...
             ring = index[rows][:, around]
             middle = np.broadcast_to(count + np.arange(f)[:, None], ring.shape)
             N = face_shapes(n, np.full((1, 2), 0.5 if corners == 4 else 1.0 / 3.0))[0]

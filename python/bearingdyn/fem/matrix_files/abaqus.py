@@ -105,6 +105,8 @@ def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
                 except ValueError as error:
                     raise block.fault(error, k) from error
     except ValueError as error:
+        if str(error).startswith(f"{p.name}, line"):
+            raise
         raise ValueError(f"{p}: {error}") from error
     if not nodes:
         raise ValueError(f"{p} has no *NODE block; give the input file that holds the nodes")

@@ -18,7 +18,9 @@ from bearingdyn.types import Array, Index
 SOLID = re.compile(r"C3D(\d+)(V?)")
 KINDS = {20: HEX20, 8: HEX20, 27: HEX20, 10: TET10, 4: TET10, 15: WEDGE15, 6: WEDGE15, 5: PYRAMID13}
 # solids of other formulations: a body without them would lack a piece
-OTHER_SOLIDS = re.compile(r"(C3D|SC[68]|CSS8|COH3D|D?C?DC3D|AC3D|CIN3D|GK3D|Q3D|EMC3D|EC3D|FC3D|PC3D|CCL|UC3D|U\d|F3D)")
+OTHER_SOLIDS = re.compile(
+    r"(C3D|SC[68]|CSS8|COH3D|D?C?DC3D|AC3D|CIN3D|GK3D|Q3D|EMC3D|EC3D|FC3D|PC3D|CCL|UC3D|U\d|F3D)"
+)
 
 # Abaqus' and CalculiX' faces S1, S2, ... in the order of SolidElement.faces
 SIDES = {
@@ -29,16 +31,31 @@ SIDES = {
 }
 # Keywords that make, move or repeat geometry and are not followed
 REFUSED = {
-    **dict.fromkeys(("NGEN", "NFILL", "NCOPY", "NMAP", "MESH REFINEMENT", "REFINE MESH"), "it makes or moves nodes"),
+    **dict.fromkeys(
+        ("NGEN", "NFILL", "NCOPY", "NMAP", "MESH REFINEMENT", "REFINE MESH"), "it makes or moves nodes"
+    ),
     **dict.fromkeys(("ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION"), "it makes elements"),
     **dict.fromkeys(("CYCLIC SYMMETRY MODEL",), "a sector stands for the whole ring"),
-    **dict.fromkeys(("IMPORT", "IMPORT NSET", "IMPORT ELSET", "PARAMETER"), "what it brings is not in the file"),
+    **dict.fromkeys(("IMPORT", "IMPORT NSET", "IMPORT ELSET"), "what it brings is not in the file"),
+    "PARAMETER": "numbers of the file may depend on it",
     "IMPERFECTION": "it moves nodes",
 }
-# Members of sets, for each node or element of the file and beyond that in all: sets of sets multiply
-MEMBERS = (50, 10_000_000)
+# How many members all sets may have, and how many nodes and elements all instances: so many times what the
+# file defines, and so many beyond. Sets of sets and instances multiply; a mesh of a body needs a tenth.
+MULTIPLE, BEYOND = 20, 300_000
 
-Member = range | str | tuple[str, str]  # numbers, a set, or a set or number of an instance
+
+@dataclass
+class _Set:
+    """Numbers of nodes or elements, alone and from first to last; and other sets (instance or None, name)."""
+
+    numbers: list[int] = field(default_factory=list)
+    ranges: dict[range, None] = field(default_factory=dict)
+    others: dict[tuple[str | None, str], None] = field(default_factory=dict)
+    block: Block | None = None  # one that defined it, for messages
+
+    def copy(self) -> _Set:
+        return _Set(list(self.numbers), dict(self.ranges), dict(self.others), self.block)
 
 
 @dataclass
@@ -48,23 +65,25 @@ class _Scope:
     nodes: dict[int, tuple[float, float, float]] = field(default_factory=dict)
     elements: dict[int, list[int]] = field(default_factory=dict)  # solid ones
     skins: dict[int, list[int]] = field(default_factory=dict)  # shells and plane elements
-    elsets: dict[str, dict[Member, Block]] = field(default_factory=dict)
-    nsets: dict[str, dict[Member, Block]] = field(default_factory=dict)
-    surfaces: dict[str, list[tuple[str, str, Block]]] = field(default_factory=dict)
+    elsets: dict[str, _Set] = field(default_factory=dict)
+    nsets: dict[str, _Set] = field(default_factory=dict)
+    surfaces: dict[str, dict[tuple[str, str], Block]] = field(default_factory=dict)
     of_nodes: set[str] = field(default_factory=set)
     sections: list[str] = field(default_factory=list)
     place: tuple[Array, Array] | None = None  # of an instance: matrix and shift
 
+    @property
+    def size(self) -> int:
+        """Nodes and elements."""
+        return len(self.nodes) + len(self.elements) + len(self.skins)
+
     def copy(self) -> _Scope:
-        """One that can be added to."""
+        """One whose sets can be added to; nodes and elements stay shared."""
         return replace(
             self,
-            nodes=dict(self.nodes),
-            elements=dict(self.elements),
-            skins=dict(self.skins),
-            elsets={name: dict(of) for name, of in self.elsets.items()},
-            nsets={name: dict(of) for name, of in self.nsets.items()},
-            surfaces={name: list(of) for name, of in self.surfaces.items()},
+            elsets={name: of.copy() for name, of in self.elsets.items()},
+            nsets={name: of.copy() for name, of in self.nsets.items()},
+            surfaces={name: dict(of) for name, of in self.surfaces.items()},
             of_nodes=set(self.of_nodes),
             sections=list(self.sections),
         )
@@ -73,11 +92,11 @@ class _Scope:
 def read_inp(path: Path) -> RawMesh:
     """The mesh of an input file, flat or an assembly of parts.
 
-    Followed: *NODE (SYSTEM= too), *SYSTEM, *ELEMENT, *NSET, *ELSET, *SURFACE, *SOLID SECTION, *INCLUDE, and *PART,
-    *ASSEMBLY and *INSTANCE with their shift and turn. *TRANSFORM and *ORIENTATION turn directions only, and
-    change no mesh. With one instance names stay as they are, with more those of parts become "instance.name".
-    Regions are the element sets of *SOLID SECTION, or the sets that divide the body. Surfaces are node sets,
-    *SURFACE definitions by faces or nodes, and sets of shell or plane elements.
+    Followed: *NODE (SYSTEM= too), *SYSTEM, *ELEMENT, *NSET, *ELSET, *SURFACE, *SOLID SECTION, *INCLUDE, and
+    *PART, *ASSEMBLY and *INSTANCE with their shift and turn. *TRANSFORM and *ORIENTATION turn directions
+    only, and change no mesh. With one instance names stay as they are, with more those of parts become
+    "instance.name". Regions are the element sets of *SOLID SECTION, or the sets that divide the body. Surfaces
+    are node sets, *SURFACE by faces or nodes, and sets of shell or plane elements.
 
     Raises
     ------
@@ -96,6 +115,12 @@ class _Model:
         self.spelling: dict[str, str] = {}
         self.open = self.root  # what definitions go to
         self.system: System | None = None
+        self.repeated = 0  # nodes and elements of all instances
+
+    def limit(self) -> int:
+        """How many nodes and elements instances and sets may have in all."""
+        defined = sum(scope.size for scope in (self.root, *self.parts.values()))
+        return MULTIPLE * defined + BEYOND
 
     def read(self, path: Path) -> RawMesh:
         for block in blocks(path):
@@ -106,7 +131,9 @@ class _Model:
                 raise (error if text.startswith(block.file) else block.fault(text)) from error
         if self.parts and not self.instances:
             if len(self.parts) > 1 or self.root.nodes:
-                raise ValueError(f"it has the parts {sorted(self.parts)} and no *INSTANCE of them; write the assembly")
+                raise ValueError(
+                    f"it has the parts {sorted(self.parts)} and no *INSTANCE of them; write the assembly"
+                )
             self.instances = dict(self.parts)
         return _Assembled(self).mesh()
 
@@ -116,9 +143,11 @@ class _Model:
         return name.upper()
 
     def take(self, block: Block) -> None:
-        keyword, options = block.keyword, block.options
+        keyword = block.keyword
         if keyword in REFUSED:
-            raise block.fault(f"{REFUSED[keyword]}, which is not followed; write the mesh out with all its nodes")
+            raise block.fault(
+                f"{REFUSED[keyword]}, which is not followed; write the mesh out with all its nodes"
+            )
         if keyword == "PART":
             self.open = self.parts.setdefault(self.key(block.named("NAME")), _Scope())
             self.system = None
@@ -129,10 +158,12 @@ class _Model:
             self.open, self.system = self.root, None
         elif keyword == "SYSTEM":
             self.system = system(block)
-        elif keyword == "NODE":
-            self._nodes(block)
-        elif keyword == "ELEMENT":
-            self._elements(block)
+        elif keyword in ("NODE", "ELEMENT"):
+            if self.open.place is not None:
+                raise block.fault(
+                    "an instance adds to the mesh of its part, which is not read; add it to the part"
+                )
+            (self._nodes if keyword == "NODE" else self._elements)(block)
         elif keyword in ("NSET", "ELSET"):
             self._set(block, self.open.nsets if keyword == "NSET" else self.open.elsets)
         elif keyword == "SURFACE":
@@ -145,10 +176,18 @@ class _Model:
         if name in self.instances:
             raise block.fault(f"the instance {name} is given twice")
         if "PART" not in block.options:
-            raise block.fault("it imports an earlier analysis, whose mesh is not in the file; write the mesh out")
+            raise block.fault(
+                "it imports an earlier analysis, whose mesh is not in the file; write the mesh out"
+            )
         part = self.parts.get(self.key(block.options["PART"]))
         if part is None:
             raise block.fault(f"its part {block.options['PART']} is not defined before it")
+        self.repeated += part.size
+        if self.repeated > self.limit():
+            raise block.fault(
+                f"{len(self.instances) + 1} instances have {self.repeated} nodes and elements, more than {MULTIPLE} "
+                "times those of the parts; write a file with fewer"
+            )
         self.instances[name] = replace(part.copy(), place=moved(block))
         return self.instances[name]
 
@@ -166,10 +205,10 @@ class _Model:
         points = from_polar(points, block)
         if self.system is not None:
             points = points @ self.system.axes + self.system.origin
-        self.open.nodes.update(zip(own, map(tuple, points.tolist()), strict=True))
+        self.open.nodes.update(zip(own, ((x, y, z) for x, y, z in points.tolist()), strict=True))
         if "NSET" in block.options:
-            members = self.open.nsets.setdefault(self.key(block.named("NSET")), {})
-            members.update((range(n, n + 1), block) for n in own)
+            held = self.open.nsets.setdefault(self.key(block.named("NSET")), _Set(block=block))
+            held.numbers.extend(own)
 
     def _elements(self, block: Block) -> None:
         kind = block.named("TYPE").upper()
@@ -185,14 +224,16 @@ class _Model:
                 raise block.fault(f"element {number} is given twice; number the elements of a part once", k)
             target[number] = nodes
         if "ELSET" in block.options:
-            members = self.open.elsets.setdefault(self.key(block.named("ELSET")), {})
-            members.update((range(row[0], row[0] + 1), block) for _, row in rows)
+            held = self.open.elsets.setdefault(self.key(block.named("ELSET")), _Set(block=block))
+            held.numbers.extend(row[0] for _, row in rows)
 
-    def _set(self, block: Block, sets: dict[str, dict[Member, Block]]) -> None:
-        members = sets.setdefault(self.key(block.named(block.keyword)), {})
-        instance = self.key(block.options["INSTANCE"]) if "INSTANCE" in block.options else ""
-        if instance and instance not in self.instances:
+    def _set(self, block: Block, sets: dict[str, _Set]) -> None:
+        name = self.key(block.named(block.keyword))
+        held = sets.setdefault(name, _Set(block=block))
+        instance = self.key(block.options["INSTANCE"]) if "INSTANCE" in block.options else None
+        if instance is not None and instance not in self.instances:
             raise block.fault(f"the instance {instance} is not defined before it")
+        own = held if instance is None else self._within(held, name, instance, block)
         for k, line in enumerate(block.lines):
             entries = fields(line)
             try:
@@ -202,48 +243,36 @@ class _Model:
                     first, last, step = (*map(whole, entries), 1)[:3]
                     if not step > 0:
                         raise ValueError(f"its step is {step}; it must be 1 or more")
-                    entries = []
-                    self._add(members, range(first, last + 1, step), instance, block)
+                    own.ranges[range(first, last + 1, step)] = None
+                    continue
                 for one in entries:
                     if one.isdigit():
-                        self._add(members, range(whole(one), whole(one) + 1), instance, block)
+                        own.numbers.append(whole(one))
                     else:
-                        self._refer(members, one, instance, sets, block)
+                        self._refer(held, name, one, instance, block)
             except ValueError as error:
                 raise block.fault(error, k) from error
 
-    def _add(self, members: dict[Member, Block], numbers: range, instance: str, block: Block) -> None:
-        if not instance:
-            members[numbers] = block
-            return
+    def _within(self, held: _Set, name: str, instance: str, block: Block) -> _Set:
+        """What of a set of the assembly lies in an instance: a set of the instance without a name."""
         scope = self.instances[instance]
-        name = f" {len(scope.nsets) + len(scope.elsets)}"  # a set without a name in the instance
         sets = scope.nsets if block.keyword == "NSET" else scope.elsets
-        sets[name] = {numbers: block}
-        members[instance, name] = block
+        held.others[instance, f" {name}"] = None
+        return sets.setdefault(f" {name}", _Set(block=block))
 
-    def _refer(
-        self,
-        members: dict[Member, Block],
-        name: str,
-        instance: str,
-        sets: dict[str, dict[Member, Block]],
-        block: Block,
-    ) -> None:
+    def _refer(self, held: _Set, name: str, entry: str, instance: str | None, block: Block) -> None:
         """Another set, or a node or element of an instance: name, instance.name or instance.number."""
-        other = self.key(name)
+        other = self.key(entry)
         owner, dot, rest = other.partition(".")
-        if not instance and dot and owner in self.instances:
+        if instance is None and dot and owner in self.instances:
             instance, other = owner, rest.strip('"')
-        if instance and other.isdigit():
-            self._add(members, range(whole(other), whole(other) + 1), instance, block)
+        if instance is not None and other.isdigit():
+            self._within(held, name, instance, block).numbers.append(whole(other))
             return
-        if instance:
-            scope = self.instances[instance]
-            sets = scope.nsets if block.keyword == "NSET" else scope.elsets
-        if other not in sets:
-            raise ValueError(f"it names the set {name[:60]}, which is not defined before it")
-        members[(instance, other) if instance else other] = block
+        scope = self.open if instance is None else self.instances[instance]
+        if other not in (scope.nsets if block.keyword == "NSET" else scope.elsets):
+            raise ValueError(f"it names the set {entry[:60]}, which is not defined before it")
+        held.others[instance, other] = None
 
     def _surface(self, block: Block) -> None:
         kind = block.options.get("TYPE", "ELEMENT").upper()
@@ -252,15 +281,17 @@ class _Model:
         if "COMBINE" in block.options or "CROP" in block.options:
             raise block.fault("a surface made of surfaces is not read; list its faces")
         name = self.key(block.named("NAME"))
-        held = self.open.surfaces.setdefault(name, [])
+        held = self.open.surfaces.setdefault(name, {})
         if kind == "NODE":
             self.open.of_nodes.add(name)
         for k, line in enumerate(block.lines):
             pair = fields(line)
             if not pair or line.startswith(","):
-                raise block.fault("it names no set; list the faces, or the sets of elements and their sides", k)
+                raise block.fault(
+                    "it names no set; list the faces, or the sets of elements and their sides", k
+                )
             one = replace(block, place=block.places[k], lines=[], places=[])
-            held.append((pair[0], pair[1] if len(pair) > 1 else "", one))
+            held[pair[0], pair[1] if len(pair) > 1 else ""] = one
 
 
 def _rows(block: Block, width: int | None) -> Iterator[tuple[int, list[int]]]:
@@ -299,15 +330,14 @@ class _Assembled:
         self.spelling = model.spelling
         self.scopes = {"": model.root, **model.instances}
         self.single = len(model.instances) <= 1
+        self.left = model.limit()
+        orders = {id(s.nodes): {n: k for k, n in enumerate(s.nodes)} for s in self.scopes.values()}
         # first row of each scope's nodes in all nodes, and the row of each number in its scope
-        self.order = {s: {n: k for k, n in enumerate(scope.nodes)} for s, scope in self.scopes.items()}
+        self.order = {name: orders[id(scope.nodes)] for name, scope in self.scopes.items()}
         sizes = np.cumsum([0, *(len(at) for at in self.order.values())]).tolist()
         self.first = dict(zip(self.scopes, sizes, strict=False))
-        self.sorted: dict[tuple[str, str], Index] = {}
+        self.sorted: dict[tuple[str, str], tuple[Index, Index]] = {}
         self.position: dict[tuple[str, int], int] = {}
-        self.memo: dict[tuple[str, str, str], Index] = {}
-        things = sum(len(s.nodes) + len(s.elements) + len(s.skins) for s in self.scopes.values())
-        self.left = MEMBERS[0] * things + MEMBERS[1]
 
     def mesh(self) -> RawMesh:
         points = []
@@ -359,7 +389,7 @@ class _Assembled:
                         raise ValueError(f"element {number} names node {n}, which the file does not have")
                     rows.append(first + order[n])
                 by_size.setdefault(len(nodes), []).append((s, number, rows))
-        numbers = []
+        numbers: list[int] = []
         for of_size in by_size.values():
             for s, number, _ in of_size:
                 self.position[s, number] = len(numbers)
@@ -367,58 +397,63 @@ class _Assembled:
         cells = [np.array([rows for *_, rows in of_size], dtype=np.intp) for of_size in by_size.values()]
         return cells, np.array(numbers, dtype=np.intp)
 
-    def numbers_of(self, s: str, name: str, what: str, busy: frozenset[str] = frozenset()) -> list[tuple[str, Index]]:
-        """Numbers of a set by scope, once each; sets that hold themselves add nothing to themselves."""
-        scope = self.scopes[s]
-        sets = scope.nsets if what == "n" else scope.elsets
+    def rows_of(self, s: str, name: str, what: str) -> list[tuple[str, Index]]:
+        """What a set holds, by scope, as rows of `_known`, once each; what is n for nodes, e for elements."""
         found: dict[str, list[Index]] = {}
-        # a stack, for sets may hold sets to any depth
-        seen, stack = {(s, name)}, [(s, name)]
+        seen, stack = {(s, name)}, [(s, name)]  # sets may hold sets to any depth, and each other
         while stack:
             t, one = stack.pop()
-            of = self.scopes[t].nsets if what == "n" else self.scopes[t].elsets
-            known = self._known(t, what)
-            self.left -= len(of[one])
-            for member, block in of[one].items():
-                if isinstance(member, range):
-                    low, high = np.searchsorted(known, [member.start, member.stop])
-                    some = known[low:high]
-                    if len(member) > 1:
-                        some = some[(some - member.start) % member.step == 0]
-                    found.setdefault(t, []).append(some)
-                    self.left -= some.size
-                else:
-                    other = member if isinstance(member, tuple) else (t, member)
-                    if other not in seen:
-                        seen.add(other)
-                        stack.append(other)
-                if self.left < 0:
-                    raise block.fault(
-                        f"the sets hold more than {MEMBERS[0]} times the nodes and elements of the file; name each "
-                        "set once"
-                    )
-        return [(t, np.unique(np.concatenate(parts))) for t, parts in found.items() if parts]
+            held = (self.scopes[t].nsets if what == "n" else self.scopes[t].elsets)[one]
+            known = self._known(t, what)[0]
+            inside = np.isin(known, held.numbers) if held.numbers else np.zeros(known.size, dtype=bool)
+            self.left -= len(held.numbers) + len(held.others)
+            for numbers in held.ranges:
+                low, high = np.searchsorted(known, [numbers.start, numbers.stop])
+                inside[low:high] |= (known[low:high] - numbers.start) % numbers.step == 0
+                self.left -= int(high - low)
+                self._check_left(held)
+            found.setdefault(t, []).append(np.flatnonzero(inside))
+            for instance, other in held.others:
+                at = (t if instance is None else instance, other)
+                if at not in seen:
+                    seen.add(at)
+                    stack.append(at)
+            self._check_left(held)
+        return [(t, np.unique(np.concatenate(parts))) for t, parts in found.items()]
 
-    def _known(self, s: str, what: str) -> Index:
+    def _check_left(self, held: _Set) -> None:
+        if self.left < 0 and held.block is not None:
+            raise held.block.fault(
+                f"the sets have more than {MULTIPLE} members for each node and element; name each set once"
+            )
+
+    def _known(self, s: str, what: str) -> tuple[Index, Index]:
+        """Numbers of the nodes or elements of a scope in rising order, and the place of each in the scope."""
         if (s, what) not in self.sorted:
             scope = self.scopes[s]
-            numbers = list(scope.nodes) if what == "n" else [*scope.elements, *scope.skins]
-            self.sorted[s, what] = np.sort(np.array(numbers, dtype=np.int64))
+            numbers = np.array(
+                list(scope.nodes) if what == "n" else [*scope.elements, *scope.skins], dtype=np.int64
+            )
+            order = np.argsort(numbers)
+            self.sorted[s, what] = numbers[order], order
         return self.sorted[s, what]
 
     def nodes_of(self, s: str, name: str) -> Index:
         """Nodes of a node set, in all nodes."""
-        rows = [
-            self.first[t] + self.order[t][n] for t, at in self.numbers_of(s, name, "n") for n in at.tolist()
-        ]
-        return np.unique(np.array(rows, dtype=np.intp))
+        parts = [self.first[t] + self._known(t, "n")[1][rows] for t, rows in self.rows_of(s, name, "n")]
+        return np.unique(np.concatenate([*parts, np.zeros(0, dtype=np.intp)])).astype(np.intp)
+
+    def numbers_of(self, s: str, name: str) -> list[tuple[str, list[int]]]:
+        """Numbers of the elements of an element set, by scope."""
+        return [(t, self._known(t, "e")[0][rows].tolist()) for t, rows in self.rows_of(s, name, "e")]
 
     def elements_of(self, s: str, name: str) -> tuple[Index, Index]:
         """Solid elements of an element set, and nodes of its shells and plane elements."""
-        inside, skin = [], set()
-        for t, at in self.numbers_of(s, name, "e"):
+        inside: list[int] = []
+        skin: set[int] = set()
+        for t, numbers in self.numbers_of(s, name):
             scope, order, first = self.scopes[t], self.order[t], self.first[t]
-            for n in at.tolist():
+            for n in numbers:
                 if n in scope.elements:
                     inside.append(self.position[t, n])
                 else:
@@ -427,43 +462,50 @@ class _Assembled:
 
     def _surface(self, s: str, name: str) -> Index:
         scope, found = self.scopes[s], set()
+        parts = [np.zeros(0, dtype=np.intp)]
         by_nodes = name in scope.of_nodes
-        for target, side, block in scope.surfaces[name]:
-            for t, n in self._targets(s, target, "n" if by_nodes else "e", block):
-                order, first, of = self.order[t], self.first[t], self.scopes[t]
-                if by_nodes:
-                    found.add(first + order[n])
-                elif n in of.skins:
-                    found.update(first + order[k] for k in of.skins[n] if k in order)
-                else:
-                    found.update(first + order[k] for k in _side(of.elements[n], side, block))
-        return np.array(sorted(found), dtype=np.intp)
+        for (target, side), block in scope.surfaces[name].items():
+            t, one = self._target(s, target)
+            of, order, first = self.scopes[t], self.order[t], self.first[t]
+            shown = block.options["NAME"]
+            if one.isdigit():
+                n = whole(one)
+                if n not in (of.nodes if by_nodes else of.elements.keys() | of.skins.keys()):
+                    kind = "node" if by_nodes else "element"
+                    raise block.fault(f"{shown} names {kind} {n}, which is not there")
+                numbers = [(t, [n])]
+            elif one not in (of.nsets if by_nodes else of.elsets):
+                kind = "node" if by_nodes else "element"
+                raise block.fault(f"{shown} names the {kind} set {target[:60]}, not defined")
+            elif by_nodes:
+                parts.append(self.nodes_of(t, one))
+                continue
+            else:
+                numbers = self.numbers_of(t, one)
+            if by_nodes:
+                found.add(first + order[n])
+                continue
+            for t, own in numbers:
+                of, order, first = self.scopes[t], self.order[t], self.first[t]
+                for n in own:
+                    held = of.skins[n] if n in of.skins else _side(of.elements[n], side, block)
+                    found.update(first + order[k] for k in held if k in order)
+        return np.unique(np.concatenate([*parts, np.array(sorted(found), dtype=np.intp)]))
 
-    def _targets(self, s: str, target: str, what: str, block: Block) -> Iterator[tuple[str, int]]:
-        """Scope and number of what a line of *SURFACE names: a number or a set, of an instance or not."""
+    def _target(self, s: str, target: str) -> tuple[str, str]:
+        """Scope and name of what a line of *SURFACE names: a number or a set, of an instance or not."""
         name = target.strip('"').upper()
         owner, dot, rest = name.partition(".")
-        if not s and dot and owner in self.scopes:
-            s, name = owner, rest.strip('"')
-        kind, scope = ("node", self.scopes[s]) if what == "n" else ("element", self.scopes[s])
-        if name.isdigit():
-            n = whole(name)
-            there = n in scope.nodes if what == "n" else n in scope.elements or n in scope.skins
-            if not there:
-                raise block.fault(f"it names {kind} {n}, which is not there")
-            yield s, n
-            return
-        if name not in (scope.nsets if what == "n" else scope.elsets):
-            raise block.fault(f"it names the {kind} set {target[:60]}, not defined")
-        for t, at in self.numbers_of(s, name, what):
-            yield from ((t, n) for n in at.tolist())
+        return (owner, rest.strip('"')) if not s and dot and owner in self.scopes else (s, name)
 
 
 def _side(nodes: list[int], side: str, block: Block) -> list[int]:
     kind = KINDS[len(nodes)]
     sides = SIDES[kind]
     if not re.fullmatch(rf"S[1-{len(sides)}]", side.upper()):
-        raise block.fault(f"it has the face {side[:20]!r}; it must be S1 to S{len(sides)}")
+        raise block.fault(
+            f"{block.options['NAME']} has the face {side[:20]!r}; it must be S1 to S{len(sides)}"
+        )
     face = kind.face_nodes[sides[int(side[1:]) - 1]]
     held = [nodes[k] for k in dict.fromkeys(face.tolist()) if k < len(nodes)]
     if len(nodes) == 27:

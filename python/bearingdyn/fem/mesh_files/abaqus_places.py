@@ -82,9 +82,9 @@ def from_polar(points: Array, block: Block) -> Array:
 
 
 def moved(block: Block) -> tuple[Array, Array]:
-    """Matrix (3, 3) and shift (3,) of *INSTANCE: the shift first, then a turn about the axis from a to b, degrees.
+    """Matrix (3, 3) and shift (3,) of *INSTANCE, x' = matrix x + shift.
 
-    x' = matrix x + shift.
+    The part is shifted first, then turned about the axis from a to b by an angle in degrees.
     """
     data = _lines(block, (3, 7))
     shift = np.pad(data[0], (0, 3 - data[0].size)) if data else np.zeros(3)

@@ -39,6 +39,7 @@ BRICK_FACES = ((0, 1, 2, 3), (0, 1, 4, 5), (0, 3, 4, 7), (1, 2, 5, 6), (2, 3, 6,
 TET_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (3, 2), (3, 1))
 WEDGE_EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5))
 PYRAMID_EDGES = ((0, 1), (0, 3), (0, 4), (1, 2), (1, 4), (2, 3), (2, 4), (3, 4))
+ENTITIES = 100_000  # of a drawing, of one dimension; a large assembly has some thousands
 PARTITION = "_part{"  # gmsh's own groups of partitions begin so
 
 
@@ -89,7 +90,9 @@ class _Source:
 
     def read(self, size: int) -> bytes:
         if size > self.size - self.file.tell():
-            raise self.fault(f"{size} bytes should follow, and the file ends before; it is cut off or damaged")
+            raise self.fault(
+                f"{size} bytes should follow, and the file ends before; it is cut off or damaged"
+            )
         return self.file.read(size)
 
     def take(self, spec: str) -> list[int]:
@@ -116,7 +119,12 @@ class _Source:
     def count(self, what: str, n: int, least: int) -> int:
         """A count from the file, if so many things of so many bytes can follow."""
         if not 0 <= n * least <= self.size - self.file.tell():
-            raise self.fault(f"{n} {what} should follow, more than the file can hold; it is cut off or damaged")
+            raise self.fault(
+                f"{n} {what} should follow, more than the file can hold; it is cut off or damaged"
+            )
+        if "of" in what.split() or what == "entities":
+            if n > ENTITIES:
+                raise self.fault(f"{n} {what} should follow; up to {ENTITIES} are read")
         return n
 
     def table(self, n: int, ints: str, doubles: int, exact: bool = True) -> tuple[Index, Array]:
@@ -135,7 +143,9 @@ class _Source:
                     self.line += at + 1 - len(rows)
                     raise self.fault(f"{len(row_of)} numbers stand where {width} should")
             parts.append(self.numbers([row_of[:width] for row_of in rows], k))
-        whole_part, real = zip(*parts, strict=True) if parts else ((np.zeros((0, k)),), (np.zeros((0, doubles)),))
+        whole_part, real = (
+            zip(*parts, strict=True) if parts else ((np.zeros((0, k)),), (np.zeros((0, doubles)),))
+        )
         return np.vstack(whole_part).astype(np.int64), np.vstack(real)
 
     def rows(self, n: int) -> Iterator[list[list[bytes]]]:
@@ -149,7 +159,7 @@ class _Source:
             n -= len(lines)
 
     def numbers(self, rows: list[list[bytes]], k: int) -> tuple[Index, Array]:
-        """Rows of words, equally many in each, the last that was read the last: k whole numbers, then doubles."""
+        """Rows of words, equally many in each, up to the line just read: k whole numbers, then doubles."""
         try:
             words = np.array(rows)
             return words[:, :k].astype(np.int64), words[:, k:].astype(np.float64)
@@ -241,8 +251,9 @@ def read_msh(path: Path, region_data: str | None = None) -> RawMesh:
     by_entity = region_data == "gmsh:geometrical"
     if not by_entity and found.names and not any(block.groups for block in found.blocks) and found.blocks:
         raise ValueError(
-            f"it names the groups {sorted(set(found.names.values()))} and no element is in one, as format 2.2 with "
-            "Mesh.SaveAll = 1 has it; save it without SaveAll or as 4.1, or pass region_data=\"gmsh:geometrical\""
+            f"it names the groups {sorted(set(found.names.values()))} and no element is in one, as format "
+            "2.2 with Mesh.SaveAll = 1 has it; save it without SaveAll or as 4.1, or pass "
+            'region_data="gmsh:geometrical"'
         )
     return _mesh(found, by_entity)
 
@@ -257,7 +268,9 @@ def _format(source: _Source) -> float:
     words = source.text().split()
     version, kind, word = (words + [b""] * 3)[:3]
     if version not in (b"2", b"2.0", b"2.1", b"2.2", b"4", b"4.0", b"4.1") or kind not in (b"0", b"1"):
-        raise source.fault(f"format {_shown(b' '.join(words))}; 2.2, 4.0 and 4.1 are read: save it as one of them")
+        raise source.fault(
+            f"format {_shown(b' '.join(words))}; 2.2, 4.0 and 4.1 are read: save it as one of them"
+        )
     if word not in (b"4", b"8"):
         raise source.fault(f"{_shown(word)} bytes a number; files of 8 bytes are read")
     source.word = int(word)
@@ -282,7 +295,7 @@ def _names(source: _Source, found: _Contents) -> None:
             name = match[3].decode("utf-8", "replace")
             found.names[int(match[1]), int(match[2])] = name
     except ValueError:
-        raise source.fault(f"{_shown(line)} stands where a physical name (2 1 \"name\") should") from None
+        raise source.fault(f'{_shown(line)} stands where a physical name (2 1 "name") should') from None
 
 
 def _entities(source: _Source, found: _Contents, version: float, partitioned: bool) -> None:
@@ -390,8 +403,10 @@ def _elements2(source: _Source, found: _Contents) -> None:
                 sorted_rows[row[1], row[2]].append(row)
                 if len(row) != 3 + int(row[2]) + _type(source, int(row[1]))[1]:
                     source.line += at + 1 - len(rows)
-                    raise source.fault(f"an element of type {row[1].decode()} with {row[2].decode()} tags has "
-                                       f"{len(row)} numbers; it must have {3 + int(row[2]) + TYPES[int(row[1])][1]}")
+                    raise source.fault(
+                        f"an element of type {row[1].decode()} with {row[2].decode()} tags has "
+                        f"{len(row)} numbers; it must have {3 + int(row[2]) + TYPES[int(row[1])][1]}"
+                    )
             for (code_text, tags_text), own in sorted_rows.items():
                 data = source.numbers(own, len(own[0]))[0]
                 key = (int(code_text), int(tags_text))
@@ -414,7 +429,9 @@ def _elements4(source: _Source, found: _Contents, version: float) -> None:
             dimension, entity, code = source.take("iii")
         own, nodes = _type(source, code)
         if own != dimension:
-            raise source.fault(f"elements of type {code} in an entity of dimension {dimension}; it must be {own}")
+            raise source.fault(
+                f"elements of type {code} in an entity of dimension {dimension}; it must be {own}"
+            )
         z = "i" if version < 4.1 else "z"
         n = source.count("elements", source.take("z")[0], 4)
         data = source.table(n, z * (1 + nodes), 0)[0]
@@ -473,8 +490,12 @@ def _mesh(found: _Contents, by_entity: bool) -> RawMesh:
         points=points,
         cells=tuple(cells),
         numbers=np.concatenate([*numbers, np.zeros(0, dtype=np.int64)]).astype(np.intp),
-        regions={name: np.unique(np.concatenate(at)) for name, at in regions.items() if not _of_partition(name)},
-        surfaces={name: np.unique(np.concatenate(at)) for name, at in surfaces.items() if not _of_partition(name)},
+        regions={
+            name: np.unique(np.concatenate(at)) for name, at in regions.items() if not _of_partition(name)
+        },
+        surfaces={
+            name: np.unique(np.concatenate(at)) for name, at in surfaces.items() if not _of_partition(name)
+        },
     )
 
 

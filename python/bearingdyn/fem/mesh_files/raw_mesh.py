@@ -91,8 +91,8 @@ def finished(
         if not upgrade:
             raise ValueError(
                 f"the file has {elements.shape[1]}-node elements, which lock in bending; export "
-                f"{OF_CORNERS[elements.shape[1]].nodes}-node ones, or pass upgrade=True to give them middle nodes "
-                "(on straight edges)"
+                f"{OF_CORNERS[elements.shape[1]].nodes}-node ones, or pass upgrade=True to give them middle "
+                "nodes (on straight edges)"
             )
         return _upgraded(points, elements, named, surfaces, raw.numbers)
     return SolidMesh(points, elements, named, surfaces, raw.numbers)
@@ -101,8 +101,8 @@ def finished(
 def _side_by_side(cells: Sequence[Index]) -> tuple[Index, Index]:
     """Elements of several sizes in one array, rows of smaller ones ended with −1; and nodes left out.
 
-    Wedges of 18 and pyramids of 14 nodes lose the middles of their faces, and bricks of 27 beside other kinds:
-    the faces of the neighbours have none.
+    Wedges of 18 and pyramids of 14 nodes lose the middles of their faces, and bricks of 27 beside other
+    kinds, for the faces of the neighbours have none.
 
     Raises
     ------
@@ -113,14 +113,14 @@ def _side_by_side(cells: Sequence[Index]) -> tuple[Index, Index]:
     strange = [n for n in sizes if n not in KINDS and n not in OF_CORNERS and n not in LESS]
     if strange:
         raise ValueError(
-            f"the file has {strange[0]}-node elements; bricks of 20 or 27, wedges of 15 or 18, pyramids of 13 or "
-            "14 and tetrahedra of 10 are read"
+            f"the file has {strange[0]}-node elements; bricks of 20 or 27, wedges of 15 or 18, pyramids of "
+            "13 or 14 and tetrahedra of 10 are read"
         )
     linear = [n for n in sizes if n in OF_CORNERS]
     if linear and linear != sizes:
         raise ValueError(
-            f"the file mixes elements of {' and '.join(map(str, sizes))} nodes; mesh the body with elements of "
-            "one order"
+            f"the file mixes elements of {' and '.join(map(str, sizes))} nodes; mesh the body with elements "
+            "of one order"
         )
     fewer = {n: LESS[n] for n in sizes if n in LESS and (n != 27 or len(sizes) > 1)}
     kept = [c[:, : fewer.get(c.shape[1], c.shape[1])] for c in cells]

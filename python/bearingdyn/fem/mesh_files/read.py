@@ -79,4 +79,6 @@ def read_mesh(
             largest=largest,
         )
     except ValueError as error:
+        if str(error).startswith(f"{file.name}, line"):
+            raise
         raise ValueError(f"{file.name}: {error}") from error

@@ -45,8 +45,8 @@ def _converted(mesh: Any, region_data: str | None) -> RawMesh:
     others = {b.type for b in mesh.cells} - {*SOLID, *FACE, *IGNORED}
     if others:
         raise ValueError(
-            f"it has cells of type {sorted(others)}; bricks, wedges, pyramids and tetrahedra of first and second "
-            "order are read"
+            f"it has cells of type {sorted(others)}; bricks, wedges, pyramids and tetrahedra of first and "
+            "second order are read"
         )
     regions: dict[str, list[Index]] = {}
     surfaces: dict[str, list[Index]] = {}
@@ -77,7 +77,7 @@ def _converted(mesh: Any, region_data: str | None) -> RawMesh:
 
 
 def _upright(cells: Index, points: Array) -> Index:
-    """Wedges with their first triangle below: VTK's manual has them so, and some programs the mirror image."""
+    """Wedges with their first triangle below; some programs write the mirror image, as VTK's manual does."""
     if cells.shape[1] not in MIRRORED or points.shape[1] != 3:
         return cells
     a, b, c, top = (points[cells[:, k]] for k in (0, 1, 2, 3))

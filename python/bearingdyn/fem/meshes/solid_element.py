@@ -208,7 +208,9 @@ def points(kind: SolidElement, reduced: bool = False) -> tuple[Array, Array]:
     if kind is PYRAMID13:
         (X, w), (z, v) = gauss(3, 2), gauss(4, 1)
         X, height = np.repeat(X, 4, axis=0), np.tile(z, (len(X), 1))
-        return np.hstack([0.5 + (X - 0.5) * (1 - height), height]), np.outer(w, v * (1 - z[:, 0]) ** 2).ravel()
+        return np.hstack([0.5 + (X - 0.5) * (1 - height), height]), np.outer(
+            w, v * (1 - z[:, 0]) ** 2
+        ).ravel()
     return gauss(2 if reduced else 3, 3)
 
 

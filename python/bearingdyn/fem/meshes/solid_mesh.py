@@ -87,8 +87,8 @@ class SurfaceSamples:
 class SolidMesh:
     """Second-order solid elements that hang together.
 
-    They are 27-node bricks, or 20-node bricks, 15-node wedges, 13-node pyramids and 10-node tetrahedra, of one
-    kind or mixed.
+    They are 27-node bricks, or 20-node bricks, 15-node wedges, 13-node pyramids and 10-node tetrahedra, of
+    one kind or mixed.
 
     Parameters
     ----------
@@ -131,8 +131,8 @@ class SolidMesh:
             raise ValueError(f"points has shape {p.shape}; it must be (n, 3), finite")
         if e.ndim != 2 or e.shape[1] not in KINDS or not len(e):
             raise ValueError(
-                f"elements has shape {e.shape}; a row holds 20 or 27 nodes of a brick, 15 of a wedge, 13 of a "
-                "pyramid or 10 of a tetrahedron (second_order makes them of corners)"
+                f"elements has shape {e.shape}; a row holds 20 or 27 nodes of a brick, 15 of a wedge, 13 of "
+                "a pyramid or 10 of a tetrahedron (second_order makes them of corners)"
             )
         numbers = np.arange(len(e)) if self.numbers is None else np.asarray(self.numbers)
         object.__setattr__(self, "points", p)
@@ -149,7 +149,8 @@ class SolidMesh:
             raise ValueError(f"element {numbers[k]} names a node outside 0...{len(p) - 1}")
         if len(self.groups) > 1 and any(kind.centres for kind, _ in self.groups):
             raise ValueError(
-                "elements mix 27-node bricks with another kind, whose faces have no middle node; use 20-node bricks"
+                "elements mix 27-node bricks with another kind, whose faces have no middle node; "
+                "use 20-node bricks"
             )
         self._check_connection()
         self._check_shapes()
