@@ -37,9 +37,7 @@ def check_damping(damping: float, field: str = "damping") -> None:
 def check_held(held: str | None, interfaces: Iterable[str]) -> None:
     """Raise ValueError unless held is None or names an interface."""
     known = sorted(interfaces)
-    require(
-        held is None or held in known, "held", held, f"it must be an interface; the interfaces are {known}"
-    )
+    require(held is None or held in known, "held", held, f"the interfaces are {known}")
 
 
 def check_rounds(inertia: Any) -> None:

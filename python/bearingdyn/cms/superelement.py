@@ -104,12 +104,11 @@ class Raceway:
     Parameters
     ----------
     series
-        Which coefficients.
+        The coefficients.
     arm
         Radius, m, at which tilts become axial motion.
     rows
-        (len(series), n), the coefficients by the superelement's coordinates; a load of balls g acts as rowsᵀ
-        g.
+        (len(series), n) coefficients from the superelement's coordinates; a load of balls g acts as rowsᵀ g.
     """
 
     series: RacewaySeries
@@ -124,7 +123,15 @@ class Raceway:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A surface of a part: ∫ v_n² dA = q̇ᵀ W q̇ of the normal velocity. area: m²; W: (n, n) symmetric, m²."""
+    """A surface of a part that radiates sound: ∫ v_n² dA = q̇ᵀ W q̇ of its normal velocity v_n.
+
+    Parameters
+    ----------
+    area
+        m².
+    W
+        (n, n) symmetric, m².
+    """
 
     area: float
     W: Array

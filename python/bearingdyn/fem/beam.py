@@ -93,13 +93,23 @@ def bending_wavelength(section: Section, material: Elastic, frequency: float) ->
 def element_matrices(section: Section, length: float, material: Elastic) -> tuple[Array, Array, Array]:
     """Mass, gyroscopic and stiffness matrix, each (12, 12), of an element between two nodes.
 
+    The gyroscopic force is Ω G ẋ on the left-hand side; for a disc G[θx, θy] = +Ip. The matrices of bending
+    are consistent, with the interpolation that solves the static Timoshenko equations. Stretch and torsion
+    have the mean of the consistent and the lumped mass, whose frequency error falls with the fourth power of
+    the length.
+
     Parameters
     ----------
+    section
+        The section's own length does not enter.
     length
-        Of the element, m. The gyroscopic force is Ω G ẋ on the left-hand side, G[θx, θy] = +Ip for a disc.
-        Bending: consistent, with the interpolation that solves the static Timoshenko equations. Stretch and
-        torsion: the mean of the consistent and the lumped mass, whose frequency error falls with the fourth
-        power of the length (Goudreau & Taylor, Comput. Meth. Appl. Mech. Eng. 2 (1973) 69-97).
+        Length of the element, m.
+    material
+        Elastic material.
+
+    References
+    ----------
+    Goudreau & Taylor, Comput. Meth. Appl. Mech. Eng. 2 (1973) 69-97.
     """
     E, G, rho, L = material.E, material.G, material.density, length
     A, second = section.area, section.second_moment

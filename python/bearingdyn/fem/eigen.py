@@ -19,13 +19,18 @@ def lowest_modes(
 ) -> tuple[Array, Array]:
     """Rising frequencies (m,), Hz, and shapes (n, m) of unit modal mass of K φ = ω² M φ.
 
+    Every run gives the same shapes: the start vector is fixed, and the largest entry of a shape is positive.
+
     Parameters
     ----------
     K, M
-        (n, n) dense or sparse, positive definite. f_max, Hz, and n_modes bound the number of modes.
+        (n, n) dense or sparse, positive definite.
+    f_max
+        Highest frequency, Hz; 0: no modes.
+    n_modes
+        Highest number of modes.
     lu
-        Factors of K, if at hand. The shapes are the same in every run: the start vector is fixed and the
-        largest entry is positive.
+        Factors of K, if at hand.
     """
     n = K.shape[0]
     limit = n if n_modes is None else min(n_modes, n)

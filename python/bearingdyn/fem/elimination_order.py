@@ -23,12 +23,13 @@ LEAF = 40  # groups of coordinates below which nothing is dissected
 def elimination_order(A: Any) -> Index:
     """Permutation p (n,) such that A[p][:, p] is factorised with little fill.
 
+    On solids of 35 thousand coordinates in 20-node bricks the factors come out a fifth smaller than by
+    minimum degree, in half the time. The gain grows with the size; on small cubes minimum degree is better.
+
     Parameters
     ----------
     A
-        (n, n) sparse with a symmetric pattern. On solids of 35 thousand coordinates in 20-node bricks the
-        factors come out a fifth smaller than by minimum degree, in half the time; the gain grows with the
-        size; on small cubes minimum degree is better.
+        (n, n) sparse with a symmetric pattern.
     """
     A = scipy.sparse.csc_matrix(A)
     n = A.shape[0]

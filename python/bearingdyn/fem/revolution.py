@@ -31,17 +31,21 @@ ALL_COMPONENTS = (0, 1, 2)
 class Harmonic:
     """Matrices of one Fourier order (and, in order 0, one of its two uncoupled families).
 
-    Coordinate c of node k is number len(components)·k + c. Matrices of all regions share one sparsity pattern
-    (indices, indptr of a csc matrix) and are given by their data, (regions, nonzeros):
+    Coordinate c of node k is number len(components)·k + c. The matrices of all regions share one sparsity
+    pattern.
 
     Parameters
     ----------
-    mass
-        Per unit density, m³.
-    volumetric
-        Per unit bulk modulus, m.
-    deviatoric
-        Per 2G, m.
+    mesh
+        Mesh of the section.
+    order
+        Fourier order n.
+    components
+        Those of U, V, W (0, 1, 2) that are carried.
+    indices, indptr
+        Sparsity pattern of a csc matrix.
+    mass, volumetric, deviatoric
+        (regions, nonzeros) data per unit density, m³, per unit bulk modulus, m, and per 2G, m.
     free
         Coordinates that remain; on the axis r = 0 regularity removes some, and in order 1 ties V to −U.
     """

@@ -16,8 +16,14 @@ def rigid_motion(points: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> A
     Parameters
     ----------
     points
-        (n, 3), m. Returns (3 n, 6): the columns are unit x, y, z, θx, θy, θz of the reference point, the rows
-        x, y, z of each point in turn.
+        (n, 3) positions, m.
+    reference
+        (3,) position of the reference point, m.
+
+    Returns
+    -------
+    (3 n, 6) array
+        Columns: unit x, y, z, θx, θy, θz of the reference point. Rows: x, y, z of each point in turn.
     """
     p = np.atleast_2d(np.asarray(points, dtype=np.float64)) - np.asarray(reference, dtype=np.float64)
     R = np.zeros((len(p), 3, 6))
@@ -34,7 +40,10 @@ def rigid_transfer(positions: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0))
     Parameters
     ----------
     positions
-        (n, 3), m; coordinates x, y, z, θx, θy, θz at each point and at the reference.
+        (n, 3) positions, m.
+    reference
+        (3,) position of the reference point, m; it has the coordinates x, y, z, θx, θy, θz, as each point
+        has.
     """
     p = np.atleast_2d(np.asarray(positions, dtype=np.float64))
     R = np.zeros((len(p), 6, 6))

@@ -65,9 +65,9 @@ def assemble_solid(
         element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987, ch. 4), in 20-node
         bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra and 13-node pyramids
         its mean (P2/P0: free of locking, but too soft, and of first order), in 15-node wedges its part
-        linear along the axis, too soft as well. A bonded ring of ν = 0.499 with 4×8×24 elements is within 0.2 %
-        with 27-node bricks and 3 % with 20-node ones; a bonded strip with two tetrahedra through its thickness
-        is 7 % too soft, with six 3 %; with two wedges 22 % or less, as they lie, and with four 10 %.
+        linear along the axis, too soft as well. A bonded ring of ν = 0.499 with 4×8×24 elements is within
+        0.2 % with 27-node bricks and 3 % with 20-node ones; a bonded strip with two tetrahedra through its
+        thickness is 7 % too soft, with six 3 %; with two wedges 22 % or less, as they lie, with four 10 %.
     """
     chosen = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
     n = len(mesh.points)

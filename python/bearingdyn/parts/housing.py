@@ -22,10 +22,20 @@ ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinate
 
 @dataclass(frozen=True)
 class Feet:
-    """What a housing stands on: two strips along z, each of this width (x), m.
+    """What a housing stands on: two strips along z.
 
-    With height 0 the strips are the left and right edges of the block's own base. With a height, m, they are
-    the undersides of two flanges of that height, added to the sides of the block at its base.
+    Parameters
+    ----------
+    width
+        Extent of each strip along x, m.
+    height
+        0: the strips are the left and right edges of the block's own base. Otherwise the height, m, of two
+        flanges added to the sides of the block at its base; the strips are their undersides.
+
+    Raises
+    ------
+    ValueError
+        For a width that is not positive or a height below zero.
     """
 
     width: float
@@ -38,10 +48,7 @@ class Feet:
 
 @dataclass(frozen=True)
 class Housing:
-    """A rectangular block with a round bore through it along z, of 3-D finite elements.
-
-    width along x, height along y, length along z, m; a small length makes a plate-like pedestal.
-    bore_diameter, m; bore_height: height of the bore's axis above the base, m (default: mid-height).
+    """A rectangular block with a round bore through it along z, of three-dimensional finite elements.
 
     Two rigid interfaces: "bore", whose reference lies on the axis at mid-length, and "feet", whose reference
     lies below it on the base. Outputs: "top", the middle of the top face, and the points; rows (3, n).
@@ -49,22 +56,30 @@ class Housing:
 
     Parameters
     ----------
-    feet
-        What is held at the base: the whole base (None) or two strips (Feet).
+    width, height, length
+        Extent along x, y and z, m; a small length makes a plate-like pedestal.
+    bore_diameter
+        Diameter of the bore, m.
+    bore_height
+        Height of the bore's axis above the base, m; None: mid-height.
+    material
+        Elastic material of the block.
     damping
         Ratio ζ of every mode of the housing held at its feet.
+    feet
+        What is held at the base: None, the whole of it, or two strips (Feet).
     f_max
         Modes with the interfaces held are kept up to this frequency, Hz; 0: none; by default 20 kHz.
     points
         name -> (x, y, z), m, from the bore's axis at mid-length: further outputs, at the nearest node.
     element_size
-        Longest wanted side of an element, m (default: some 300 elements).
+        Longest wanted side of an element, m; None: some 300 elements, more where the shape needs them.
 
     Raises
     ------
     ValueError
-        For a bore that leaves no wall, a point outside, values not positive and finite, or a length above 10
-        m: it is then in mm.
+        For a bore that leaves no wall, a point outside, values that are not positive and finite, or a length
+        above 10 m: it is then in mm.
 
     References
     ----------

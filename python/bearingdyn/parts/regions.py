@@ -37,10 +37,14 @@ def _check_material(material: object) -> None:
 
 @dataclass(frozen=True)
 class Region:
-    """A ring of rectangular section and one material; r, z: (from, to), m.
+    """A ring of rectangular section and one material.
 
     Parameters
     ----------
+    r, z
+        (from, to), m.
+    material
+        Elastic, or viscoelastic in shear.
     graded
         Crowd the mesh towards its sides; None: do so if the material is viscoelastic.
 

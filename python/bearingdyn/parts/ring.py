@@ -18,25 +18,26 @@ from bearingdyn.parts.revolved import Revolved, RevolvedModes
 
 @dataclass(frozen=True)
 class Ring:
-    """An elastic ring of rectangular section, not turning; interfaces "inner" and "outer", its faces.
+    """An elastic ring of rectangular section, not turning; its faces "inner" and "outer" are rigid.
 
     Parameters
     ----------
     r_inner, r_outer, width
-        m; the reference point of both faces lies on the axis at mid-width.
+        m. The reference point of both faces lies on the axis at mid-width.
+    material
+        Elastic material.
     damping
         Ratio ζ of its free elastic modes.
     f_max
         Modes with the interfaces held are kept up to this frequency, Hz; 0: none, the default of bodies of
         revolution.
     refinement
-        Mesh density.
+        Mesh density; 1 is the default.
 
     Raises
     ------
     ValueError
-        For dimensions that are not positive, r_outer not above r_inner, or more than 10 m: they are then in
-        mm.
+        For dimensions that are not positive, r_outer not above r_inner, or more than 10 m (given in mm).
     """
 
     r_inner: float

@@ -33,7 +33,16 @@ ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at
 
 @dataclass(frozen=True)
 class Disc:
-    """A rigid disc on a shaft, at z, m: mass, kg, diametral and polar moment of inertia Id and Ip, kg m².
+    """A rigid disc on a shaft.
+
+    Parameters
+    ----------
+    z
+        Position along the shaft, m.
+    mass
+        kg.
+    Id, Ip
+        Diametral and polar moment of inertia, kg m².
 
     Raises
     ------

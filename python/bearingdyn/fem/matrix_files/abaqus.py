@@ -24,21 +24,25 @@ GEOMETRY = ("SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "IMPERFECTION")
 def read_abaqus(
     stiffness: str | Path, mass: str | Path, points: Points | None = None, **check: Any
 ) -> FEMatrices:
-    """Read the two files (.mtx) that *MATRIX OUTPUT, STIFFNESS, MASS writes, in either format of text.
+    """Read the two files (.mtx) that *MATRIX OUTPUT, STIFFNESS, MASS writes, in either of its text formats.
 
-    The rest: as in check_matrices. Abaqus has no units: pass units=MM_TONNE for mm, t, s.
+    Abaqus has no units: pass units=MM_TONNE for mm, t, s.
 
     Parameters
     ----------
+    stiffness, mass
+        Paths of the files.
     points
-        As in check_matrices, or the input file itself through read_nodes; its nodes may be more than those of
-        the matrices. Files in COORDINATE format name no nodes: points are then in the order of the rows.
+        Positions of the nodes as in check_matrices, such as read_nodes gives; there may be more nodes than
+        the matrices have. Files in COORDINATE format name no nodes: points are then in the order of the rows.
+    check
+        Further arguments of check_matrices.
 
     Raises
     ------
     ValueError
-        For a file that is not there or not of that format, for an internal variable of Abaqus (a node number
-        below 1), or where check_matrices does.
+        For a file that does not exist or is not of that format, for an internal variable of Abaqus (a node
+        number below 1), or where check_matrices does.
     """
     files = [existing(stiffness), existing(mass)]
     K, M = (_entries(path) for path in files)

@@ -22,21 +22,24 @@ def read_calculix(
 ) -> FEMatrices:
     """Read what CalculiX stores: name.sti, name.mas and name.dof.
 
-    points and the rest: as in check_matrices; read_nodes gives the nodes of the .inp. Coordinates that
-    CalculiX removed (*BOUNDARY, dependent ones of *EQUATION and *RIGID BODY) are not in its files: for a
-    free body, which points ask for, store the model without them.
+    CalculiX leaves out the coordinates that it removed (*BOUNDARY, dependent ones of *EQUATION and *RIGID
+    BODY). A body with points must be free: store its model without these keywords.
 
     Parameters
     ----------
     stiffness
-        Path of the .sti.
+        Path of the .sti; the .dof must lie beside it.
     mass
-        Of the .mas (default: beside it). The .dof lies beside the .sti.
+        Path of the .mas; None: beside the .sti.
+    points
+        Positions of the nodes as in check_matrices; read_nodes reads them from the .inp.
+    check
+        Further arguments of check_matrices.
 
     Raises
     ------
     ValueError
-        For files that are not there or do not fit, or where check_matrices does.
+        For files that do not exist or do not fit each other, or where check_matrices does.
     """
     sti = existing(stiffness)
     mas = existing(sti.with_suffix(".mas") if mass is None else mass)

@@ -33,15 +33,15 @@ class FEMatrices:
 
     Parameters
     ----------
-    K, M
-        (n, n) sparse stiffness, N/m, and mass, kg, made exactly symmetric.
+    M, K
+        (n, n) sparse mass, kg, and stiffness, N/m, made exactly symmetric.
     points
-        (k, 3) node positions, m, when known.
+        (k, 3) positions of the nodes, m, when known.
     nodes
-        (k,) their numbers, when the file names them; else a node is known by its row in points.
+        (k,) numbers of the nodes, when the file names them; otherwise a node is known by its row in points.
     dofs
-        (n, 2) of each coordinate the row of its node and its direction 0...5 (x, y, z, θx, θy, θz); the row
-        is -1 for a coordinate of no node, such as a modal one. Without it coordinate 3 i + a is node i along
+        (n, 2) row of the node and direction 0...5 (x, y, z, θx, θy, θz) of each coordinate. The row is -1 for
+        a coordinate that belongs to no node, such as a modal one. None: coordinate 3 i + a is node i along
         axis a.
     """
 
@@ -102,30 +102,28 @@ def check_matrices(
     expected_mass: float | None = None,
     sound: tuple[float, float] = SOUND,
 ) -> FEMatrices:
-    """Check a stiffness and mass pair of a body free in space, make it sparse and bring it to SI units.
+    """Check the stiffness and mass of a body free in space, make them sparse and bring them to SI units.
 
-    K is factorised once for its pivots: some 8 s and 1.5 GB at 35 000 coordinates.
-
-    Rotations with neither stiffness nor mass, as solids have them in files of six coordinates a node, are
-    left out.
+    K is factorised once for its pivots: some 8 s and 1.5 GB at 35 000 coordinates. Rotations with neither
+    stiffness nor mass, which solids have in files of six coordinates a node, are left out.
 
     Parameters
     ----------
     K, M
-        (n, n) dense or sparse, symmetric; a triangle alone is refused. In files' units.
+        (n, n) dense or sparse, symmetric, in the file's units; one triangle alone is refused.
     points
-        (k, 3) positions of the nodes, or node number -> position, in the file's unit of length. Given them, K
-        must not resist rigid motion (relative force below 1e-6), M must carry one mass in all three
+        (k, 3) positions of the nodes, or node number -> position, in the file's unit of length. With points,
+        K must not resist rigid motion (relative force below 1e-6), M must carry the same mass in all three
         directions, and density and speed of sound must be those of a solid.
     labels
-        (n, 2) node number and direction 1...6 of each coordinate; they are put in rising order. Without them
-        there are three coordinates to a point, x, y, z, or six.
+        (n, 2) node number and direction 1...6 of each coordinate; they are put in rising order. None: there
+        are three coordinates to a point, x, y, z, or six.
     internal
         Number of coordinates at the end that belong to no node (modal ones of a reduced model).
     units
-        What the file is written in.
+        Units of the file.
     expected_mass
-        kg, to 5 %; None: not checked.
+        Mass, kg, that M must have to 5 %; None: not checked.
     sound
         Accepted range of √(bulk modulus/density), m/s, the mean over the body; widen it for foams.
 

@@ -22,12 +22,19 @@ def read_matrix_market(
 ) -> FEMatrices:
     """Read a stiffness and a mass matrix from two MatrixMarket files (.mtx).
 
-    points and the rest: as in check_matrices.
+    Parameters
+    ----------
+    stiffness, mass
+        Paths of the files.
+    points
+        Positions of the nodes, as in check_matrices.
+    check
+        Further arguments of check_matrices.
 
     Raises
     ------
     ValueError
-        For a file that is not there, not MatrixMarket, or fails check_matrices.
+        For a file that does not exist or is not MatrixMarket, or where check_matrices does.
     """
     files = [existing(stiffness), existing(mass)]
     return check_matrices(_read(files[0]), _read(files[1]), points, **check)

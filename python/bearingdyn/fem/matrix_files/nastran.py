@@ -20,23 +20,27 @@ def read_op4(
     coordinates: str | None = None,
     **check: Any,
 ) -> FEMatrices:
-    """Read a stiffness and a mass matrix from one output4 file, or from two (mass_path).
+    """Read a stiffness and a mass matrix from one output4 file, or from two.
 
-    The rest: as in check_matrices.
+    KGG and MGG have six coordinates a grid, in the basic system when no grid has another.
 
     Parameters
     ----------
+    path, mass_path
+        Paths of the stiffness and of the mass; None: both are in one file.
+    points
+        (k, 3) positions in the order of the matrices' grids.
     names
-        Of stiffness and mass in the file.
+        Names of stiffness and mass in the file.
     coordinates
-        name of a (k, 3) matrix of the grids' positions in it, if it has one; else points, (k, 3), in the
-        order of the matrices' grids. KGG and MGG have six coordinates a grid, in the basic system when no
-        grid has another.
+        Name of a (k, 3) matrix of the grids' positions in the file, in place of points.
+    check
+        Further arguments of check_matrices.
 
     Raises
     ------
     ValueError
-        For a file that is not there, not output4 or without a named matrix, and where check_matrices does.
+        For a file that does not exist, is not output4 or lacks a named matrix, and where check_matrices does.
     ImportError
         Without pyyeti.
     """

@@ -33,16 +33,24 @@ def _from_arrays(arrays: Mapping[str, Any], name: str, path: Path) -> Any:
 
 
 def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FEMatrices:
-    """Read a NumPy archive with K and M, and perhaps points and labels.
+    """Read a NumPy archive with K and M, and perhaps points, labels and internal.
 
     K and M are each dense, or in compressed sparse rows: four arrays K_data, K_indices, K_indptr, K_shape.
-    Pickled objects are not read. points, if given, takes the place of the file's; the rest: as in
-    check_matrices.
+    Pickled objects are not read.
+
+    Parameters
+    ----------
+    path
+        Path of the archive.
+    points
+        Positions of the nodes, as in check_matrices; None: those of the archive.
+    check
+        Further arguments of check_matrices.
 
     Raises
     ------
     ValueError
-        For a file that is not there, not such an archive, or fails check_matrices.
+        For a file that does not exist or is not such an archive, or where check_matrices does.
     """
     p = existing(path)
     try:

@@ -20,13 +20,15 @@ def read_matrices(
     points: Points | str | Path | None = None,
     **check: Any,
 ) -> FEMatrices:
-    """Read and check the matrices of another program; the ending of the file says of which.
+    """Read and check the matrices of another program; the suffix of the file says which.
 
     .npz: NumPy archive, one file. .op4: Nastran, one file or two. .sti: CalculiX, with its .mas and .dof
     beside it. .mtx: MatrixMarket or Abaqus, as its first line says, two files.
 
     Parameters
     ----------
+    stiffness, mass
+        Paths of the files.
     points
         Positions of the nodes, as in check_matrices, or the path of an .inp with *NODE blocks.
     check
@@ -36,7 +38,7 @@ def read_matrices(
     Raises
     ------
     ValueError
-        For an ending it does not know, a second file that is missing, and where the format's own reader does.
+        For an unknown suffix or a second file that is missing, and where the reader of the format does.
     """
     path = existing(stiffness)
     if isinstance(points, str | Path):

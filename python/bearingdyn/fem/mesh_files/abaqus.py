@@ -95,8 +95,8 @@ def read_inp(path: Path) -> RawMesh:
     Followed: *NODE (SYSTEM= too), *SYSTEM, *ELEMENT, *NSET, *ELSET, *SURFACE, *SOLID SECTION, *INCLUDE, and
     *PART, *ASSEMBLY and *INSTANCE with their shift and turn. *TRANSFORM and *ORIENTATION turn directions
     only, and change no mesh. With one instance names stay as they are, with more those of parts become
-    "instance.name". Regions are the element sets of *SOLID SECTION, or the sets that divide the body. Surfaces
-    are node sets, *SURFACE by faces or nodes, and sets of shell or plane elements.
+    "instance.name". Regions are the element sets of *SOLID SECTION, or the sets that divide the body.
+    Surfaces are node sets, *SURFACE by faces or nodes, and sets of shell or plane elements.
 
     Raises
     ------
@@ -185,8 +185,8 @@ class _Model:
         self.repeated += part.size
         if self.repeated > self.limit():
             raise block.fault(
-                f"{len(self.instances) + 1} instances have {self.repeated} nodes and elements, more than {MULTIPLE} "
-                "times those of the parts; write a file with fewer"
+                f"{len(self.instances) + 1} instances have {self.repeated} nodes and elements, more than "
+                f"{MULTIPLE} times those of the parts; write a file with fewer"
             )
         self.instances[name] = replace(part.copy(), place=moved(block))
         return self.instances[name]

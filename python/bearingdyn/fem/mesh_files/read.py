@@ -25,36 +25,39 @@ def read_mesh(
     drop_unconnected: bool = False,
     largest: float = LARGEST_BODY,
 ) -> SolidMesh:
-    """A mesh of 20- or 27-node bricks or 10-node tetrahedra from a file, by its suffix.
+    """Read a mesh of 20- or 27-node bricks or 10-node tetrahedra; the suffix says the kind of file.
 
     .msh: gmsh 2.2 and 4.1; physical volumes are regions, physical surfaces are surfaces.
-    .inp: Abaqus and CalculiX; regions are the sets of *SOLID SECTION, or those that divide the body;
-        surfaces are node sets, *SURFACE, and sets of shell or plane elements.
-    .vtk, .vtu: a cell array of numbers (region_data; by default one named "gmsh:physical",
-        "CellEntityIds" or "region") makes regions of solid cells and surfaces of face cells, named by the
-        number; a point array of 0 and 1 makes a surface of that name.
+    .inp: Abaqus and CalculiX; regions are the sets of *SOLID SECTION, or those that divide the body; surfaces
+    are node sets, *SURFACE, and sets of shell or plane elements.
+    .vtk, .vtu: the numbers in region_data make regions of solid cells and surfaces of face cells, named by
+    the number; a point array of 0 and 1 makes a surface of its name.
     .msh, .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
 
     Parameters
     ----------
+    path
+        Path of the file.
     scale
         Length of the file's unit, m; 1e-3 for a file in mm.
     regions
         Names of the sets that are regions, for files whose sets overlap; (): one region.
+    region_data
+        Name of the array of cell numbers; None: "gmsh:physical", "CellEntityIds" or "region".
     upgrade
         Accept 8-node bricks and 4-node tetrahedra, and give them middle nodes on straight edges.
     merge
-        Make nodes closer than this, m, one.
+        Distance, m, below which two nodes become one; None: none do.
     drop_unconnected
         Leave out nodes that no element has.
     largest
-        A body longer than this, m, is taken to be in the wrong unit.
+        Length, m, above which the body is taken to be in the wrong unit.
 
     Raises
     ------
     ValueError
-        Naming the file and the element or node, for what SolidMesh refuses, elements of another kind, a body
-        longer than `largest`, and a file that cannot be read.
+        For what SolidMesh refuses, elements of another kind, a body longer than `largest`, and a file that
+        cannot be read. The message names the file and the element or node.
     """
     file = Path(path)
     if not file.is_file():

@@ -32,12 +32,19 @@ def crowded(a: float, b: float, count: int) -> Array:
 
 
 def box_mesh(x: ArrayLike, y: ArrayLike, z: ArrayLike, element: str = "hex20") -> SolidMesh:
-    """Bricks between grid lines x, y, z, m, each rising; surfaces "x-", "x+", "y-", "y+", "z-", "z+".
+    """Bricks between grid lines x, y, z; surfaces "x-", "x+", "y-", "y+", "z-", "z+".
 
     Parameters
     ----------
+    x, y, z
+        Grid lines, m, each rising.
     element
-        "hex20" or "hex27". Raises ValueError for lines that do not rise.
+        "hex20" or "hex27".
+
+    Raises
+    ------
+    ValueError
+        For lines that do not rise, or an unknown element.
     """
     lines = [np.asarray(v, dtype=np.float64) for v in (x, y, z)]
     for name, v in zip("xyz", lines, strict=True):
@@ -76,24 +83,23 @@ def ring_mesh(
 ) -> SolidMesh:
     """A ring about z, or a segment of it, of concentric layers, each layer a region.
 
-    Surfaces: "inner", "outer", "z-", "z+", of a segment also "start" and "end".
+    Lines crowd towards the ends of the width, and towards both faces of each layer. Surfaces: "inner",
+    "outer", "z-", "z+"; of a segment also "start" and "end".
 
     Parameters
     ----------
     radii
-        Bore, bonds, outside, m, rising.
+        Radii of the bore, the bonds and the outside, m, rising.
     width
-        Along z, m, the middle at z = 0.
+        Extent along z, m, with its middle at z = 0.
     angle
         (from, to), rad; None: the whole ring.
-    across
-        Elements through each layer.
-    along
-        Over the width.
-    around
-        Over the angle. Lines crowd to the ends of the width, and to both faces of each layer.
+    across, along, around
+        Number of elements through each layer, over the width and over the angle.
     regions
         Names of the layers (default "layer 1", ...).
+    element
+        "hex20" or "hex27".
 
     Raises
     ------
@@ -157,18 +163,18 @@ def o_ring_mesh(
     Parameters
     ----------
     radius
-        Of the circle of the cord's centre, m.
+        Radius of the circle on which the cord's centre lies, m.
     cord
-        Its diameter, m.
+        Diameter of the cord, m.
     band
-        Width, m, along z, of the two strips by which it holds, the innermost and the outermost of its
+        Width along z, m, of the two strips by which the ring is held, the innermost and the outermost of its
         surface; 0.2 to 0.95 of the cord.
     angle
         (from, to), rad; None: the whole ring.
-    across
-        Elements across each band.
-    around
-        Over the angle.
+    across, around
+        Number of elements across each band and over the angle.
+    element
+        "hex20" or "hex27".
 
     Raises
     ------
@@ -266,22 +272,27 @@ def block_with_bore(
 ) -> SolidMesh:
     """Structured mesh of bricks of a block with a round bore through it along z.
 
-    width along x, height along y, length along z, m; the origin is on the bore's axis at mid-length.
-    Surfaces: "bore", "base", "top", "front" (at +z), "back"; "feet", the undersides of the flanges, the
-    strips, or the base; "outside", all but the bore and the base. The measures are taken to be consistent
-    (parts.Housing checks them).
+    The origin is on the bore's axis at mid-length. The nodes of the bore lie on its circle, and its edges are
+    quadratic. Surfaces: "bore", "base", "top", "front" (at +z), "back"; "feet": the undersides of the
+    flanges, the strips, or the base; "outside": all but the bore and the base. The measures must be
+    consistent; parts.Housing checks them.
 
     Parameters
     ----------
+    width, height, length
+        Extent along x, y and z, m.
+    bore_diameter
+        Diameter of the bore, m.
     bore_height
-        Of the axis above the base.
+        Height of the bore's axis above the base, m.
     element_size
-        Longest wanted side, m.
+        Longest wanted side of an element, m.
     flange
-        (width, height) of two flanges on the sides at the base.
+        (width, height), m, of two flanges on the sides at the base; None: none.
     strip
-        A grid line runs this far in from either side, along the base. The bore is round: its nodes lie on the
-        circle and its edges are quadratic.
+        Width, m, of two strips along the base at either side, which grid lines bound; None: none.
+    element
+        "hex20" or "hex27".
     """
     r, half, base, top = 0.5 * bore_diameter, 0.5 * width, -bore_height, height - bore_height
     low = base if bore_height - top < element_size else -top  # a box about the bore, the pedestal below it

@@ -215,14 +215,18 @@ def revolution_mesh(
     z_cuts: Iterable[float] = (),
     z_near: Iterable[float] = (),
 ) -> RevolutionMesh:
-    """Mesh a union of rectangles; grid lines run along all their sides, and along r_cuts and z_cuts, m.
+    """Mesh a union of rectangles with grid lines along all their sides.
 
     Parameters
     ----------
+    rectangles
+        They may touch but not overlap.
     refinement
-        1 is the default density; steps shrink with it, and faster where the mesh is graded.
+        Mesh density; 1 is the default. Steps shrink with it, and faster where the mesh is graded.
+    r_cuts, z_cuts
+        Further grid lines, m.
     z_near
-        The line nearest to each of these is moved there; nothing is graded towards it.
+        Places, m, to each of which the nearest line is moved; nothing is graded towards them.
 
     Raises
     ------

@@ -438,8 +438,12 @@ def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Array, Index, I
 
     Returns
     -------
-    points (n', 3), the given ones first; elements (m, 20, 15, 13 or 10), padded likewise; and the ends
-    (n' − n, 2) between which each new point lies.
+    points : (n', 3) array
+        The given points, then the new ones.
+    elements : (m, 20, 15, 13 or 10) array
+        Nodes of each element, rows of smaller ones ended in −1.
+    ends : (n' − n, 2) array
+        The two points between which each new one lies.
     """
     p, c = np.asarray(points, dtype=np.float64), np.asarray(corners, dtype=np.intp)
     count = (c >= 0).sum(axis=1)
