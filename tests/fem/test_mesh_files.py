@@ -423,9 +423,14 @@ def test_files_that_are_no_mesh_are_refused(tmp_path):
         with pytest.raises(ValueError, match=f"a{suffix}: .*{message}"):
             read_mesh(tmp_path / f"a{suffix}")
     p, e = spoilt("")
-    meshio.Mesh(p, [("hexahedron20", e), ("hexahedron24", [list(range(24))])]).write(tmp_path / "w.vtu")
-    with pytest.raises(ValueError, match=r"w.vtu: it has cells of type \['hexahedron24'\]"):
-        read_mesh(tmp_path / "w.vtu")
+    numbers = " ".join(map(str, range(12)))
+    (tmp_path / "w.vtk").write_text(
+        "# vtk DataFile Version 2.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n"
+        + "0 0 0\n" * 12
+        + f"CELLS 1 13\n12 {numbers}\nCELL_TYPES 1\n31\n"
+    )
+    with pytest.raises(ValueError, match=r"w.vtk: .*wedge12"):
+        read_mesh(tmp_path / "w.vtk")
     meshio.Mesh(p, [("hexahedron20", e), ("hexahedron", e[:, :8])]).write(tmp_path / "m.vtu")
     with pytest.raises(ValueError, match="mixes elements of 8 and 20 nodes"):
         read_mesh(tmp_path / "m.vtu")

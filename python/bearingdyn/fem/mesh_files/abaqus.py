@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -399,27 +400,28 @@ class _Assembled:
 
     def rows_of(self, s: str, name: str, what: str) -> list[tuple[str, Index]]:
         """What a set holds, by scope, as rows of `_known`, once each; what is n for nodes, e for elements."""
-        found: dict[str, list[Index]] = {}
+        found: dict[str, Any] = {}  # by scope, for each of its nodes or elements whether it is held
         seen, stack = {(s, name)}, [(s, name)]  # sets may hold sets to any depth, and each other
         while stack:
             t, one = stack.pop()
             held = (self.scopes[t].nsets if what == "n" else self.scopes[t].elsets)[one]
             known = self._known(t, what)[0]
-            inside = np.isin(known, held.numbers) if held.numbers else np.zeros(known.size, dtype=bool)
+            inside = found.setdefault(t, np.zeros(known.size, dtype=bool))
+            if held.numbers:
+                inside |= np.isin(known, held.numbers)
             self.left -= len(held.numbers) + len(held.others)
             for numbers in held.ranges:
                 low, high = np.searchsorted(known, [numbers.start, numbers.stop])
                 inside[low:high] |= (known[low:high] - numbers.start) % numbers.step == 0
                 self.left -= int(high - low)
                 self._check_left(held)
-            found.setdefault(t, []).append(np.flatnonzero(inside))
             for instance, other in held.others:
                 at = (t if instance is None else instance, other)
                 if at not in seen:
                     seen.add(at)
                     stack.append(at)
             self._check_left(held)
-        return [(t, np.unique(np.concatenate(parts))) for t, parts in found.items()]
+        return [(t, np.flatnonzero(inside)) for t, inside in found.items()]
 
     def _check_left(self, held: _Set) -> None:
         if self.left < 0 and held.block is not None:
@@ -441,7 +443,7 @@ class _Assembled:
     def nodes_of(self, s: str, name: str) -> Index:
         """Nodes of a node set, in all nodes."""
         parts = [self.first[t] + self._known(t, "n")[1][rows] for t, rows in self.rows_of(s, name, "n")]
-        return np.unique(np.concatenate([*parts, np.zeros(0, dtype=np.intp)])).astype(np.intp)
+        return np.sort(np.concatenate([*parts, np.zeros(0, dtype=np.intp)])).astype(np.intp)
 
     def numbers_of(self, s: str, name: str) -> list[tuple[str, list[int]]]:
         """Numbers of the elements of an element set, by scope."""
