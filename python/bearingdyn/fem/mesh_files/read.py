@@ -13,6 +13,11 @@ from bearingdyn.fem.mesh_files.vtk import read_with_meshio
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 from bearingdyn.magnitude import LARGEST_BODY
 
+OTHERS = {
+    **{".unv": "I-deas", ".bdf": "Nastran", ".nas": "Nastran", ".dat": "Nastran", ".fem": "OptiStruct"},
+    **{".med": "Salome", ".cdb": "Ansys"},
+}
+
 
 def read_mesh(
     path: str | os.PathLike[str],
@@ -25,14 +30,15 @@ def read_mesh(
     drop_unconnected: bool = False,
     largest: float = LARGEST_BODY,
 ) -> SolidMesh:
-    """Read a mesh of 20- or 27-node bricks or 10-node tetrahedra; the suffix says the kind of file.
+    """Read a mesh of second-order bricks, wedges, pyramids or tetrahedra; the suffix says the kind of file.
 
-    .msh: gmsh 2.2 and 4.1; physical volumes are regions, physical surfaces are surfaces.
-    .inp: Abaqus and CalculiX; regions are the sets of *SOLID SECTION, or those that divide the body; surfaces
-    are node sets, *SURFACE, and sets of shell or plane elements.
+    .msh: gmsh 2.2, 4.0 and 4.1, text and binary; physical volumes are regions, physical surfaces are surfaces
+    (with region_data="gmsh:geometrical" the entities of the drawing, by number).
+    .inp: Abaqus and CalculiX, flat or an assembly of parts; regions are the sets of *SOLID SECTION, or those
+    that divide the body; surfaces are node sets, *SURFACE, and sets of shell or plane elements.
     .vtk, .vtu: the numbers in region_data make regions of solid cells and surfaces of face cells, named by
     the number; a point array of 0 and 1 makes a surface of its name.
-    .msh, .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
+    .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
 
     Parameters
     ----------
@@ -45,7 +51,7 @@ def read_mesh(
     region_data
         Name of the array of cell numbers; None: "gmsh:physical", "CellEntityIds" or "region".
     upgrade
-        Accept 8-node bricks and 4-node tetrahedra, and give them middle nodes on straight edges.
+        Accept linear elements, and give them middle nodes on straight edges.
     merge
         Distance, m, below which two nodes become one; None: none do.
     drop_unconnected
@@ -63,6 +69,11 @@ def read_mesh(
     if not file.is_file():
         raise ValueError(f"{file} is not a file; give the path of a mesh (.msh, .inp, .vtk, .vtu)")
     suffix = file.suffix.lower()
+    if suffix in OTHERS:
+        raise ValueError(
+            f"{file.name} has the suffix {suffix!r}, a mesh of {OTHERS[suffix]}, which is not read; "
+            "open it in gmsh and save it as .msh, or export .inp"
+        )
     if suffix not in (".msh", ".inp", ".vtk", ".vtu"):
         raise ValueError(f"{file.name} has the suffix {suffix!r}; meshes are .msh, .inp, .vtk or .vtu files")
     try:

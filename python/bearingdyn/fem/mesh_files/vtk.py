@@ -31,8 +31,11 @@ def read_with_meshio(file: Path, region_data: str | None) -> RawMesh:
     """
     try:
         from meshio import vtk, vtu
+        from meshio._mesh import topological_dimension
     except ImportError as error:
         raise ImportError(f"{file.name} needs meshio to be read: pip install bearingdyn[mesh]") from error
+    for kind in ("wedge15", "wedge18", "pyramid13", "pyramid14"):
+        topological_dimension.setdefault(kind, 3)  # a table of meshio's, which lacks some of them
     readers: dict[str, Any] = {".vtk": vtk.read, ".vtu": vtu.read}
     try:
         mesh = readers[file.suffix.lower()](str(file))
