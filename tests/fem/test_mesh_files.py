@@ -416,7 +416,7 @@ def test_files_that_are_no_mesh_are_refused(tmp_path):
     with pytest.raises(ValueError, match=r"none.msh is not a file"):
         read_mesh(tmp_path / "none.msh")
     (tmp_path / "a.stl").write_text("solid")
-    with pytest.raises(ValueError, match=r"suffix '.stl'; meshes are .msh, .inp, .vtk or .vtu"):
+    with pytest.raises(ValueError, match=r"suffix '.stl'; meshes are .msh, .inp, .bdf, .unv, .vtk or .vtu"):
         read_mesh(tmp_path / "a.stl")
     for suffix, message in ((".msh", "line 1: .*MeshFormat"), (".vtk", "cannot be read"), (".vtu", "cannot")):
         (tmp_path / f"a{suffix}").write_text("not a mesh\n")

@@ -391,3 +391,116 @@ def test_keywords_that_make_geometry_are_refused_by_name(tmp_path, keyword):
 def test_solids_of_another_formulation_are_refused_by_name(tmp_path, kind):
     with pytest.raises(ValueError, match=rf"a.inp, line 10: \*ELEMENT: elements of type {kind}"):
         read(tmp_path, BLOCK.replace("C3D8", kind))
+
+
+# --- Nastran and I-deas: the same brick and wedge; between which corners a node lies, in the file's order
+
+NASTRAN = {
+    "CHEXA": "0 1 2 3 4 5 6 7 01 12 23 30 04 15 26 37 45 56 67 74",
+    "CPENTA": "0 1 2 3 4 5 01 12 20 03 14 25 34 45 53",
+}
+IDEAS = {  # round the faces, corner and middle in turn
+    116: "0 01 1 12 2 23 3 30 04 15 26 37 4 45 5 56 6 67 7 74",
+    113: "0 01 1 12 2 20 03 14 25 3 34 4 45 5 53",
+}
+FACE = "0 01 1 12 2 23 3 30"
+
+
+def numbered(*pieces):
+    """Places of all nodes, and the numbers of each element's, from (corners, words)."""
+    places, number, elements = [], {}, []
+    for corners, words in pieces:
+        row = []
+        for word in words.split():
+            place = tuple(corners[[int(c) for c in word]].mean(axis=0).tolist())
+            if place not in number:
+                number[place] = 10 * len(places) + 7
+                places.append(place)
+            row.append(number[place])
+        elements.append(row)
+    return [(number[place], place) for place in places], elements
+
+
+def bdf(form):
+    """Bulk data in small, large or free fields."""
+    nodes, (brick, wedge, face) = numbered(
+        (BRICK, NASTRAN["CHEXA"]), (WEDGE, NASTRAN["CPENTA"]), (FLOOR, "0 1 2 3 01 12 23 30")
+    )
+    cards = [["GRID", n, "", *(f"{v:.1f}" for v in place)] for n, place in nodes]
+    cards[3][4] = "30.0-1" if cards[3][4] == "3.0" else cards[3][4]  # Nastran's exponents need no E
+    cards += [["CHEXA", 1, 5, *brick], ["CPENTA", 2, 6, *wedge], ["CQUAD8", 3, 9, *face]]
+    lines = ["$ a comment", "SOL 103", "BEGIN BULK"]
+    for name, *fields in cards:
+        width, count = (16, 4) if form == "large" else (8, 8)
+        for k in range(0, len(fields), count):
+            some = [str(v) for v in fields[k : k + count]]
+            first = name if k == 0 else ""
+            if form == "free":
+                lines.append(",".join([first or "+", *some]))
+            else:
+                star = "*" if form == "large" else ("+" if k else "")
+                head = f"{first}{star}" if k == 0 else star
+                lines.append(f"{head:8}" + "".join(f"{v:>{width}}" for v in some))
+    return "\n".join([*lines, "ENDDATA", "nonsense"])
+
+
+def unv():
+    """A universal file with groups of elements and of nodes."""
+    nodes, (brick, wedge, face) = numbered((BRICK, IDEAS[116]), (WEDGE, IDEAS[113]), (FLOOR, FACE))
+    lines = ["    -1", "   164", "         1  SI: Meters (newton)", "    -1", "    -1", "  2411"]
+    for n, place in nodes:
+        lines += [f"{n:10}{1:10}{1:10}{11:10}", "".join(f"{v:25.16E}" for v in place).replace("E", "D")]
+    lines += ["    -1", "    -1", "  2412"]
+    for n, code, row in ((1, 116, brick), (2, 113, wedge), (3, 95, face)):
+        lines.append("".join(f"{v:10}" for v in (n, code, 1, 1, 7, len(row))))
+        lines += ["".join(f"{v:10}" for v in row[k : k + 8]) for k in range(0, len(row), 8)]
+    lines += [f"{4:10}{21:10}{1:10}{1:10}{7:10}{2:10}", f"{0:10}{1:10}{1:10}", f"{7:10}{17:10}"]
+    lines += ["    -1", "    -1", "  2467"]
+    groups = (("housing", 8, [1]), ("rib", 8, [2]), ("floor", 8, [3]), ("base nodes", 7, face))
+    for k, (name, what, members) in enumerate(groups, 1):
+        lines += ["".join(f"{v:10}" for v in (k, 0, 0, 0, 0, 0, 0, len(members))), name]
+        flat = [f"{what:10}{m:10}{0:10}{0:10}" for m in members]
+        lines += ["".join(flat[j : j + 2]) for j in range(0, len(flat), 2)]
+    return "\n".join([*lines, "    -1", ""])
+
+
+@pytest.mark.parametrize("form", ["small", "large", "free"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_bulk_data_of_nastran_is_the_same_body(tmp_path, form, end):
+    (tmp_path / "a.bdf").write_bytes(bdf(form).replace("\n", end).encode("utf-8-sig"))
+    mesh = read_mesh(tmp_path / "a.bdf")
+    assert {n: mesh.volume(n) for n in mesh.regions} == pytest.approx({"5": 30.0, "6": 15.0})
+    assert mesh.samples("9").area == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_universal_file_keeps_groups(tmp_path, end):
+    (tmp_path / "a.unv").write_bytes(unv().replace("\n", end).encode("utf-8-sig"))
+    mesh = read_mesh(tmp_path / "a.unv")
+    assert {n: mesh.volume(n) for n in mesh.regions} == pytest.approx({"housing": 30.0, "rib": 15.0})
+    assert mesh.samples("floor").area == mesh.samples("base nodes").area == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        (
+            "a.bdf",
+            bdf("free").replace("GRID,7,,", "GRID,7,3,"),
+            "a.bdf, line 4: GRID: its system of coordinates is 3",
+        ),
+        ("a.bdf", "INCLUDE 'a.bdf'\n", "a.bdf, line 1: INCLUDE.*: it is not followed"),
+        ("a.bdf", bdf("free").replace("CHEXA,1,5,7,", "CHEXA,1,5,,"), r"line \d+: CHEXA: it has 20 nodes"),
+        (
+            "a.unv",
+            unv().replace("  2411", "    15"),
+            "a.unv, line 6: dataset 15: dataset 15 is of an older kind",
+        ),
+        ("a.unv", unv().replace("       116", "       119"), r"line \d+: dataset 2412: elements of type 119"),
+        ("a.med", "x", "a.med has the suffix '.med', a mesh of Salome, which is not read; export"),
+    ],
+)
+def test_faults_of_other_formats_are_named(tmp_path, name, text, message):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(ValueError, match=message):
+        read_mesh(tmp_path / name)

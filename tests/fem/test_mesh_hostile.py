@@ -9,7 +9,7 @@ import pytest
 
 from bearingdyn.fem import box_mesh, read_mesh, read_nodes
 from fem.test_mesh_files import TET_INP, inp_of, meshio_of, msh41_of
-from fem.test_mesh_formats import BLOCK, ENDS, msh, vtk_of_gmsh
+from fem.test_mesh_formats import BLOCK, ENDS, bdf, msh, unv, vtk_of_gmsh
 
 pytest.importorskip("skfem")
 
@@ -89,9 +89,7 @@ REFUSED = {
         "line 5: .* stands where a physical name",
     ),
     "points of terabytes": (
-        {
-            "a.vtk": "# vtk DataFile Version 2.0\nx\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 100000000000 double\n"
-        },
+        {"a.vtk": "# vtk DataFile Version 2.0\n\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 9999999999 int\n"},
         "a.vtk: it cannot be read",
     ),
 }
@@ -131,6 +129,9 @@ def seeds(tmp_path):
     for version, binary in ((2.2, False), (2.2, True), (4.0, False), (4.0, True), (4.1, False), (4.1, True)):
         yield ".msh", msh(version, binary, parametric=binary, partitioned=True)
     yield ".msh", msh41_of(box_mesh([0, 1, 2], [0, 1], [0, 1])).encode()
+    yield ".bdf", bdf("small").encode()
+    yield ".bdf", bdf("free").encode()
+    yield ".unv", unv().encode()
     try:
         import meshio  # noqa: F401
     except ImportError:

@@ -8,15 +8,15 @@ from pathlib import Path
 
 from bearingdyn.fem.mesh_files.abaqus import read_inp
 from bearingdyn.fem.mesh_files.gmsh import read_msh
+from bearingdyn.fem.mesh_files.ideas import read_unv
+from bearingdyn.fem.mesh_files.nastran import read_bdf
 from bearingdyn.fem.mesh_files.raw_mesh import finished
 from bearingdyn.fem.mesh_files.vtk import read_with_meshio
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 from bearingdyn.magnitude import LARGEST_BODY
 
-OTHERS = {
-    **{".unv": "I-deas", ".bdf": "Nastran", ".nas": "Nastran", ".dat": "Nastran", ".fem": "OptiStruct"},
-    **{".med": "Salome", ".cdb": "Ansys"},
-}
+READERS = {".inp": read_inp, ".bdf": read_bdf, ".nas": read_bdf, ".unv": read_unv}
+OTHERS = {".dat": "Nastran or Ansys", ".fem": "OptiStruct", ".med": "Salome", ".cdb": "Ansys"}
 
 
 def read_mesh(
@@ -36,6 +36,8 @@ def read_mesh(
     (with region_data="gmsh:geometrical" the entities of the drawing, by number).
     .inp: Abaqus and CalculiX, flat or an assembly of parts; regions are the sets of *SOLID SECTION, or those
     that divide the body; surfaces are node sets, *SURFACE, and sets of shell or plane elements.
+    .bdf, .nas: Nastran; the numbers of properties name regions of solids and surfaces of shells.
+    .unv: I-deas; its groups, or else the numbers of properties.
     .vtk, .vtu: the numbers in region_data make regions of solid cells and surfaces of face cells, named by
     the number; a point array of 0 and 1 makes a surface of its name.
     .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
@@ -72,13 +74,15 @@ def read_mesh(
     if suffix in OTHERS:
         raise ValueError(
             f"{file.name} has the suffix {suffix!r}, a mesh of {OTHERS[suffix]}, which is not read; "
-            "open it in gmsh and save it as .msh, or export .inp"
+            "export .inp, .bdf or .msh"
         )
-    if suffix not in (".msh", ".inp", ".vtk", ".vtu"):
-        raise ValueError(f"{file.name} has the suffix {suffix!r}; meshes are .msh, .inp, .vtk or .vtu files")
+    if suffix not in (*READERS, ".msh", ".vtk", ".vtu"):
+        raise ValueError(
+            f"{file.name} has the suffix {suffix!r}; meshes are .msh, .inp, .bdf, .unv, .vtk or .vtu"
+        )
     try:
-        if suffix == ".inp":
-            raw = read_inp(file)
+        if suffix in READERS:
+            raw = READERS[suffix](file)
         elif suffix == ".msh":
             raw = read_msh(file, region_data)
         else:

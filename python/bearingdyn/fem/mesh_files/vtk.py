@@ -57,6 +57,8 @@ def _converted(mesh: Any, region_data: str | None) -> RawMesh:
     count = 0
     for k, block in enumerate(mesh.cells):
         data = np.asarray(block.data, dtype=np.intp)
+        if data.size and not (data.min() >= 0 and data.max() < len(mesh.points)):
+            raise ValueError(f"a cell of type {block.type} names a point outside 0...{len(mesh.points) - 1}")
         for name, at in _groups(mesh, k, region_data):
             if block.type in SOLID:
                 regions.setdefault(name, []).append(count + at)
