@@ -61,7 +61,59 @@ def tetrahedra():
     return crooked(SolidMesh(p, elements))
 
 
+WEDGES = [(0, 1, 2, 4, 5, 6), (0, 2, 3, 4, 6, 7)]  # each half of a brick
+PYRAMIDS = [
+    (0, 3, 2, 1),
+    (4, 5, 6, 7),
+    (0, 1, 5, 4),
+    (1, 2, 6, 5),
+    (2, 3, 7, 6),
+    (3, 0, 4, 7),
+]  # to its middle
+
+
+def wedges():
+    box = box_mesh(*[np.linspace(0.0, s, 4) for s in SIZE])
+    corners = np.vstack([box.elements[:, list(t)] for t in WEDGES])
+    p, elements, _ = second_order(box.points[: corners.max() + 1], corners)
+    return crooked(SolidMesh(p, elements))
+
+
+def mixed():
+    """Bricks and wedges below, in the middle pyramids whose upper ones are tetrahedra, tetrahedra above."""
+    x, y, z = (np.linspace(0.0, s, 4) for s in SIZE)
+    box = box_mesh(x, y, z)
+    n = 64
+    points, rows = list(box.points[:n]), []
+    for e in box.elements[:, :8].tolist():
+        level = round(float(box.points[e].mean(axis=0)[2] / SIZE[2] * 3 - 0.5))
+        if level == 0 and box.points[e].mean(axis=0)[0] < SIZE[0] / 3:
+            rows.append(e)
+        elif level == 0:  # their quadrilaterals above, under the pyramids
+            rows += [[e[i] for i in t] for t in ((0, 5, 1, 3, 6, 2), (0, 4, 5, 3, 7, 6))]
+        else:
+            middle = len(points)
+            points.append(box.points[e].mean(axis=0) + [0.002, -0.003, 0.004])
+            for side, face in enumerate(PYRAMIDS):
+                quad = [e[i] for i in face][::-1]
+                if level == 1 and side != 1:
+                    rows.append([*quad, middle])
+                else:  # two tetrahedra, split at the lowest node, as the neighbour splits it
+                    at = quad.index(min(quad))
+                    a, b, c, d = quad[at:] + quad[:at]
+                    rows += [[a, b, c, middle], [a, c, d, middle]]
+    corners = np.full((len(rows), 8), -1)
+    for i, row in enumerate(rows):
+        corners[i, : len(row)] = row
+    p, elements, _ = second_order(np.array(points), corners)
+    return SolidMesh(p, elements)
+
+
 MESHES = {
+    "15-node wedges": (wedges, False),
+    "15-node wedges with pressure linear along the axis": (wedges, True),
+    "bricks, wedges, pyramids and tetrahedra": (mixed, False),
+    "bricks, wedges, pyramids and tetrahedra, cured": (mixed, True),
     "20-node bricks": (crooked_bricks, False),
     "20-node bricks, selective": (crooked_bricks, True),
     "27-node bricks": (lambda: crooked_bricks("hex27"), False),

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.meshes.solid_element import HEX20, HEX27, TET10, SolidElement, points, shapes
+from bearingdyn.fem.meshes.solid_element import HEX20, HEX27, WEDGE15, SolidElement, points, shapes
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 from bearingdyn.material import Elastic
 from bearingdyn.types import Array
@@ -53,7 +53,8 @@ def assemble_solid(
 ) -> SolidMatrices:
     """Matrices of a mesh, or of some of its elements, isoparametric.
 
-    Integration: 3×3×3 points in bricks, exact for straight-sided ones; order 4 in tetrahedra.
+    Integration: 3×3×3 points in bricks, exact for straight-sided ones; order 4 in tetrahedra; in wedges and
+    pyramids as `solid_element.points` says.
 
     Parameters
     ----------
@@ -62,23 +63,29 @@ def assemble_solid(
     incompressible
         Take from div u only what the element can keep as ν → ½: in 27-node bricks its part linear in each
         element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987, ch. 4), in 20-node
-        bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra its mean (P2/P0: free
-        of locking, but too soft, and of first order). A bonded ring of ν = 0.499 with 4×8×24 elements is
-        within 0.2 % with 27-node bricks and 3 % with 20-node ones; a bonded strip with two tetrahedra through
-        its thickness is 7 % too soft, with six 3 %.
+        bricks its values at 2×2×2 points (selective integration), in 10-node tetrahedra and 13-node pyramids
+        its mean (P2/P0: free of locking, but too soft, and of first order), in 15-node wedges its part
+        linear along the axis, too soft as well. A bonded ring of ν = 0.499 with 4×8×24 elements is within
+        0.2 % with 27-node bricks and 3 % with 20-node ones; a bonded strip with two tetrahedra through its
+        thickness is 7 % too soft, with six 3 %; with two wedges 22 % or less, as they lie, with four 10 %.
     """
-    at = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
-    kind, n = mesh.kind, len(mesh.points)
-    nodes = mesh.elements[at]
-    pairs, where = np.unique((nodes[:, :, None] * n + nodes[:, None, :]).ravel(), return_inverse=True)
-    where = where.reshape(len(nodes), -1)
-    size, k = pairs.size, kind.nodes
+    chosen = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
+    n = len(mesh.points)
+    groups = []
+    for kind, of_kind in mesh.groups:
+        at = chosen[np.isin(chosen, of_kind)]
+        groups += [(kind, mesh.elements[at[s : s + CHUNK], : kind.nodes]) for s in range(0, len(at), CHUNK)]
+    keys = [(nodes[:, :, None] * n + nodes[:, None, :]).ravel() for _, nodes in groups]
+    pairs, where = np.unique(np.concatenate(keys), return_inverse=True)
+    where = where.ravel()
+    size, start = pairs.size, 0
     mass = np.zeros(size)
     blocks = np.zeros((2, 3, 3, size))  # volumetric and deviatoric, by axes, over pairs of nodes
-    for start in range(0, len(nodes), CHUNK):
-        some = slice(start, start + CHUNK)
-        place = where[some].ravel()
-        m, *stiff = _element_matrices(kind, mesh.points[nodes[some]], incompressible)
+    for kind, nodes in groups:
+        k = kind.nodes
+        place = where[start : start + nodes.size * k]
+        start += place.size
+        m, *stiff = _element_matrices(kind, mesh.points[nodes], incompressible)
         mass += np.bincount(place, m.ravel(), size)
         for sums, A in zip(blocks, stiff, strict=True):
             by_axes = A.reshape(-1, k, 3, k, 3).transpose(2, 4, 0, 1, 3)
@@ -140,14 +147,15 @@ def _gradients(kind: SolidElement, p: Array, X: Array, w: Array) -> tuple[Array,
 def _pressures(kind: SolidElement, p: Array, X: Array, N: Array) -> Array:
     """Functions that keep the pressure of nearly incompressible elements, (m, q, modes).
 
-    1 in tetrahedra; 1, x, y, z in bricks, in the place itself, not on the unit brick: there a skewed element
-    would lose an order (Arnold, Boffi & Falk, SIAM J. Numer. Anal. 42 (2005) 2429). Scaled by the edges.
+    1 in tetrahedra and pyramids, 1 and z in wedges, 1, x, y, z in bricks, in the place itself, not on the
+    unit element: there a skewed one would lose an order (Arnold, Boffi & Falk, SIAM J. Numer. Anal. 42 (2005)
+    2429). Scaled by the edges. In a wedge x and y would keep all of div u in its triangles, and lock.
     """
     one = np.ones((len(p), len(X), 1))
-    if kind is TET10:
+    if kind not in (HEX27, WEDGE15):
         return one
-    assert kind is HEX27
-    centre = np.full((1, 3), 0.5)
+    centre = kind.places[: len(kind.corners)].mean(axis=0)[None]
     J = np.einsum("mka,qkb->mab", p, shapes(kind, centre)[1])
     x = N @ p - (shapes(kind, centre)[0] @ p)
-    return np.concatenate([one, np.linalg.solve(J, x.transpose(0, 2, 1)).transpose(0, 2, 1)], axis=2)
+    place = np.linalg.solve(J, x.transpose(0, 2, 1)).transpose(0, 2, 1)
+    return np.concatenate([one, place if kind is HEX27 else place[..., 2:]], axis=2)

@@ -27,7 +27,15 @@ from bearingdyn.cms import (
     check_rounds,
     project,
 )
-from bearingdyn.fem import SolidMesh, SurfaceSamples, assemble_solid, face_shapes, factorise, rigid_motion
+from bearingdyn.fem import (
+    SolidMesh,
+    SurfaceSamples,
+    assemble_solid,
+    by_size,
+    face_shapes,
+    factorise,
+    rigid_motion,
+)
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
@@ -224,7 +232,8 @@ class Solid:
                 raise ValueError(f"outputs[{name!r}] is {place!r}; it must be (x, y, z), m, or a surface")
             distance = np.linalg.norm(p - at, axis=1)
             node = int(np.argmin(distance))
-            of = p[self.mesh.elements[np.any(self.mesh.elements == node, axis=1)]]
+            near = self.mesh.elements[np.any(self.mesh.elements == node, axis=1)]
+            of = p[np.where(near >= 0, near, near[:, :1])]
             if not distance[node] <= float(np.ptp(of, axis=1).max()):
                 raise ValueError(
                     f"outputs[{name!r}] is {place!r}, {distance[node]:.3g} m away from the nearest node at "
@@ -320,24 +329,25 @@ class Solid:
 
     def outline(self) -> Outline:
         """The faces of its elements on the boundary, each as triangles around its middle."""
-        p, boundary, corners = self.mesh.points, self.mesh.boundary, len(self.mesh.kind.faces[0])
-        f = len(boundary)
-        around = np.arange(2 * corners).reshape(2, -1).T.ravel()  # corner, middle of the side, corner, ...
-        used, ring = np.unique(boundary[:, around], return_inverse=True)
-        ring = ring.reshape(f, -1)
-        middle = np.broadcast_to(used.size + np.arange(f)[:, None], ring.shape)
+        p, boundary = self.mesh.points, self.mesh.boundary
+        used, index = np.unique(boundary, return_inverse=True)
+        index = index.reshape(boundary.shape)
         # weight of every node in every point: the nodes themselves, and the shape functions at the middles
-        centre = np.full((1, 2), 0.5 if corners == 4 else 1.0 / 3.0)
-        N = face_shapes(self.mesh.kind, centre)[0]
-        at = (np.repeat(np.arange(f), boundary.shape[1]), boundary.ravel())
-        W = scipy.sparse.vstack(
-            [
-                scipy.sparse.eye(len(p), format="csr")[used],
-                scipy.sparse.csr_matrix((np.tile(N[0], f), at), shape=(f, len(p))),
-            ]
-        )
-        faces = np.stack([ring, np.roll(ring, -1, axis=1), middle], axis=-1).reshape(-1, 3)
-        return Outline(W @ p, faces, scipy.sparse.kron(W, scipy.sparse.eye(3)) @ self._basis.Psi)
+        parts, faces, count = [scipy.sparse.eye(len(p), format="csr")[used]], [], used.size
+        for rows, n in by_size(boundary):
+            f, corners = rows.size, 3 if n == 6 else 4
+            around = (
+                np.arange(2 * corners).reshape(2, -1).T.ravel()
+            )  # corner, middle of the side, corner, ...
+            ring = index[rows][:, around]
+            middle = np.broadcast_to(count + np.arange(f)[:, None], ring.shape)
+            N = face_shapes(n, np.full((1, 2), 0.5 if corners == 4 else 1.0 / 3.0))[0]
+            at = (np.repeat(np.arange(f), n), boundary[rows, :n].ravel())
+            parts.append(scipy.sparse.csr_matrix((np.tile(N[0], f), at), shape=(f, len(p))))
+            faces.append(np.stack([ring, np.roll(ring, -1, axis=1), middle], axis=-1).reshape(-1, 3))
+            count += f
+        W = scipy.sparse.vstack(parts)
+        return Outline(W @ p, np.vstack(faces), scipy.sparse.kron(W, scipy.sparse.eye(3)) @ self._basis.Psi)
 
     def _radiation(self, name: str) -> Surface:
         samples, rows = self.surface(name)

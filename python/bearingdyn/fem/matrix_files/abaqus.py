@@ -31,6 +31,8 @@ MATRIX_INPUT = (
     "an Abaqus matrix has lines of node, direction, node, direction, all whole numbers, and value, numbers "
     "with a point"
 )
+# keywords that read_nodes cannot follow
+GEOMETRY = ("SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "IMPERFECTION")
 
 
 def read_abaqus(
@@ -113,9 +115,21 @@ def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
         For a file that is not there, without nodes, or with a line that is no node.
     """
     p = existing(path)
+    nodes: dict[int, tuple[float, float, float]] = {}
     try:
-        nodes = dict(node(line) for keyword, _, lines in blocks(p) if keyword == "NODE" for line in lines)
+        for block in blocks(p):
+            moved = block.keyword == "INSTANCE" and block.lines
+            turned = block.keyword == "NODE" and block.options.get("SYSTEM", "R").upper() != "R"
+            if block.keyword in GEOMETRY or moved or turned:
+                raise block.fault("it moves or makes nodes, which is not followed here; write the nodes out")
+            for k, line in enumerate(block.lines if block.keyword == "NODE" else ()):
+                try:
+                    nodes.update([node(line)])
+                except ValueError as error:
+                    raise block.fault(error, k) from error
     except ValueError as error:
+        if str(error).startswith(f"{p.name}, line"):
+            raise
         raise ValueError(f"{p}: {error}") from error
     if not nodes:
         raise ValueError(f"{p} has no *NODE block; give the input file that holds the nodes")

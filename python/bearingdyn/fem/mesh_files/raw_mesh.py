@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bearingdyn.checks import positive
-from bearingdyn.fem.meshes.solid_element import KINDS
+from bearingdyn.fem.meshes.solid_element import KINDS, OF_CORNERS
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, merged, second_order
 from bearingdyn.types import Array, Index
 
-CORNERS = {8: 20, 4: 10}  # nodes of a linear element, and of the quadratic one made of it
+LESS = {27: 20, 18: 15, 14: 13}  # nodes of an element, and of the one without middles of faces
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,18 +57,14 @@ def finished(
     positive("scale", scale, "it must be the length of the file's unit in m, as 1e-3 for mm")
     points = scale * raw.points
     if not raw.cells:
-        raise ValueError("the file holds no brick or tetrahedron")
-    sizes = sorted({c.shape[1] for c in raw.cells})
-    if len(sizes) > 1:
-        raise ValueError(
-            f"the file mixes elements of {' and '.join(map(str, sizes))} nodes; mesh the body with one kind"
-        )
-    elements = np.vstack(raw.cells)
+        raise ValueError("the file holds no brick, wedge, pyramid or tetrahedron")
+    elements, left = _side_by_side(raw.cells)
     if not np.all(np.isfinite(points)):
         raise ValueError(f"node {int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])} is not finite")
-    if elements.min() < 0 or elements.max() >= len(points):
+    nodes = np.unique(elements[elements >= 0])
+    if elements.min() < -1 or nodes[-1] >= len(points):
         raise ValueError("an element names a node that the file does not have")
-    extent = float(np.ptp(points[np.unique(elements)], axis=0).max())
+    extent = float(np.ptp(points[nodes], axis=0).max())
     if not 0 < extent <= largest:
         raise ValueError(
             f"the body is {extent:.4g} m long; is the file in mm? Then pass scale=1e-3 "
@@ -79,28 +75,59 @@ def finished(
     if merge is not None:
         positive("merge", merge, "it must be a distance in m below which nodes are one")
         points, label = merged(points, merge)
-        elements = label[elements]
+        elements, left = np.where(elements >= 0, label[elements], -1), label[left]
         surfaces = {name: np.unique(label[at]) for name, at in surfaces.items()}
-    if drop_unconnected:
+    if drop_unconnected or left.size:
         used = np.zeros(len(points), dtype=bool)
-        used[elements] = True
+        if not drop_unconnected:
+            used[:] = True
+            used[left] = False
+        used[elements[elements >= 0]] = True
         number = np.cumsum(used) - 1
         surfaces = {name: number[at[used[at]]] for name, at in surfaces.items()}
         surfaces = {name: at for name, at in surfaces.items() if at.size}
-        points, elements = points[used], number[elements]
-    if elements.shape[1] in CORNERS:
+        points, elements = points[used], np.where(elements >= 0, number[elements], -1)
+    if elements.shape[1] in OF_CORNERS:
         if not upgrade:
             raise ValueError(
                 f"the file has {elements.shape[1]}-node elements, which lock in bending; export "
-                f"{CORNERS[elements.shape[1]]}-node ones, or pass upgrade=True to give them middle nodes "
-                "(on straight edges)"
+                f"{OF_CORNERS[elements.shape[1]].nodes}-node ones, or pass upgrade=True to give them middle "
+                "nodes (on straight edges)"
             )
         return _upgraded(points, elements, named, surfaces, raw.numbers)
-    if elements.shape[1] not in KINDS:
-        raise ValueError(
-            f"the file has {elements.shape[1]}-node elements; bricks of 20 or 27, tetrahedra of 10"
-        )
     return SolidMesh(points, elements, named, surfaces, raw.numbers)
+
+
+def _side_by_side(cells: Sequence[Index]) -> tuple[Index, Index]:
+    """Elements of several sizes in one array, rows of smaller ones ended with −1; and nodes left out.
+
+    Wedges of 18 and pyramids of 14 nodes lose the middles of their faces, and bricks of 27 beside other
+    kinds, for the faces of the neighbours have none.
+
+    Raises
+    ------
+    ValueError
+        For elements of another size, and linear elements among quadratic ones.
+    """
+    sizes = sorted({c.shape[1] for c in cells})
+    strange = [n for n in sizes if n not in KINDS and n not in OF_CORNERS and n not in LESS]
+    if strange:
+        raise ValueError(
+            f"the file has {strange[0]}-node elements; bricks of 20 or 27, wedges of 15 or 18, pyramids of "
+            "13 or 14 and tetrahedra of 10 are read"
+        )
+    linear = [n for n in sizes if n in OF_CORNERS]
+    if linear and linear != sizes:
+        raise ValueError(
+            f"the file mixes elements of {' and '.join(map(str, sizes))} nodes; mesh the body with elements "
+            "of one order"
+        )
+    fewer = {n: LESS[n] for n in sizes if n in LESS and (n != 27 or len(sizes) > 1)}
+    kept = [c[:, : fewer.get(c.shape[1], c.shape[1])] for c in cells]
+    left = [c[:, fewer[c.shape[1]] :].ravel() for c in cells if c.shape[1] in fewer]
+    width = max(c.shape[1] for c in kept)
+    padded = [np.pad(c, ((0, 0), (0, width - c.shape[1])), constant_values=-1) for c in kept]
+    return np.vstack(padded), np.unique(np.concatenate([*left, np.zeros(0, dtype=np.intp)]))
 
 
 def _regions(raw: RawMesh, chosen: Sequence[str] | None) -> dict[str, Index]:
@@ -135,10 +162,12 @@ def _upgraded(
     """Linear elements made second-order; middle nodes join the surfaces on whose faces they lie."""
     points, elements, ends = second_order(points, corners)
     mesh = SolidMesh(points, elements, regions, {}, numbers)
-    before, sides = len(points) - len(ends), len(mesh.kind.faces[0])
+    before = len(points) - len(ends)
+    skin = mesh.boundary
+    corner = skin < before
     complete = {}
     for name, at in surfaces.items():
-        faces = mesh.boundary[np.isin(mesh.boundary[:, :sides], at).all(axis=1)]
+        faces = skin[(np.isin(skin, at) | ~corner).all(axis=1)]
         between = before + np.flatnonzero(np.isin(ends, at).all(axis=1))  # of a surface inside the body
         complete[name] = np.concatenate([at, faces.ravel() if len(faces) else between])
     return replace(mesh, surfaces=complete)

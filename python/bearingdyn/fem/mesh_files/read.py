@@ -7,10 +7,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from bearingdyn.fem.mesh_files.abaqus import read_inp
-from bearingdyn.fem.mesh_files.gmsh_and_vtk import read_with_meshio
+from bearingdyn.fem.mesh_files.gmsh import read_msh
+from bearingdyn.fem.mesh_files.ideas import read_unv
+from bearingdyn.fem.mesh_files.nastran import read_bdf
 from bearingdyn.fem.mesh_files.raw_mesh import finished
+from bearingdyn.fem.mesh_files.vtk import read_with_meshio
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 from bearingdyn.magnitude import LARGEST_BODY
+
+READERS = {".inp": read_inp, ".bdf": read_bdf, ".nas": read_bdf, ".unv": read_unv}
+OTHERS = {".dat": "Nastran or Ansys", ".fem": "OptiStruct", ".med": "Salome", ".cdb": "Ansys"}
 
 
 def read_mesh(
@@ -24,14 +30,17 @@ def read_mesh(
     drop_unconnected: bool = False,
     largest: float = LARGEST_BODY,
 ) -> SolidMesh:
-    """Read a mesh of 20- or 27-node bricks or 10-node tetrahedra; the suffix says the kind of file.
+    """Read a mesh of second-order bricks, wedges, pyramids or tetrahedra; the suffix says the kind of file.
 
-    .msh: gmsh 2.2 and 4.1; physical volumes are regions, physical surfaces are surfaces.
-    .inp: Abaqus and CalculiX; regions are the sets of *SOLID SECTION, or those that divide the body; surfaces
-    are node sets, *SURFACE, and sets of shell or plane elements.
+    .msh: gmsh 2.2, 4.0 and 4.1, text and binary; physical volumes are regions, physical surfaces are surfaces
+    (with region_data="gmsh:geometrical" the entities of the drawing, by number).
+    .inp: Abaqus and CalculiX, flat or an assembly of parts; regions are the sets of *SOLID SECTION, or those
+    that divide the body; surfaces are node sets, *SURFACE, and sets of shell or plane elements.
+    .bdf, .nas: Nastran; the numbers of properties name regions of solids and surfaces of shells.
+    .unv: I-deas; its groups, or else the numbers of properties.
     .vtk, .vtu: the numbers in region_data make regions of solid cells and surfaces of face cells, named by
     the number; a point array of 0 and 1 makes a surface of its name.
-    .msh, .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
+    .vtk and .vtu need meshio (pip install bearingdyn[mesh]).
 
     Parameters
     ----------
@@ -44,7 +53,7 @@ def read_mesh(
     region_data
         Name of the array of cell numbers; None: "gmsh:physical", "CellEntityIds" or "region".
     upgrade
-        Accept 8-node bricks and 4-node tetrahedra, and give them middle nodes on straight edges.
+        Accept linear elements, and give them middle nodes on straight edges.
     merge
         Distance, m, below which two nodes become one; None: none do.
     drop_unconnected
@@ -62,10 +71,22 @@ def read_mesh(
     if not file.is_file():
         raise ValueError(f"{file} is not a file; give the path of a mesh (.msh, .inp, .vtk, .vtu)")
     suffix = file.suffix.lower()
-    if suffix not in (".msh", ".inp", ".vtk", ".vtu"):
-        raise ValueError(f"{file.name} has the suffix {suffix!r}; meshes are .msh, .inp, .vtk or .vtu files")
+    if suffix in OTHERS:
+        raise ValueError(
+            f"{file.name} has the suffix {suffix!r}, a mesh of {OTHERS[suffix]}, which is not read; "
+            "export .inp, .bdf or .msh"
+        )
+    if suffix not in (*READERS, ".msh", ".vtk", ".vtu"):
+        raise ValueError(
+            f"{file.name} has the suffix {suffix!r}; meshes are .msh, .inp, .bdf, .unv, .vtk or .vtu"
+        )
     try:
-        raw = read_inp(file) if suffix == ".inp" else read_with_meshio(file, region_data)
+        if suffix in READERS:
+            raw = READERS[suffix](file)
+        elif suffix == ".msh":
+            raw = read_msh(file, region_data)
+        else:
+            raw = read_with_meshio(file, region_data)
         return finished(
             raw,
             scale=scale,
@@ -76,4 +97,6 @@ def read_mesh(
             largest=largest,
         )
     except ValueError as error:
+        if str(error).startswith(f"{file.name}, line"):
+            raise
         raise ValueError(f"{file.name}: {error}") from error

@@ -54,7 +54,7 @@ def box_mesh(x: ArrayLike, y: ArrayLike, z: ArrayLike, element: str = "hex20") -
     p = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
     i = np.arange(len(p)).reshape(shape)
     ends = (slice(None, -1), slice(1, None))
-    corners = [i[ends[a], ends[b], ends[c]].ravel() for a, b, c in HEX20.corners]
+    corners = [i[tuple(ends[int(side)] for side in corner)].ravel() for corner in HEX20.corners]
     p, elements, _ = second_order(p, np.stack(corners, axis=1))
     surfaces = {
         f"{'xyz'[a]}{sign}": np.flatnonzero(p[:, a] == lines[a][end])

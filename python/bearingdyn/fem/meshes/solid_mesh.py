@@ -14,12 +14,13 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bearingdyn.fem.meshes.solid_element import (
-    BRICK_EDGES,
     HEX20,
     HEX27,
     KINDS,
-    TET_EDGES,
+    NAMES,
+    OF_CORNERS,
     SolidElement,
+    by_size,
     face_points,
     face_shapes,
     points,
@@ -84,15 +85,19 @@ class SurfaceSamples:
 
 @dataclass(frozen=True, eq=False)
 class SolidMesh:
-    """20- or 27-node bricks, or 10-node tetrahedra, that hang together.
+    """Second-order solid elements that hang together.
+
+    They are 27-node bricks, or 20-node bricks, 15-node wedges, 13-node pyramids and 10-node tetrahedra, of
+    one kind or mixed.
 
     Parameters
     ----------
     points
         (n, 3) nodes, m.
     elements
-        (m, 20, 27 or 10) nodes of each element, numbered as VTK and Abaqus do: corners, middles of edges, and
-        for 27 the middles of the faces x−, x+, y−, y+, z−, z+ and the centre.
+        (m, 10 to 27) nodes of each element, numbered as VTK and Abaqus do: corners, middles of edges, and
+        for 27 the middles of the faces x−, x+, y−, y+, z−, z+ and the centre. Among larger elements, the row
+        of a smaller one ends in −1.
     regions
         name -> elements, each element in one; none given: one region "body".
     surfaces
@@ -105,7 +110,7 @@ class SolidMesh:
     ValueError
         Naming the element or node, for an element turned inside out, numbered in the order of a mirror image
         or with a middle node far from its edge, for nodes that no element has, bodies that do not hang
-        together, an element in no region or in two, and an empty surface.
+        together, kinds whose faces do not fit, an element in no region or in two, and an empty surface.
     """
 
     points: Array
@@ -116,7 +121,8 @@ class SolidMesh:
 
     def __repr__(self) -> str:
         """One line instead of the nodes."""
-        size = f"{len(self.elements)} elements of {self.elements.shape[1]} nodes, {len(self.points)} nodes"
+        many = " and ".join(f"{len(at)} elements of {kind.nodes} nodes" for kind, at in self.groups)
+        size = f"{many}, {len(self.points)} nodes"
         return f"<SolidMesh of {size}, regions {list(self.regions)}, surfaces {list(self.surfaces)}>"
 
     def __post_init__(self) -> None:
@@ -125,8 +131,8 @@ class SolidMesh:
             raise ValueError(f"points has shape {p.shape}; it must be (n, 3), finite")
         if e.ndim != 2 or e.shape[1] not in KINDS or not len(e):
             raise ValueError(
-                f"elements has shape {e.shape}; a row holds 20 or 27 nodes of a brick or 10 of a tetrahedron"
-                " (second_order makes them of corners)"
+                f"elements has shape {e.shape}; a row holds 20 or 27 nodes of a brick, 15 of a wedge, 13 of "
+                "a pyramid or 10 of a tetrahedron (second_order makes them of corners)"
             )
         numbers = np.arange(len(e)) if self.numbers is None else np.asarray(self.numbers)
         object.__setattr__(self, "points", p)
@@ -136,9 +142,16 @@ class SolidMesh:
             raise ValueError(
                 f"numbers has shape {numbers.shape}; it must be ({len(e)},), one for each element"
             )
-        if e.min() < 0 or e.max() >= len(p):
-            k = int(np.flatnonzero((e < 0).any(axis=1) | (e >= len(p)).any(axis=1))[0])
+        there = e >= 0
+        count = there.sum(axis=1)
+        wrong = ~np.isin(count, list(KINDS)) | (there != (np.arange(e.shape[1]) < count[:, None])).any(axis=1)
+        for k in np.flatnonzero(wrong | (e < -1).any(axis=1) | (e >= len(p)).any(axis=1))[:1].tolist():
             raise ValueError(f"element {numbers[k]} names a node outside 0...{len(p) - 1}")
+        if len(self.groups) > 1 and any(kind.centres for kind, _ in self.groups):
+            raise ValueError(
+                "elements mix 27-node bricks with another kind, whose faces have no middle node; "
+                "use 20-node bricks"
+            )
         self._check_connection()
         self._check_shapes()
         regions = {name: np.unique(np.asarray(at, dtype=np.intp)) for name, at in self.regions.items()}
@@ -166,17 +179,17 @@ class SolidMesh:
     def _check_connection(self) -> None:
         p, e = self.points, self.elements
         used = np.zeros(len(p), dtype=bool)
-        used[e] = True
+        used[e[e >= 0]] = True
         loose = np.flatnonzero(~used)
         if loose.size:
             raise ValueError(
                 f"{loose.size} nodes belong to no element, the first at {p[loose[0]].tolist()} m "
                 f"(node {loose[0]}, from 0); remove them (read_mesh: drop_unconnected=True)"
             )
-        k = e.shape[1]
-        first = np.repeat(e[:, 0], k - 1)
+        linked = np.where(e >= 0, e, e[:, :1])
+        first = np.repeat(e[:, 0], e.shape[1])
         graph = scipy.sparse.coo_matrix(
-            (np.ones(first.size, dtype=bool), (first, e[:, 1:].ravel())), (len(p),) * 2
+            (np.ones(first.size, dtype=bool), (first, linked.ravel())), (len(p),) * 2
         )
         count, label = connected_components(graph, directed=False)
         if count > 1:
@@ -193,8 +206,15 @@ class SolidMesh:
             )
 
     def _check_shapes(self) -> None:
-        kind, p, e, numbers = self.kind, self.points, self.elements, self.numbers
-        assert numbers is not None
+        for kind, at in self.groups:
+            self._check_kind(kind, at)
+        if len(self.groups) > 1:
+            self._check_fit()
+
+    def _check_kind(self, kind: SolidElement, at: Index) -> None:
+        """Shapes of the elements `at`, all of one kind."""
+        assert self.numbers is not None
+        p, e, numbers = self.points, self.elements[at, : kind.nodes], self.numbers[at]
         c = len(kind.corners)
         first, twin = np.unique(np.sort(e[:, :c], axis=1), axis=0, return_index=True, return_inverse=True)[1:]
         for k in np.flatnonzero(first[twin.ravel()] != np.arange(len(e)))[:1].tolist():
@@ -217,7 +237,7 @@ class SolidMesh:
                     f"element {numbers[k]} has the middle of a face or its centre out of place "
                     f"(its node {20 + int(np.argmax(off[k]))}, from 0); nodes must be in VTK's order"
                 )
-        det = np.linalg.det(self._jacobians(points(kind)[0]))
+        det = np.linalg.det(self._jacobians(kind, points(kind)[0], at))
         for k in np.flatnonzero(~np.all(det > 0, axis=1))[:1].tolist():
             if np.all(det[k] < 0):
                 raise ValueError(
@@ -229,23 +249,53 @@ class SolidMesh:
                 "check the order of its nodes, or refine the mesh"
             )
 
-    def _jacobians(self, X: Array, elements: Any = slice(None)) -> Array:
-        """∂x_a/∂ξ_b at points X (q, 3): (m, q, 3, 3)."""
-        gradient = shapes(self.kind, X)[1]
-        return np.asarray(
-            np.einsum("mka,qkb->mqab", self.points[self.elements[elements]], gradient, optimize=True)
+    def _check_fit(self) -> None:
+        """No triangle of the boundary may have its corners in a quadrilateral: there the mesh is torn."""
+        faces = {n: self.boundary[at] for at, n in by_size(self.boundary)}
+        if len(faces) < 2:
+            return
+        quads = np.sort(next(rows for n, rows in faces.items() if n != 6)[:, :4], axis=1)
+        three = np.vstack([np.delete(quads, i, axis=1) for i in range(4)])
+        both, count = np.unique(
+            np.vstack([np.unique(three, axis=0), np.unique(np.sort(faces[6][:, :3], axis=1), axis=0)]),
+            axis=0,
+            return_counts=True,
         )
+        for corners in both[count > 1][:1]:
+            place = self.points[corners].mean(axis=0).tolist()
+            raise ValueError(
+                f"triangles lie on a quadrilateral near {place} m, where their middle nodes do not fit; "
+                "put pyramids between bricks and tetrahedra"
+            )
+
+    def _jacobians(self, kind: SolidElement, X: Array, elements: Index) -> Array:
+        """∂x_a/∂ξ_b of elements of a kind at points X (q, 3): (m, q, 3, 3)."""
+        gradient = shapes(kind, X)[1]
+        nodes = self.elements[elements, : kind.nodes]
+        return np.asarray(np.einsum("mka,qkb->mqab", self.points[nodes], gradient, optimize=True))
+
+    @cached_property
+    def groups(self) -> tuple[tuple[SolidElement, Index], ...]:
+        """Its kinds of elements, and which elements are of each."""
+        count = (self.elements >= 0).sum(axis=1)
+        return tuple((KINDS[n], np.flatnonzero(count == n)) for n in np.unique(count).tolist())
 
     @property
     def kind(self) -> SolidElement:
-        """The kind of its elements."""
-        return KINDS[self.elements.shape[1]]
+        """The kind of its elements. Raises ValueError if they are of more than one."""
+        if len(self.groups) > 1:
+            names = " and ".join(f"{kind.nodes}-node {NAMES[kind.name[:3]]}s" for kind, _ in self.groups)
+            raise ValueError(f"the mesh mixes {names}; `groups` tells which elements are of which kind")
+        return self.groups[0][0]
 
     def volume(self, region: str | None = None) -> float:
         """Volume of a region, or of all, m³."""
-        at = slice(None) if region is None else self.regions[region]
-        X, w = points(self.kind)
-        return float((np.linalg.det(self._jacobians(X, at)) @ w).sum())
+        total = 0.0
+        for kind, at in self.groups:
+            some = at if region is None else np.intersect1d(at, self.regions[region])
+            X, w = points(kind)
+            total += float((np.linalg.det(self._jacobians(kind, X, some)) @ w).sum())
+        return total
 
     def surface(self, name: str) -> Index:
         """Nodes of a surface. Raises ValueError, listing the known, for a name the mesh does not have."""
@@ -279,7 +329,9 @@ class SolidMesh:
         """
         if name in self.regions:
             raise ValueError(f"the mesh has a region {name!r} already; choose another name")
-        middle = self.points[self.elements[:, : len(self.kind.corners)]].mean(axis=1)
+        middle = np.zeros((len(self.elements), 3))
+        for kind, at in self.groups:
+            middle[at] = self.points[self.elements[at, : len(kind.corners)]].mean(axis=1)
         chosen = np.flatnonzero(np.asarray(where(middle), dtype=bool))
         if not chosen.size:
             raise ValueError(f"region {name!r} is empty: no element satisfies the condition")
@@ -288,12 +340,21 @@ class SolidMesh:
 
     @cached_property
     def boundary(self) -> Index:
-        """Faces that one element alone has, (f, nodes of a face), seen from outside anticlockwise."""
-        kind = self.kind
-        faces = self.elements[:, kind.face_nodes].reshape(-1, kind.face_nodes.shape[1])
-        corners = np.sort(faces[:, : len(kind.faces[0])], axis=1)
-        _, first, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
-        return np.asarray(faces[np.sort(first[count == 1])])
+        """Faces that one element alone has, (f, nodes of a face), seen from outside anticlockwise.
+
+        A triangle among quadrilaterals repeats its last node.
+        """
+        width = max(kind.face_nodes.shape[1] for kind, _ in self.groups)
+        faces, corners = [], []
+        for kind, at in self.groups:
+            own = self.elements[at][:, kind.face_nodes]
+            own = np.concatenate([own, np.repeat(own[..., -1:], width - own.shape[2], axis=2)], axis=2)
+            faces.append(own.reshape(-1, width))
+            of = np.where(kind.face_corners >= 0, self.elements[at][:, kind.face_corners], -1)
+            corners.append(of.reshape(-1, 4))
+        every = np.sort(np.vstack(corners), axis=1)
+        _, first, count = np.unique(every, axis=0, return_index=True, return_counts=True)
+        return np.asarray(np.vstack(faces)[np.sort(first[count == 1])])
 
     def faces(self, name: str) -> Index:
         """Boundary faces of a surface: those with all their nodes on it.
@@ -319,26 +380,32 @@ class SolidMesh:
             As `faces` does.
         """
         faces = self.faces(name)
-        X, w = face_points(self.kind)
-        N, gradient = face_shapes(self.kind, X)
-        p = self.points[faces]
-        tangents = np.einsum("fka,qkb->fqba", p, gradient, optimize=True)
-        normal = np.cross(tangents[:, :, 0], tangents[:, :, 1]).reshape(-1, 3)
-        area = np.linalg.norm(normal, axis=1)
-        f, q = len(faces), len(w)
-        row = np.repeat(np.arange(f * q), faces.shape[1])
-        column = np.repeat(faces, q, axis=0).ravel()
-        value = np.tile(N, (f, 1)).ravel()
+        positions, normals, weights, parts = [], [], [], []
+        for at, n in by_size(faces):
+            X, w = face_points(n)
+            N, gradient = face_shapes(n, X)
+            nodes = faces[at, :n]
+            p = self.points[nodes]
+            tangents = np.einsum("fka,qkb->fqba", p, gradient, optimize=True)
+            normal = np.cross(tangents[:, :, 0], tangents[:, :, 1]).reshape(-1, 3)
+            area = np.linalg.norm(normal, axis=1)
+            f, q = nodes.shape[0], len(w)
+            at_points = (np.repeat(np.arange(f * q), n), np.repeat(nodes, q, axis=0).ravel())
+            value = np.tile(N, (f, 1)).ravel()
+            positions.append((N @ p).reshape(-1, 3))
+            normals.append(normal / area[:, None])
+            weights.append(area * np.tile(w, f))
+            parts.append(scipy.sparse.csr_matrix((value, at_points), shape=(f * q, len(self.points))))
         return SurfaceSamples(
-            positions=(N @ p).reshape(-1, 3),
-            normals=normal / area[:, None],
-            weights=area * np.tile(w, f),
-            interpolation=scipy.sparse.csr_matrix((value, (row, column)), shape=(f * q, len(self.points))),
+            positions=np.vstack(positions),
+            normals=np.vstack(normals),
+            weights=np.concatenate(weights),
+            interpolation=scipy.sparse.vstack(parts, format="csr"),
         )
 
     def with_centres(self) -> SolidMesh:
         """20-node bricks made 27-node ones, new nodes where the 20-node shapes put them; else unchanged."""
-        if self.kind is not HEX20:
+        if [kind for kind, _ in self.groups] != [HEX20]:
             return self
         e, n = self.elements, len(self.points)
         weight = shapes(HEX20, HEX27.places[20:])[0]  # (7, 20)
@@ -360,22 +427,37 @@ class SolidMesh:
 
 
 def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Array, Index, Index]:
-    """Middle nodes for straight-edged bricks (m, 8) or tetrahedra (m, 4).
+    """Middle nodes for straight-edged bricks, wedges, pyramids or tetrahedra.
+
+    Parameters
+    ----------
+    points
+        (n, 3).
+    corners
+        (m, 8, 6, 5 or 4); among larger elements, the row of a smaller one ends in −1.
 
     Returns
     -------
     points : (n', 3) array
         The given points, then the new ones.
-    elements : (m, 20) or (m, 10) array
-        Nodes of each element.
+    elements : (m, 20, 15, 13 or 10) array
+        Nodes of each element, rows of smaller ones ended in −1.
     ends : (n' − n, 2) array
         The two points between which each new one lies.
     """
     p, c = np.asarray(points, dtype=np.float64), np.asarray(corners, dtype=np.intp)
-    edges = np.sort(c[:, np.array(BRICK_EDGES if c.shape[1] == 8 else TET_EDGES)].reshape(-1, 2), axis=1)
-    key, which = np.unique(edges[:, 0] * len(p) + edges[:, 1], return_inverse=True)
+    count = (c >= 0).sum(axis=1)
+    groups = [(OF_CORNERS[n], np.flatnonzero(count == n)) for n in np.unique(count).tolist()]
+    edges = [np.sort(c[at][:, np.array(kind.edges)].reshape(-1, 2), axis=1) for kind, at in groups]
+    every = np.vstack(edges)
+    key, which = np.unique(every[:, 0] * len(p) + every[:, 1], return_inverse=True)
     ends = np.stack([key // len(p), key % len(p)], axis=1)
-    elements = np.hstack([c, len(p) + which.reshape(len(c), -1)])
+    elements = np.full((len(c), max(kind.nodes for kind, _ in groups)), -1, dtype=np.intp)
+    start = 0
+    for (kind, at), own in zip(groups, edges, strict=True):
+        middles = len(p) + which.ravel()[start : start + len(own)].reshape(len(at), -1)
+        elements[at, : kind.nodes] = np.hstack([c[at, : len(kind.corners)], middles])
+        start += len(own)
     return np.vstack([p, p[ends].mean(axis=1)]), elements, ends
 
 
