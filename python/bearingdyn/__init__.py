@@ -74,6 +74,7 @@ PUBLIC = {
         "MasterCurve",
         "Maxwell",
         "PowerLaw",
+        "RelaxationData",
         "TabulatedModulus",
         "fit_maxwell",
         "master_curve",

@@ -8,6 +8,7 @@ from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification import fit_dense, fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.reading import ReadingError, read_dma, sample_dma_path
+from bearingdyn.material.relaxation import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
 from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, master_curve, suspects
 
@@ -25,6 +26,7 @@ __all__ = [
     "OutsideBand",
     "PowerLaw",
     "ReadingError",
+    "RelaxationData",
     "RhoT",
     "ShiftTable",
     "Suspect",

@@ -14,7 +14,7 @@ from bearingdyn.magnitude import check_bulk, check_density
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.retuning import Retunable
-from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict
+from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
 from bearingdyn.notice import warn
 from bearingdyn.types import Array, Complex
 
@@ -324,18 +324,19 @@ class Maxwell(Retunable):
         """The same material at temperature T, °C: tau and eta0 times a_T(T)/a_T(temperature), by its law.
 
         Moduli are multiplied by b_T(T)/b_T(temperature) if there is a vertical shift; the band moves along.
+        Outside the isotherms the law was found from it warns (OutsideIsotherms).
 
         Raises
         ------
         ValueError
-            If the material has no law.
+            If the material has no law, or T lies above 500 °C or where the law has no meaning.
         """
         if self.law is None or self.temperature is None:
             raise ValueError(
                 "Maxwell.law is None: a material can be moved to another temperature only by a shift law "
                 "(law=WLF(C1, C2, T_ref), or one fitted by master_curve)"
             )
-        aT = float(10 ** (self.law.log_shift(T) - self.law.log_shift(self.temperature)))
+        aT = 10 ** moved_shift("Maxwell", self.law, self.temperature, T)
         bT = 1.0
         if self.vertical is not None:
             bT = float(self.vertical.factor(T) / self.vertical.factor(self.temperature))
