@@ -1,8 +1,8 @@
 """Mutants of DMA files for the reader: whatever stands in a file, data or an error that says where.
 
-`fuzz_dma(folder, count)` is what a common fuzz harness registers: seeded, it writes and reads `count` mutants and
-returns what broke the rule. The rule: only ValueError or OSError, naming the file and a line, in less than 5 s
-and 1 GB each.
+`fuzz_dma(folder, count)` is what a common fuzz harness registers: seeded, it writes and reads `count`
+mutants and returns what broke the rule. The rule: only ValueError or OSError, naming the file and a line, in
+less than 5 s and 1 GB each.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ F = (0.1, 0.3, 1.0, 3.0, 10.0)
 
 def _rows(form: str = "{f},{T},{s},{q}\n", point: str = ".") -> str:
     text = "".join(
-        form.format(f=f, T=T, s=5e6 * f**0.1 * 0.99**T, q=1e6 * f**0.1 * 0.98**T) for T in (20.0, 40.0) for f in F
+        form.format(f=f, T=T, s=5e6 * f**0.1 * 0.99**T, q=1e6 * f**0.1 * 0.98**T)
+        for T in (20.0, 40.0)
+        for f in F
     )
     return text.replace(".", point)
 
@@ -31,18 +33,22 @@ def _rows(form: str = "{f},{T},{s},{q}\n", point: str = ".") -> str:
 def seeds() -> list[tuple[str, bytes]]:
     """Ending and content of good files, one of each kind that is understood."""
     plain = "frequency_Hz,temperature_C,G_storage_Pa,G_loss_Pa,run\n" + _rows("{f},{T},{s},{q},a\n")
-    german = "Frequenz;Temperatur;Speichermodul G';Verlustmodul G''\nHz;°C;Pa;Pa\n" + _rows("{f};{T};{s};{q}\n", ",")
+    german = "Frequenz;Temperatur;Speichermodul G';Verlustmodul G''\nHz;°C;Pa;Pa\n" + _rows(
+        "{f};{T};{s};{q}\n", ","
+    )
     steps = "".join(
-        f"[step]\nFrequency sweep - {k}\nAngular frequency\tTemperature\tStorage modulus G'\ttan(δ)\nrad/s\t°C\tMPa\t\n"
-        + "".join(f"{f}\t{20 + k}\t{5 + f}\t0.{k}\n" for f in F)
+        f"[step]\nFrequency sweep - {k}\nAngular frequency\tTemperature\tStorage modulus "
+        "G'\ttan(δ)\nrad/s\t°C\tMPa\t\n" + "".join(f"{f}\t{20 + k}\t{5 + f}\t0.{k}\n" for f in F)
         for k in (1, 2, 3)
     )
     compass = (
-        "Project:\tx\nTemperature:\t25.0 °C\nInterval data:\tAngular Frequency\tG'\tG''\n\t[rad/s]\t[Pa]\t[Pa]\n"
-        + "".join(f"\t{f}\t{1e6 + f}\t{1e5 + f}\n" for f in F)
+        "Project:\tx\nTemperature:\t25.0 °C\nInterval data:\tAngular "
+        "Frequency\tG'\tG''\n\t[rad/s]\t[Pa]\t[Pa]\n" + "".join(f"\t{f}\t{1e6 + f}\t{1e5 + f}\n" for f in F)
     )
     relaxation = "t,G_relax,T\ns,MPa,°C\n" + "".join(f"{f},{5 - f / 9},20\n" for f in F)
-    blanks = "# T = 23 °C\n f     E'     tan_delta\n [Hz]  [MPa]  []\n" + "".join(f" {f}   {9 + f}   0.3\n" for f in F)
+    blanks = "# T = 23 °C\n f     E'     tan_delta\n [Hz]  [MPa]  []\n" + "".join(
+        f" {f}   {9 + f}   0.3\n" for f in F
+    )
     found = [
         (".csv", plain.encode()),
         (".csv", plain.encode("utf-8-sig")),
@@ -79,9 +85,11 @@ def _lose(rng: random.Random, data: bytearray) -> None:
 
 
 TOKENS = (
-    b"nan", b"inf", b"-1", b"0", b"1e400", b"9" * 400, b"1e-320", b"", b'"', b'"""', b"\0", b"\xff\xfe", b"\xef\xbb\xbf",
-    b",,,,", b";", b"\t", b"\n", b"\r", b"[step]\n", b"Step name\tx\n", b"f,T,G',G\"\n", b"\xe2\x80\xa8", b"1_000",
-    b"1.234,5", b"1,234.5", b"Hz", b"rad/s", b"%", b"t,G\n", b"#", b"-" * 300, b"(" * 200, b"_" * 5000, b" " * 5000,
+    b"nan", b"inf", b"-1", b"0", b"1e400", b"9" * 400, b"1e-320", b"", b'"', b'"""', b"\0", b"\xff\xfe", 
+    b"\xef\xbb\xbf",
+    b",,,,", b";", b"\t", b"\n", b"\r", b"[step]\n", b"Step name\tx\n", b"f,T,G',G\"\n", b"\xe2\x80\xa8",
+    b"1_000", b"1.234,5", b"1,234.5", b"Hz", b"rad/s", b"%", b"t,G\n", b"#", b"-" * 300, b"(" * 200, b"_" *
+    5000, b" " * 5000,
 )  # fmt: skip
 
 
@@ -131,7 +139,11 @@ def mutant(number: int, seed: int = 0) -> tuple[str, bytes]:
     return ending, bytes(data)
 
 
-OPTIONS = ({}, {"mode": "shear", "temperature": 20.0}, {"mode": "tension", "sort": True, "drop_invalid": True})
+OPTIONS = (
+    {},
+    {"mode": "shear", "temperature": 20.0},
+    {"mode": "tension", "sort": True, "drop_invalid": True},
+)
 
 
 def fuzz_dma(folder: Path, count: int, seed: int = 0) -> list[str]:

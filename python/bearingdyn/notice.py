@@ -19,8 +19,8 @@ class Notice(UserWarning):
 class OutsideIsotherms(Notice):
     """A shift law is used at a temperature at which nothing was measured.
 
-    When: a material is moved to (`at`, `Application.temperature`), or a master curve referred to, a temperature
-    outside the isotherms its law was found from.
+    When: a material is moved to (`at`, `Application.temperature`), or a master curve referred to, a
+    temperature outside the isotherms its law was found from.
     Remedy: measure there, or take the answer as an extrapolation of the law.
     """
 
@@ -28,8 +28,8 @@ class OutsideIsotherms(Notice):
 class PoorLaw(Notice):
     """A shift law renders the shifts of the isotherms far worse than they are known.
 
-    When: `master_curve` fits a law that misses the shifts by 0.3 decade rms, or by ten times their own standard
-    errors, or that doubles the misfit of the moduli.
+    When: `master_curve` fits a law that misses the shifts by 0.3 decade rms, or by ten times their own
+    standard errors, or that doubles the misfit of the moduli.
     Remedy: another law ("joined" through a glass transition, "free"), or fewer isotherms.
     """
 
@@ -37,8 +37,8 @@ class PoorLaw(Notice):
 class UnevenShifts(Notice):
     """The shifts of neighbouring isotherms zigzag, or rise with temperature, as no polymer's do.
 
-    When: a step of `master_curve`'s shifts, per kelvin, is below half the smaller, or above twice the larger, of
-    its neighbours by 0.15 decade or more, or has the other sign.
+    When: a step of `master_curve`'s shifts, per kelvin, is below half the smaller, or above twice the
+    larger, of its neighbours by 0.15 decade or more, or has the other sign.
     Remedy: look at the isotherms named; leave one out, give its shift by hand, or measure again.
     """
 

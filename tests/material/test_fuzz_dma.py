@@ -1,4 +1,4 @@
-"""The DMA reader against mutants: only ValueError or OSError that names file and line, soon, in little memory."""
+"""The DMA reader against mutants: only ValueError or OSError that names file and line, and soon."""
 
 from __future__ import annotations
 

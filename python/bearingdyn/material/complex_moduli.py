@@ -118,7 +118,7 @@ class TabulatedModulus:
     def from_master(
         cls, master: MasterCurve | DMAData, *, K: float, density: float, per_decade: int = 10
     ) -> TabulatedModulus:
-        """A master curve, or one sweep, in shear as a table: points averaged geometrically in classes of frequency.
+        """A master curve, or one sweep, in shear as a table: points averaged geometrically in classes.
 
         ValueError if the curve is in tension (``master.to_shear`` first).
         """

@@ -186,8 +186,9 @@ class DMAData:
     def take(self, index: NDArray[np.int64]) -> Self:
         """The points of these indices, in order of isotherm and frequency."""
         index = index[np.lexsort((self.frequency[index], self.labels[index]))]
-        known = {name: getattr(self, name) for name in self.PER_POINT}
-        return replace(self, **{name: None if v is None else v[index] for name, v in known.items()})
+        known: dict[str, Any] = {name: getattr(self, name) for name in self.PER_POINT}
+        taken: dict[str, Any] = {name: None if v is None else v[index] for name, v in known.items()}
+        return replace(self, **taken)
 
     def to_shear(self, *, K: float | None = None, nu: float | None = None) -> DMAData:
         """The same measurement in shear, by a bulk modulus or by a Poisson's ratio.
@@ -228,8 +229,9 @@ class DMAData:
     ) -> Self:
         """The points with f_min ≤ frequency ≤ f_max, Hz, T[0] ≤ temperature ≤ T[1], °C, and of these runs.
 
-        Use it to leave out, openly, what is known to be wrong: a fixture's resonance, a melted sample, another
-        specimen. Several runs named are meant to stand together: :func:`master_curve` then does not warn.
+        Use it to leave out, openly, what is known to be wrong: a fixture's resonance, a melted sample,
+        another specimen. Several runs named are meant to stand together: :func:`master_curve` then does not
+        warn.
 
         Raises
         ------
@@ -250,8 +252,8 @@ class DMAData:
             raise ValueError(
                 f"{self.source}: no point between f_min = {f_min:g} and f_max = {f_max:g} Hz, "
                 f"T = {T[0]:g} to {T[1]:g} °C{'' if run is None else f', run {run!r}'}: data reach from "
-                f"{self.frequency.min():.4g} to {self.frequency.max():.4g} Hz, {self.temperature.min():.4g} to "
-                f"{self.temperature.max():.4g} °C"
+                f"{self.frequency.min():.4g} to {self.frequency.max():.4g} Hz, {self.temperature.min():.4g} "
+                f"to {self.temperature.max():.4g} °C"
             )
         left = self.take(np.flatnonzero(keep))
         return left if wanted is None else replace(left, runs_chosen=True)

@@ -14,8 +14,8 @@ from bearingdyn.material.spectrum import dense_times, solve_strengths
 from bearingdyn.types import Array
 
 _CONVERTED = (
-    "relaxation modulus turned into storage and loss modulus at 1/(2πt) by a non-negative spectrum; within half a "
-    "decade of either end of each isotherm the loss modulus is uncertain"
+    "relaxation modulus turned into storage and loss modulus at 1/(2πt) by a non-negative spectrum; within "
+    "half a decade of either end of each isotherm the loss modulus is uncertain"
 )
 
 
@@ -27,9 +27,9 @@ def _none() -> Array:
 class RelaxationData(DMAData):
     """Relaxation modulus at times and temperatures, one value per point; made by :meth:`of`.
 
-    It is a :class:`DMAData` too: storage and loss modulus at f = 1/(2πt) follow from a non-negative relaxation
-    spectrum through each isotherm, so that isotherms at several temperatures superpose like sweeps. A single
-    isotherm is fitted by :func:`fit_maxwell` in time, to what was measured.
+    It is a :class:`DMAData` too: storage and loss modulus at f = 1/(2πt) follow from a non-negative
+    relaxation spectrum through each isotherm, so that isotherms at several temperatures superpose like
+    sweeps. A single isotherm is fitted by :func:`fit_maxwell` in time, to what was measured.
 
     Parameters
     ----------
@@ -90,7 +90,8 @@ class RelaxationData(DMAData):
         if not (np.all(t > 0) and np.all(np.isfinite(t)) and np.all(g > 0)):
             bad = int(np.argmin((t > 0) & np.isfinite(t) & (g > 0)))
             raise ValueError(
-                f"{source}: at time {t[bad]:g} s the relaxation modulus is {g[bad]:g} Pa; both must be positive"
+                f"{source}: at time {t[bad]:g} s the relaxation modulus is {g[bad]:g} Pa; both must be "
+                "positive"
             )
         T = np.broadcast_to(np.asarray(temperature, dtype=np.float64), t.shape).copy()
         labels = group_isotherms(T, run) if isotherm is None else isotherm
@@ -114,7 +115,7 @@ class RelaxationData(DMAData):
 
 
 def _converted(t: Array, g: Array) -> NDArray[np.complex128]:
-    """Complex modulus at ω = 1/t of the non-negative spectrum nearest to the relaxation modulus, relatively."""
+    """Complex modulus at ω = 1/t of the non-negative spectrum nearest to G(t), relatively."""
     tau = dense_times(float(1 / t.max()), float(1 / t.min()), 6, 0.5)
     A = np.hstack([np.ones((t.size, 1)), np.exp(-t[:, None] / tau)]) / g[:, None]
     x = solve_strengths(A, np.ones(t.size)).x

@@ -327,8 +327,8 @@ def moved_shift(owner: str, law: Law, start: float, T: float) -> float:
     shift = float(law.log_shift(T) - law.log_shift(start))
     if not abs(shift) <= _FURTHEST:
         raise ValueError(
-            f"{owner}.at: T is {T:g} °C; its shift law, {type(law).__name__}, moves it by {shift:.3g} decades "
-            f"from {start:g} °C, which has no meaning; stay nearer to the temperatures measured"
+            f"{owner}.at: T is {T:g} °C; its shift law, {type(law).__name__}, moves it by {shift:.3g} "
+            f"decades from {start:g} °C, which has no meaning; stay nearer to the temperatures measured"
         )
     if law.measured is not None and not law.measured[0] - _JITTER <= T <= law.measured[1] + _JITTER:
         warn(

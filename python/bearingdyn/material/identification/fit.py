@@ -50,11 +50,11 @@ def fit_maxwell(
     Parameters
     ----------
     master
-        Master curve, or a single sweep as it was read (a supplier's finished curve, one temperature): then the
-        model has no shift law. RelaxationData of one temperature is fitted in time, by least squares of
+        Master curve, or a single sweep as it was read (a supplier's finished curve, one temperature): then
+        the model has no shift law. RelaxationData of one temperature is fitted in time, by least squares of
         ln G(t), without dashpot; `fit` then reports G(t) as storage, and of `bounds`, `fixed` and `bootstrap`
-        only fixed={"G0": ...} is offered. A curve measured in tension is turned into shear by G* = 3KE*/(9K − E*) with the K below,
-        and a warning says so; :meth:`MasterCurve.to_shear` beforehand is silent.
+        only fixed={"G0": ...} is offered. A curve measured in tension is turned into shear by G* = 3KE*/(9K
+        − E*) with the K below, and a warning says so; :meth:`MasterCurve.to_shear` beforehand is silent.
     n
         Number of branches; those to which the data give no strength are left out of the result.
         "auto": the smallest number whose rms deviations of G′ and of tan δ are within `tolerance`, or

@@ -1,4 +1,4 @@
-"""A Maxwell model fitted to a measured relaxation modulus, in time, by least squares of relative deviations."""
+"""A Maxwell model fitted to a measured relaxation modulus, in time, by least relative squares."""
 
 from __future__ import annotations
 
@@ -49,7 +49,8 @@ def fit_relaxation(
     least = 2 if n == "auto" else n + 1
     if not count >= least + 1:
         raise ValueError(
-            f"{data.source}: {count} points of relaxation; {n} branches and a spring need at least {least + 1}"
+            f"{data.source}: {count} points of relaxation; {n} branches and a spring need at least "
+            f"{least + 1}"
         )
     spring = held.get("G0")
     floor = _rms(_strengths(t, g, dense_times(1 / t.max(), 1 / t.min(), 12, 1.0), spring).residual)

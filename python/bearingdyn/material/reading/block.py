@@ -9,6 +9,7 @@ from functools import cached_property
 
 from bearingdyn.material.reading.columns import (
     UNIT_WORDS,
+    UNITS,
     Column,
     choose,
     columns_of,
@@ -120,8 +121,8 @@ def find_blocks(source: Source, request: Request) -> list[Block]:
                 same = first.title == second.title
                 choice = f"{first.index + 1} or {second.index + 1}, its number" if same else "..."
                 raise ReadingError(
-                    f"{source.at(row.number)}: columns {first.title!r} and {second.title!r} both look like the "
-                    f"{quantity}: choose by columns={{{quantity!r}: {choice}}}",
+                    f"{source.at(row.number)}: columns {first.title!r} and {second.title!r} both look like "
+                    f"the {quantity}: choose by columns={{{quantity!r}: {choice}}}",
                     "columns",
                 )
         label = bool(cells) and cells[0].strip().endswith(":") and quantity_of(title_of(cells[0])[0]) is None
@@ -158,7 +159,7 @@ def _no_header(
     """What the row that resembles a header best lacks, and what is wrong with its units."""
     has = columns.keys() | ({"frequency"} if "angular" in columns else set())
     missing = [q for q in ("frequency", "temperature", "storage", "loss") if q not in has]
-    known = tuple(q for q in columns if q != "isotherm")
+    known = tuple(q for q in columns if q in UNITS and q != "strain")
     block = Block(source, source.rows[position], source.rows[position + 1 :], splitter, columns, known)
     none = HeaderError(
         f"{block.where}: no column recognised as {', '.join(missing)}: the header must name "

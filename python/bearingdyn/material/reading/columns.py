@@ -88,6 +88,11 @@ _GERMAN = (
     (r"(scher|schub)-?(deformation|verformung|dehnung)|dehnung|deformation", "strain"),
     (r"\b(versuch|messung|lauf|probe|probenname)(\s*(nr\.?|nummer))?$", "run"),
 )
+_IS_GERMAN = re.compile(
+    r"frequenz|temperatur\b|modul\b|faktor|winkel|verschiebung|zeit|dehnung|formation|formung|versuch|messung"
+    r"|lauf|probe",
+    re.IGNORECASE,
+)
 _SYMBOL = re.compile(r"[\s,:(\[-]*(\|?[GE]\s?['\"*]?\|?)[)\]]?$")
 _RELAXED = re.compile(
     r"^(?P<letter>[GE])?\s*(?:\(t\)|relax|rel|relaxation|r)?(?:\s+modulus)?(?:\s*\(t\))?$", re.IGNORECASE
@@ -135,6 +140,8 @@ def _part_of_name(text: str) -> bool:
 
 def _in_english(words: str) -> str:
     """A title whose German words, if there are any, are English."""
+    if not _IS_GERMAN.search(words):
+        return words
     for pattern, english in _GERMAN:
         words = re.sub(pattern, english, words, flags=re.IGNORECASE)
     return words

@@ -45,15 +45,15 @@ def read_dma(
     frequency, temperature, storage and loss modulus, or one of them with tan δ or the phase, or |G*| with
     either, the nominal temperature or number of the isotherm, and the name of the run), in English or German,
     units by the name's ending, a bracket or a row of units. A table of time and relaxation modulus becomes
-    :class:`RelaxationData`. Where one file holds several tables (a step each), all are read. Points with an empty or
-    non-finite value are left out with a warning that counts them; negative moduli are kept, for
+    :class:`RelaxationData`. Where one file holds several tables (a step each), all are read. Points with an
+    empty or non-finite value are left out with a warning that counts them; negative moduli are kept, for
     :func:`master_curve` to leave out openly.
 
     Parameters
     ----------
     data
-        File to read, or a list of files (one per temperature, say), or a pandas frame, a mapping of columns by name, or an array (n, 4) of frequency, Hz,
-        temperature, °C, storage and loss modulus, Pa.
+        File to read, or a list of files (one per temperature, say), or a pandas frame, a mapping of columns
+        by name, or an array (n, 4) of frequency, Hz, temperature, °C, storage and loss modulus, Pa.
     mode
         "shear" or "tension"; deduced from the letters G or E in the header when not given.
     columns
@@ -101,7 +101,10 @@ def read_dma(
     """
     files = _files(data)
     if files is None:
-        _refuse_several(temperature)
+        if temperature is not None and not isinstance(temperature, int | float):
+            remedy = "one file has one temperature, °C; a list of files may have a list of them"
+            require(np.ndim(temperature) == 0, "temperature", temperature, remedy)
+            temperature = number("temperature", temperature, "it must be a temperature in °C")
         return _read_one(
             data, Request(mode, columns or {}, units or {}, temperature, drop_invalid, step), sort
         )
@@ -124,19 +127,14 @@ def _files(data: Any) -> list[Path] | None:
     return [Path(entry) for entry in data]
 
 
-def _refuse_several(temperature: Any) -> None:
-    remedy = "one file has one temperature, °C; a list of files may have a list of them"
-    require(temperature is None or np.ndim(temperature) == 0, "temperature", temperature, remedy)
-
-
 def _temperatures(files: Sequence[Path], temperature: Any) -> list[float | None]:
     """The temperature given for each file, °C, None where the file has to tell."""
     if temperature is None:
         return [None] * len(files)
     if len(files) > 1 and np.ndim(temperature) == 0:
         raise ReadingError(
-            f"temperature is {temperature!r}, for {len(files)} files; give a list of {len(files)} of them, one per "
-            "file, in °C",
+            f"temperature is {temperature!r}, for {len(files)} files; give a list of {len(files)} of them, "
+            "one per file, in °C",
             "temperature",
         )
     given = list(np.atleast_1d(temperature).tolist())
@@ -154,7 +152,7 @@ def _together(files: Sequence[Path], parts: Sequence[DMAData]) -> DMAData:
         remedy = f"all files must be of the kind of {files[0]}, in {first.mode}"
         require(same, str(path), what, remedy)
     shift = np.cumsum([0, *(int(part.labels.max()) + 1 for part in parts[:-1])])
-    joined = {
+    joined: dict[str, Any] = {
         name: np.concatenate([getattr(part, name) for part in parts])
         for name in first.PER_POINT
         if name not in ("isotherm", "run")
@@ -290,16 +288,17 @@ def _refuse_merging(table: Table, labels: NDArray[np.int64], order: Index) -> No
     for a, b in pairwise(order.tolist()):
         if labels[a] != labels[b] or not np.isclose(table.frequency[a], table.frequency[b], rtol=1e-3):
             continue
-        place = f"{table.at(a)} and {table.lines[b]}: both at {table.frequency[a]:g} and {table.temperature[a]:.4g} °C"
-        if max(table.strain[a], table.strain[b]) > _AMPLITUDE * min(table.strain[a], table.strain[b]) > 0:
+        f, T, strains = table.frequency[a], table.temperature[a], (table.strain[a], table.strain[b])
+        place = f"{table.at(a)} and {table.lines[b]}: both at {f:g} and {T:.4g} °C"
+        if max(strains) > _AMPLITUDE * min(strains) > 0:
             raise ReadingError(
-                f"{place}, at strains {table.strain[a]:g} and {table.strain[b]:g}: an amplitude sweep, which sort=True "
-                "does not merge; leave one amplitude in the table",
+                f"{place}, at strains {strains[0]:g} and {strains[1]:g}: an amplitude sweep, "
+                "which sort=True does not merge; leave one amplitude in the table",
             )
         if table.steps[a] != table.steps[b]:
             raise ReadingError(
-                f"{place}, in steps {table.steps[a]!r} and {table.steps[b]!r}: sort=True does not merge steps; "
-                "choose by step=...",
+                f"{place}, in steps {table.steps[a]!r} and {table.steps[b]!r}: sort=True does not merge "
+                "steps; choose by step=...",
                 "step",
             )
 

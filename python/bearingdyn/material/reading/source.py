@@ -75,7 +75,7 @@ class Splitter:
         """As the header shows it."""
         separator = next((mark for mark in _SEPARATORS if mark in header), " ")
         # a double quote that opens no cell is the mark of a loss modulus, E"
-        return cls(separator, not ('"' in header and not re.search(r'(^|[,;\t])\s*"', header)))
+        return cls(separator, not ('"' in header and not re.search(r'(^|[,;\t]) *"', header)))
 
     def cells(self, row: Row) -> list[str]:
         """Cells of a row."""
@@ -105,7 +105,8 @@ def read_source(path: Path) -> list[Source]:
         data = file.read(_LARGEST + 1)
     if len(data) > _LARGEST:
         raise ValueError(
-            f"{path}, line 1: larger than {_LARGEST >> 20} MB: no table of sweeps is; leave out what is not one"
+            f"{path}, line 1: larger than {_LARGEST >> 20} MB: no table of sweeps is; leave out what is not "
+            "one"
         )
     if data[:4] == _OLE:
         return _sheets(path, _read_xls)
@@ -114,8 +115,8 @@ def read_source(path: Path) -> list[Source]:
     lines = re.split(r"\r\n|\r|\n", _decode(path, data))
     if len(lines) > _MOST_ROWS:
         raise ValueError(
-            f"{path}, line {_MOST_ROWS + 1}: more than {_MOST_ROWS} lines: no table of sweeps has; leave out what "
-            "is not one"
+            f"{path}, line {_MOST_ROWS + 1}: more than {_MOST_ROWS} lines: no table of sweeps has; leave "
+            "out what is not one"
         )
     lines = [line.replace("\ufeff", "") for line in lines]  # files put together carry marks inside
     rows = [Row(i, line) for i, line in enumerate(lines, 1) if line.strip() and line.lstrip()[0] != "#"]
@@ -134,8 +135,8 @@ def _decode(path: Path, data: bytes) -> str:
             last -= last % 2
             data = data[: max(last, 2)]
             warn(
-                f"{path}, line {data.count(10) + 1}: the file ends inside a character, it was cut off: its last line "
-                "is left out; copy or export it again",
+                f"{path}, line {data.count(10) + 2}: the file ends inside a character, it was cut off: its "
+                "last line is left out; copy or export it again",
                 CutFile,
             )
     elif b"\0" in data:
@@ -154,7 +155,7 @@ def _decode(path: Path, data: bytes) -> str:
 
 
 def _wide(data: bytes) -> str:
-    """Name of the encoding of two bytes, or none if it is another: by its mark, or by zeros at every second."""
+    """Name of the encoding if it has two bytes a character, by its mark or its zeros; else empty."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return "utf-16"
     head = data[:512]

@@ -141,8 +141,8 @@ class TableReader:
         self.relaxing = self.blocks[0].quantities == RELAXATION
         if any((block.quantities == RELAXATION) != self.relaxing for block in self.blocks):
             raise ReadingError(
-                f"{source.at(self.blocks[1].header.number)}: a sweep of frequencies and a relaxation in one file: "
-                f"choose by step=..., there are {self._offered()}",
+                f"{source.at(self.blocks[1].header.number)}: a sweep of frequencies and a relaxation in one "
+                f"file: choose by step=..., there are {self._offered()}",
                 "step",
             )
         self.mode = self._mode()
@@ -300,8 +300,8 @@ class TableReader:
                 remedy = f"choose by step=..., there are {self._offered()}" if several else "leave it out"
                 raise ReadingError(
                     f"{self.source.at(first.line)} to {rest[-1].line}: {_REPEATS} points in a row at "
-                    f"{first.frequency:g} Hz and {first.temperature:.4g} °C in {block.step!r}: a sweep of amplitude "
-                    f"or time, not of frequency; {remedy}",
+                    f"{first.frequency:g} Hz and {first.temperature:.4g} °C in {block.step!r}: a sweep of "
+                    f"amplitude or time, not of frequency; {remedy}",
                     *(["step"] if several else []),
                 )
 
@@ -328,8 +328,8 @@ class TableReader:
         storage, loss = _modulus(first, second, SI[first], SI.get(second, 0.0))
         if not (math.isfinite(storage) and math.isfinite(loss)):
             raise ReadingError(
-                f"{self.source.at(row.number)}: {first} = {SI[first]:g} and {second} = {SI.get(second, 0.0):g}: "
-                "make no finite modulus"
+                f"{self.source.at(row.number)}: {first} = {SI[first]:g} and {second} = "
+                f"{SI.get(second, 0.0):g}: make no finite modulus"
             )
         temperature = SI.get("temperature", self.temperature)
         assert temperature is not None  # _factors has refused the block otherwise

@@ -1,4 +1,4 @@
-"""What a finished superposition leaves doubtful: a law that misses its shifts, shifts that zigzag, mixed runs."""
+"""What a finished superposition leaves doubtful: a law that misses its shifts, zigzags, mixed runs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _TIMES_ERROR, _NOTICED = (
     0.02,
 )  # of the shifts' own errors; decades, 5 % in frequency, that matter at all
 _TIMES_MISFIT = 2.0  # misfit of the moduli by the law over that by the shifts
-_UNEVEN = 2.0  # a step against its neighbours' rates; curves through Tg change theirs less from isotherm to isotherm
+_UNEVEN = 2.0  # a step against its neighbours' rates, which through Tg change less between isotherms
 _UNEVEN_DECADES = 0.15  # by which a step must stand out; steps are known to a tenth of a decade
 
 
@@ -41,10 +41,11 @@ def doubt_law(
         return
     warn(
         f"{source}: the shifts deviate from the {law} law by {residual:.2g} decades rms, their own standard "
-        f"error is {error:.2g}; shifted by the law the moduli miss one causal material by {by_law[0]:.2%} of G' "
+        f"error is {error:.2g}; shifted by the law the moduli miss one causal material by {by_law[0]:.2%} "
+        "of G' "
         f'and {by_law[1]:.2%} of G", by the shifts {by_shifts[0]:.2%} and {by_shifts[1]:.2%}: a WLF or '
-        "Arrhenius law does not hold through a glass transition; take another law, 'joined' or 'free', or fewer "
-        "isotherms",
+        "Arrhenius law does not hold through a glass transition; take another law, 'joined' or 'free', or "
+        "fewer isotherms",
         PoorLaw,
     )
 
@@ -65,9 +66,9 @@ def doubt_steps(source: str, T: Array, shifts: Array) -> None:
     shown = [k for k in range(step.size) if odd[max(0, k - 1) : k + 2].any()]
     steps = ", ".join(f"{-step[k]:.3g} from {T[k]:.4g} to {T[k + 1]:.4g} °C" for k in shown)
     warn(
-        f"{source}: the shifts of neighbouring isotherms do not follow one curve: decades {steps}: an isotherm "
-        "there is shifted wrongly, or belongs to another specimen; leave it out, give its shift by hand "
-        "(shifts={T: ...}), or measure it again",
+        f"{source}: the shifts of neighbouring isotherms do not follow one curve: decades {steps}: an "
+        "isotherm there is shifted wrongly, or belongs to another specimen; leave it out, give its shift by "
+        "hand (shifts={T: ...}), or measure it again",
         UnevenShifts,
     )
 
@@ -84,8 +85,8 @@ def doubt_runs(dma: DMAData) -> None:
         T = dma.temperature[dma.run == name]
         spans.append(f"{name!r} ({T.min():.4g} to {T.max():.4g} °C)")
     warn(
-        f"{dma.source}: points of {len(names)} runs in one curve, {', '.join(spans)}: the levels of two specimens "
-        f"often differ by some 5 %; dma.select(run={names[0]!r}) takes one, dma.select(run={names!r}) says that "
-        "they are meant together",
+        f"{dma.source}: points of {len(names)} runs in one curve, {', '.join(spans)}: the levels of two "
+        f"specimens often differ by some 5 %; dma.select(run={names[0]!r}) takes one, "
+        f"dma.select(run={names!r}) says that they are meant together",
         MixedRuns,
     )

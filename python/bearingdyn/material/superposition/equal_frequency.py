@@ -80,7 +80,8 @@ def _deviations(dma: DMAData) -> tuple[NDArray[np.int64], Array, Array]:
     for y, tilted in ((np.log(dma.tan_delta), False), (np.log(dma.storage), True)):
         weight = np.ones(y.size)
         for _ in range(_ROUNDS):
-            rows, target = np.vstack([A * weight[:, None], held]), np.append(y * weight, np.zeros(held.shape[0]))
+            rows = np.vstack([A * weight[:, None], held])
+            target = np.append(y * weight, np.zeros(held.shape[0]))
             solution = np.linalg.lstsq(rows, target, rcond=None)[0]
             residual = y - A @ solution
             scatter = max(1.4826 * float(np.median(np.abs(residual))), 1e-12)
@@ -90,8 +91,7 @@ def _deviations(dma: DMAData) -> tuple[NDArray[np.int64], Array, Array]:
             line = scipy.stats.theilslopes(e, kinds)
             e = e - line.slope * kinds
         e = np.abs(e - np.median(e))
-        # the lowest frequency has no neighbour below that would tell drift and the edge of the fit from a fixture
-        e[0] = 0.0
+        e[0] = 0.0  # it has no neighbour below that would tell drift, or the edge of the fit, from a fixture
         deviation = np.maximum(deviation, np.where(count >= _ISOTHERMS - 1, e, 0.0))
         error = np.maximum(error, scatter / np.sqrt(count))
     return kinds, deviation, np.maximum(_DEVIATION, _TIMES_ERROR * error)
