@@ -85,7 +85,7 @@ def _lose(rng: random.Random, data: bytearray) -> None:
 
 
 TOKENS = (
-    b"nan", b"inf", b"-1", b"0", b"1e400", b"9" * 400, b"1e-320", b"", b'"', b'"""', b"\0", b"\xff\xfe", 
+    b"nan", b"inf", b"-1", b"0", b"1e400", b"9" * 400, b"1e-320", b"", b'"', b'"""', b"\0", b"\xff\xfe",
     b"\xef\xbb\xbf",
     b",,,,", b";", b"\t", b"\n", b"\r", b"[step]\n", b"Step name\tx\n", b"f,T,G',G\"\n", b"\xe2\x80\xa8",
     b"1_000", b"1.234,5", b"1,234.5", b"Hz", b"rad/s", b"%", b"t,G\n", b"#", b"-" * 300, b"(" * 200, b"_" *

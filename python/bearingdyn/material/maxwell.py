@@ -374,7 +374,7 @@ class Maxwell(Retunable):
         """The material written by :meth:`to_json`; ValueError naming what is missing or unknown."""
         try:
             data = json.loads(text)
-        except json.JSONDecodeError as error:
+        except (ValueError, RecursionError) as error:  # integers of thousands of digits, nested without end
             raise ValueError(f"Maxwell.from_json: not JSON: {error}") from error
         required = {"G0", "G", "tau", "K", "density"}
         if not isinstance(data, dict) or not required <= data.keys():
@@ -387,5 +387,5 @@ class Maxwell(Retunable):
         try:
             shift = None if vertical is None else RhoT(**vertical)
             return cls(**data, law=None if law is None else law_from_dict(law), vertical=shift)
-        except TypeError as error:
+        except (TypeError, LookupError, OverflowError) as error:
             raise ValueError(f"Maxwell.from_json: {error}") from error

@@ -103,7 +103,7 @@ def read_dma(
     if files is None:
         if temperature is not None and not isinstance(temperature, int | float):
             remedy = "one file has one temperature, °C; a list of files may have a list of them"
-            require(np.ndim(temperature) == 0, "temperature", temperature, remedy)
+            require(np.ndim(np.asarray(temperature, dtype=object)) == 0, "temperature", temperature, remedy)
             temperature = number("temperature", temperature, "it must be a temperature in °C")
         return _read_one(
             data, Request(mode, columns or {}, units or {}, temperature, drop_invalid, step), sort
