@@ -150,6 +150,7 @@ def test_bad_relaxation_is_refused(tmp_path):
         )
     for change, message in (
         ({"time": [1.0, -2.0]}, "at time -2 s"),
+        ({"time": [1e-300, 2.0]}, "no relaxation is measured over more"),
         ({"relaxation": [1e6, 0.0]}, "relaxation modulus is 0 Pa"),
     ):
         values = {"time": [1.0, 2.0], "relaxation": [2e6, 1e6], "temperature": 20.0, "mode": "shear"} | change

@@ -18,6 +18,8 @@ _CONVERTED = (
     "half a decade of either end of each isotherm the loss modulus is uncertain"
 )
 
+_SPAN = 1e15  # longest over shortest time; a spectrum over more takes minutes and means nothing
+
 
 def _none() -> Array:
     return np.empty(0)
@@ -92,6 +94,11 @@ class RelaxationData(DMAData):
             raise ValueError(
                 f"{source}: at time {t[bad]:g} s the relaxation modulus is {g[bad]:g} Pa; both must be "
                 "positive"
+            )
+        if not t.max() <= _SPAN * t.min():
+            raise ValueError(
+                f"{source}: times from {t.min():g} to {t.max():g} s: no relaxation is measured over more than "
+                f"{_SPAN:g} in time; is a time wrong?"
             )
         T = np.broadcast_to(np.asarray(temperature, dtype=np.float64), t.shape).copy()
         labels = group_isotherms(T, run) if isotherm is None else isotherm
