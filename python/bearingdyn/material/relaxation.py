@@ -97,8 +97,8 @@ class RelaxationData(DMAData):
             )
         if not t.max() <= _SPAN * t.min():
             raise ValueError(
-                f"{source}: times from {t.min():g} to {t.max():g} s: no relaxation is measured over more than "
-                f"{_SPAN:g} in time; is a time wrong?"
+                f"{source}: times from {t.min():g} to {t.max():g} s: no relaxation is measured over more "
+                f"than {_SPAN:g} in time; is a time wrong?"
             )
         T = np.broadcast_to(np.asarray(temperature, dtype=np.float64), t.shape).copy()
         labels = group_isotherms(T, run) if isotherm is None else isotherm

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from bearingdyn.material.reading.columns import (
+    LONGEST_TITLE,
     UNIT_WORDS,
     UNITS,
     Column,
@@ -125,7 +126,8 @@ def find_blocks(source: Source, request: Request) -> list[Block]:
                     f"the {quantity}: choose by columns={{{quantity!r}: {choice}}}",
                     "columns",
                 )
-        label = bool(cells) and cells[0].strip().endswith(":") and quantity_of(title_of(cells[0])[0]) is None
+        first = cells[0].strip()[-LONGEST_TITLE:] if cells else ""
+        label = first.endswith(":") and quantity_of(title_of(first)[0]) is None
         heads.append((position, Block(source, row, (), splitter, columns, chosen, label)))
     if not heads:
         raise _no_header(source, request, *best)

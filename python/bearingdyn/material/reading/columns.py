@@ -67,7 +67,7 @@ _ENDING = re.compile(
 )
 _TIME_ENDING = re.compile(r"^(t|time|zeit)(?:[\s_,/]+| in )(s|sec|ms|min|h)$", re.IGNORECASE)
 _NUMERIC = re.compile(r"\s*[-+−]?[.,]?\d")
-_LONGEST_TITLE = 120
+LONGEST_TITLE = 120
 _GERMAN = (
     (r"(mess|prüf|anregungs|reduzierte )?frequenz", "frequency"),
     (r"(kreis|winkel)frequency", "angular frequency"),
@@ -233,7 +233,7 @@ def columns_of(
         title = cell.strip()
         if (
             not title
-            or len(title) > _LONGEST_TITLE
+            or len(title) > LONGEST_TITLE
             or (_NUMERIC.match(title) and title not in wanted.values())
         ):
             continue
