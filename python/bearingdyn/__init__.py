@@ -27,6 +27,7 @@ PUBLIC = {
             "MasterCurve",
             "Maxwell",
             "PowerLaw",
+            "RelaxationData",
             "TabulatedModulus",
             "fit_maxwell",
             "master_curve",

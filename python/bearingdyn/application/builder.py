@@ -409,7 +409,8 @@ class Application:
         part
             Name of the part.
         T
-            °C; a second call replaces the first.
+            °C; a second call replaces the first. Outside the isotherms a material's law was found from, a
+            warning (OutsideIsotherms) says so.
 
         Raises
         ------

@@ -9,6 +9,7 @@ from bearingdyn.material.identification import fit_dense, fit_maxwell
 from bearingdyn.material.low_end import LowEnd, warn_beyond
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.reading import ReadingError, read_dma, sample_dma_path
+from bearingdyn.material.relaxation import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
 from bearingdyn.material.superposition import LIMIT as KK_LIMIT
 from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, master_curve, suspects
@@ -29,6 +30,7 @@ __all__ = [
     "OutsideBand",
     "PowerLaw",
     "ReadingError",
+    "RelaxationData",
     "RhoT",
     "ShiftTable",
     "Suspect",

@@ -17,11 +17,12 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_density, check_waves, plausible
+from bearingdyn.material.dma import DMAData
 from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.shift_laws import Law, ShiftTable
-from bearingdyn.material.superposition import MasterCurve
+from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
+from bearingdyn.material.superposition import MasterCurve, one_curve
 from bearingdyn.types import Array, Complex
 
 _PER_DECADE = 40  # points at which a modulus is handed to the fit
@@ -63,10 +64,11 @@ def _approximate(
     return replace(found, law=law, temperature=temperature)
 
 
-def _factor(law: Law | None, temperature: float | None, T: float) -> float:
+def _factor(owner: str, law: Law | None, temperature: float | None, T: float) -> float:
+    """a_T from the temperature at which the modulus `owner` holds to T, °C."""
     if law is None or temperature is None:
         raise ValueError("law is None: a material can be moved to another temperature only by a shift law")
-    return float(10 ** (law.log_shift(T) - law.log_shift(temperature)))
+    return float(10 ** moved_shift(owner, law, temperature, T))
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,12 +124,13 @@ class TabulatedModulus:
 
     @classmethod
     def from_master(
-        cls, master: MasterCurve, *, K: float, density: float, per_decade: int = 10
+        cls, master: MasterCurve | DMAData, *, K: float, density: float, per_decade: int = 10
     ) -> TabulatedModulus:
-        """A master curve in shear as a table: points averaged geometrically in classes of frequency.
+        """A master curve, or one sweep, in shear as a table: points averaged geometrically in classes.
 
         ValueError if the curve is in tension (``master.to_shear`` first).
         """
+        master = one_curve(master)
         if master.mode != "shear":
             raise ValueError("master is in tension: convert it by master.to_shear(K=...) or to_shear(nu=...)")
         logs = np.log(np.array([master.frequency, master.storage, master.loss]))
@@ -156,8 +159,8 @@ class TabulatedModulus:
         return np.asarray(storage * (1 + 1j * np.sign(omega) * tan))
 
     def at(self, T: float) -> TabulatedModulus:
-        """The same material at T, °C: frequencies over a_T. ValueError if there is no law."""
-        factor = _factor(self.law, self.temperature, T)
+        """The same material at T, °C: frequencies over a_T; warnings and errors as :meth:`Maxwell.at`."""
+        factor = _factor("TabulatedModulus", self.law, self.temperature, T)
         return replace(self, frequency=self.frequency / factor, temperature=float(T))
 
     def maxwell(
@@ -229,8 +232,8 @@ class PowerLaw:
         return np.asarray(self.modulus * np.abs(x) ** self.exponent * turn)
 
     def at(self, T: float) -> PowerLaw:
-        """The same material at T, °C. ValueError if there is no law."""
-        factor = _factor(self.law, self.temperature, T)
+        """The same material at T, °C; warnings and errors as :meth:`Maxwell.at`."""
+        factor = _factor("PowerLaw", self.law, self.temperature, T)
         return replace(self, frequency=self.frequency / factor, temperature=float(T))
 
     def maxwell(
@@ -291,8 +294,12 @@ class FractionalZener:
         return np.asarray((self.G0 + self.G_inf * power) / (1 + power))
 
     def at(self, T: float) -> FractionalZener:
-        """The same material at T, °C. ValueError if there is no law."""
-        return replace(self, tau=self.tau * _factor(self.law, self.temperature, T), temperature=float(T))
+        """The same material at T, °C; warnings and errors as :meth:`Maxwell.at`."""
+        return replace(
+            self,
+            tau=self.tau * _factor("FractionalZener", self.law, self.temperature, T),
+            temperature=float(T),
+        )
 
     def maxwell(
         self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02

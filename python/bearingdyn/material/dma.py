@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,7 +24,7 @@ class UnitError(ValueError):
     """Moduli no solid has: their unit is wrong."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DMAData:
     """Storage and loss modulus at frequencies and temperatures, one value of each per point.
 
@@ -46,6 +47,11 @@ class DMAData:
         What was assumed in reading, and what was converted.
     K
         Bulk modulus, Pa, with which :meth:`to_shear` turned tension into shear; None if it did not.
+    run
+        Name of the run (the specimen) each point belongs to, (n,); None if nothing says so. Isotherms of
+        different runs stay apart.
+    runs_chosen
+        Whether several runs are together because :meth:`select` was asked for them.
 
     Raises
     ------
@@ -63,6 +69,10 @@ class DMAData:
     isotherm: NDArray[np.int64] | None = None
     notes: tuple[str, ...] = ()
     K: float | None = None
+    run: NDArray[np.str_] | None = None
+    runs_chosen: bool = False
+
+    PER_POINT: ClassVar[tuple[str, ...]] = ("frequency", "temperature", "storage", "loss", "isotherm", "run")
 
     def __post_init__(self) -> None:
         for name in ("frequency", "temperature", "storage", "loss"):
@@ -100,18 +110,25 @@ class DMAData:
                 f"{self.source}: median storage modulus {middle:.3g} Pa: no solid is harder than diamond, "
                 f"{_HARDEST:g} Pa: {_UNIT}"
             )
+        if self.run is not None:
+            run = np.array(self.run, dtype=np.str_)
+            if run.shape != (n,):
+                raise ValueError(
+                    f"{self.source}: run has shape {run.shape}; it must name one run per point, ({n},)"
+                )
+            self._store("run", run)
         if self.isotherm is None:
-            labels = group_isotherms(self.temperature)
+            labels = group_isotherms(self.temperature, self.run)
         else:
             labels = np.unique(np.asarray(self.isotherm), return_inverse=True)[1].reshape(-1)
             if labels.size != n:
                 raise ValueError(f"{self.source}: isotherm has {labels.size} labels, frequency {n} values")
             means = [self.temperature[labels == k].mean() for k in range(labels.max() + 1)]
-            labels = np.argsort(np.argsort(means))[labels]
+            labels = np.argsort(np.argsort(means, kind="stable"))[labels]
         self._store("isotherm", labels.astype(np.int64))
         self._check_isotherms(labels)
 
-    def _store(self, name: str, values: Array | NDArray[np.int64]) -> None:
+    def _store(self, name: str, values: NDArray[Any]) -> None:
         values.flags.writeable = False
         object.__setattr__(self, name, values)
 
@@ -131,6 +148,14 @@ class DMAData:
                 f"isotherm at {self.temperature[i]:.4g} °C; it must rise throughout, or fall throughout"
             )
 
+    def __repr__(self) -> str:
+        T, f = self.isotherm_temperatures, self.frequency
+        runs = f", {len(self.runs)} runs" if self.runs else ""
+        return (
+            f"<{type(self).__name__} in {self.mode}: {f.size} points, {T.size} isotherms from {T[0]:.4g} to "
+            f"{T[-1]:.4g} °C, {f.min():.4g} to {f.max():.4g} Hz{runs}; {self.source}>"
+        )
+
     @property
     def tan_delta(self) -> Array:
         """Loss factor tan δ = loss/storage of each point, (n,); not finite where storage is zero."""
@@ -149,24 +174,21 @@ class DMAData:
         return np.bincount(self.labels, self.temperature) / np.bincount(self.labels)
 
     @property
-    def isotherms(self) -> tuple[DMAData, ...]:
+    def isotherms(self) -> tuple[Self, ...]:
         """The isotherms, coldest first, each in order of frequency."""
         return tuple(self.take(np.flatnonzero(self.labels == k)) for k in range(int(self.labels.max()) + 1))
 
-    def take(self, index: NDArray[np.int64]) -> DMAData:
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """Names of the runs in the order in which they appear; none if nothing names them."""
+        return () if self.run is None else tuple(dict.fromkeys(self.run.tolist()))
+
+    def take(self, index: NDArray[np.int64]) -> Self:
         """The points of these indices, in order of isotherm and frequency."""
         index = index[np.lexsort((self.frequency[index], self.labels[index]))]
-        return DMAData(
-            self.frequency[index],
-            self.temperature[index],
-            self.storage[index],
-            self.loss[index],
-            self.mode,
-            self.source,
-            self.labels[index],
-            self.notes,
-            self.K,
-        )
+        known: dict[str, Any] = {name: getattr(self, name) for name in self.PER_POINT}
+        taken: dict[str, Any] = {name: None if v is None else v[index] for name, v in known.items()}
+        return replace(self, **taken)
 
     def to_shear(self, *, K: float | None = None, nu: float | None = None) -> DMAData:
         """The same measurement in shear, by a bulk modulus or by a Poisson's ratio.
@@ -199,27 +221,42 @@ class DMAData:
         )
 
     def select(
-        self, f_min: float = 0.0, f_max: float = np.inf, T: tuple[float, float] = (-np.inf, np.inf)
-    ) -> DMAData:
-        """The points with f_min ≤ frequency ≤ f_max, Hz, and T[0] ≤ temperature ≤ T[1], °C.
+        self,
+        f_min: float = 0.0,
+        f_max: float = np.inf,
+        T: tuple[float, float] = (-np.inf, np.inf),
+        run: str | Sequence[str] | None = None,
+    ) -> Self:
+        """The points with f_min ≤ frequency ≤ f_max, Hz, T[0] ≤ temperature ≤ T[1], °C, and of these runs.
 
-        Use it to leave out, openly, what is known to be wrong: a fixture's resonance, a melted sample.
+        Use it to leave out, openly, what is known to be wrong: a fixture's resonance, a melted sample,
+        another specimen. Several runs named are meant to stand together: :func:`master_curve` then does not
+        warn.
 
         Raises
         ------
         ValueError
-            If no point is left.
+            If no point is left, or there is no such run.
         """
         keep = (self.frequency >= f_min) & (self.frequency <= f_max)
         keep &= (self.temperature >= T[0]) & (self.temperature <= T[1])
+        wanted = None if run is None else [run] if isinstance(run, str) else [str(name) for name in run]
+        if wanted is not None:
+            have = list(self.runs)
+            remedy = (
+                f"there are {have}" if have else "no column of the table names runs (columns={'run': ...})"
+            )
+            require(bool(wanted) and set(wanted) <= set(have), f"{self.source}: run", run, remedy)
+            keep &= np.isin(self.run, wanted)  # type: ignore[arg-type]
         if not keep.any():
             raise ValueError(
                 f"{self.source}: no point between f_min = {f_min:g} and f_max = {f_max:g} Hz, "
-                f"T = {T[0]:g} to {T[1]:g} °C: data reach from {self.frequency.min():.4g} to "
-                f"{self.frequency.max():.4g} Hz, {self.temperature.min():.4g} to "
-                f"{self.temperature.max():.4g} °C"
+                f"T = {T[0]:g} to {T[1]:g} °C{'' if run is None else f', run {run!r}'}: data reach from "
+                f"{self.frequency.min():.4g} to {self.frequency.max():.4g} Hz, {self.temperature.min():.4g} "
+                f"to {self.temperature.max():.4g} °C"
             )
-        return self.take(np.flatnonzero(keep))
+        left = self.take(np.flatnonzero(keep))
+        return left if wanted is None else replace(left, runs_chosen=True)
 
 
 def check_range(dma: DMAData) -> None:
@@ -264,14 +301,28 @@ def first_unsorted(frequency: Array, labels: NDArray[np.int64]) -> int | None:
     return min(found, default=None)
 
 
-def group_isotherms(temperature: ArrayLike) -> NDArray[np.int64]:
+def group_isotherms(temperature: ArrayLike, run: ArrayLike | None = None) -> NDArray[np.int64]:
     """Number of the isotherm each temperature, °C, (n,), belongs to, 0 the coldest.
 
     Sorted temperatures are cut at their wide gaps; wide is what lies above the largest jump in the sizes of
     the gaps, 0.3 K at least and 3 K at most, so that jitter of a tenth of a kelvin and drift of one kelvin do
-    no harm.
+    no harm. Where runs are named, (n,), each has isotherms of its own.
     """
     T = np.asarray(temperature, dtype=float)
+    if run is None:
+        return _cut_at_gaps(T)
+    labels = np.zeros(T.size, dtype=np.int64)
+    used = 0
+    for name in dict.fromkeys(np.asarray(run).tolist()):
+        own = np.asarray(run) == name
+        labels[own] = used + _cut_at_gaps(T[own])
+        used = int(labels.max()) + 1
+    means = np.bincount(labels, T) / np.bincount(labels)
+    return np.argsort(np.argsort(means, kind="stable"))[labels].astype(np.int64)
+
+
+def _cut_at_gaps(T: Array) -> NDArray[np.int64]:
+    """Number of the isotherm of each temperature of one run."""
     order = np.argsort(T, kind="stable")
     gap = np.diff(T[order])
     sizes = np.concatenate([[0.02], np.sort(np.clip(gap, 0.02, 3.0))])

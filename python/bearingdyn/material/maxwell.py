@@ -15,7 +15,7 @@ from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.retuning import Retunable
-from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict
+from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
 from bearingdyn.notice import warn
 from bearingdyn.types import Array, Complex
 
@@ -349,11 +349,12 @@ class Maxwell(Retunable):
         """The same material at temperature T, °C: tau and eta0 times a_T(T)/a_T(temperature), by its law.
 
         Moduli are multiplied by b_T(T)/b_T(temperature) if there is a vertical shift; the band moves along.
+        Outside the isotherms the law was found from it warns (OutsideIsotherms).
 
         Raises
         ------
         ValueError
-            If the material has no law.
+            If the material has no law, or T lies above 500 °C or where the law has no meaning.
         """
         T = plausible("temperature", "T", T, "it must be one finite temperature, in °C")
         if self.law is None or self.temperature is None:
@@ -361,7 +362,7 @@ class Maxwell(Retunable):
                 "Maxwell.law is None: a material can be moved to another temperature only by a shift law "
                 "(law=WLF(C1, C2, T_ref), or one fitted by master_curve)"
             )
-        aT = float(10 ** (self.law.log_shift(T) - self.law.log_shift(self.temperature)))
+        aT = 10 ** moved_shift("Maxwell", self.law, self.temperature, T)
         bT = 1.0
         if self.vertical is not None:
             bT = float(self.vertical.factor(T) / self.vertical.factor(self.temperature))
@@ -404,7 +405,7 @@ class Maxwell(Retunable):
         """The material written by :meth:`to_json`; ValueError naming what is missing or unknown."""
         try:
             data = json.loads(text)
-        except json.JSONDecodeError as error:
+        except (ValueError, RecursionError) as error:  # integers of thousands of digits, nested without end
             raise ValueError(f"Maxwell.from_json: not JSON: {error}") from error
         required = {"G0", "G", "tau", "K", "density"}
         if not isinstance(data, dict) or not required <= data.keys():
@@ -420,5 +421,5 @@ class Maxwell(Retunable):
                 data["low_end"] = LowEnd.from_numbers(known)
             shift = None if vertical is None else RhoT(**vertical)
             return cls(**data, law=None if law is None else law_from_dict(law), vertical=shift)
-        except TypeError as error:
+        except (TypeError, LookupError, OverflowError) as error:
             raise ValueError(f"Maxwell.from_json: {error}") from error

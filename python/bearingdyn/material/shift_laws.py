@@ -14,6 +14,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import number, positive, require
+from bearingdyn.notice import OutsideIsotherms, warn
 from bearingdyn.types import Array
 
 GAS_CONSTANT = 8.31446261815324
@@ -23,6 +24,12 @@ ZERO_CELSIUS = 273.15
 """0 °C in K."""
 
 Covariance = tuple[tuple[float, ...], ...]
+
+Range = tuple[float, float]
+
+_HOTTEST = 500.0  # °C; no polymer lasts there
+_FURTHEST = 40.0  # decades; beyond it a relaxation time has no meaning
+_JITTER = 0.5  # K; as far as the mean temperature of an isotherm may miss the one that was meant
 
 
 class ShiftLaw(Protocol):
@@ -55,6 +62,8 @@ class WLF:
         Reference temperature, °C.
     covariance
         Covariance of (C1, C2), 2×2, of a fitted law.
+    measured
+        Coldest and hottest isotherm it was found from, °C; None if it was not.
 
     Raises
     ------
@@ -68,8 +77,10 @@ class WLF:
     C2: float
     T_ref: float
     covariance: Covariance | None = field(default=None, compare=False)
+    measured: Range | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
+        _check_range("WLF", self.measured)
         number("WLF.T_ref", self.T_ref, "it must be a finite temperature, °C")
         positive("WLF.C1", self.C1)
         positive("WLF.C2", self.C2, "it must be positive and finite, K")
@@ -103,6 +114,8 @@ class Arrhenius:
         Reference temperature, °C.
     variance
         Variance of Ea, (J/mol)², of a fitted law.
+    measured
+        Coldest and hottest isotherm it was found from, °C; None if it was not.
 
     Raises
     ------
@@ -113,8 +126,10 @@ class Arrhenius:
     Ea: float
     T_ref: float
     variance: float | None = field(default=None, compare=False)
+    measured: Range | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
+        _check_range("Arrhenius", self.measured)
         positive("Arrhenius.Ea", self.Ea, "it must be positive and finite, J/mol")
         _above_zero("Arrhenius.T_ref", self.T_ref)
 
@@ -145,6 +160,8 @@ class Joined:
         Reference temperature, °C; on either side of Tg.
     covariance
         Covariance of (C1, C2, Tg, Ea), 4×4, of a fitted law.
+    measured
+        Coldest and hottest isotherm it was found from, °C; None if it was not.
 
     Raises
     ------
@@ -158,8 +175,10 @@ class Joined:
     Ea: float
     T_ref: float
     covariance: Covariance | None = field(default=None, compare=False)
+    measured: Range | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
+        _check_range("Joined", self.measured)
         for name, unit in (("C1", ""), ("C2", ", K"), ("Ea", ", J/mol")):
             positive(f"Joined.{name}", getattr(self, name), f"it must be positive and finite{unit}")
         _above_zero("Joined.Tg", self.Tg)
@@ -218,6 +237,11 @@ class ShiftTable:
             raise ValueError("ShiftTable.log_aT: every shift must be finite")
         self._check(np.asarray(self.T_ref))
 
+    @property
+    def measured(self) -> Range:
+        """Coldest and hottest temperature of the table, °C."""
+        return self.T[0], self.T[-1]
+
     def _check(self, T: Array) -> None:
         if not np.all((T >= self.T[0]) & (T <= self.T[-1])):
             raise ValueError(
@@ -274,27 +298,72 @@ class RhoT:
 Law = WLF | Arrhenius | Joined | ShiftTable
 
 
+def _check_range(name: str, measured: Range | None) -> None:
+    """ValueError unless `measured` is None or two temperatures, °C, the colder first."""
+    if measured is None:
+        return
+    remedy = "it must be the coldest and the hottest isotherm's temperature, °C"
+    two = isinstance(measured, tuple) and len(measured) == 2
+    require(
+        two and -ZERO_CELSIUS < measured[0] <= measured[1] < math.inf, f"{name}.measured", measured, remedy
+    )
+
+
+def moved_shift(owner: str, law: Law, start: float, T: float) -> float:
+    """log10 a_T from a temperature `start` to T, °C, for a material named `owner`.
+
+    Warns (OutsideIsotherms) where T lies outside the isotherms the law was found from.
+
+    Raises
+    ------
+    ValueError
+        If T is not a temperature a polymer lasts at, or the law has no meaning there.
+    """
+    T = number(f"{owner}.at: T", T, "it must be one finite number, °C")
+    remedy = (
+        f"it must lie between -{ZERO_CELSIUS} and {_HOTTEST:g} °C, where polymers last; is it in K or °F?"
+    )
+    require(-ZERO_CELSIUS < T <= _HOTTEST, f"{owner}.at: T", T, remedy)
+    shift = float(law.log_shift(T) - law.log_shift(start))
+    if not abs(shift) <= _FURTHEST:
+        raise ValueError(
+            f"{owner}.at: T is {T:g} °C; its shift law, {type(law).__name__}, moves it by {shift:.3g} "
+            f"decades from {start:g} °C, which has no meaning; stay nearer to the temperatures measured"
+        )
+    if law.measured is not None and not law.measured[0] - _JITTER <= T <= law.measured[1] + _JITTER:
+        warn(
+            f"{owner}.at: T is {T:g} °C, outside the isotherms measured, {law.measured[0]:.4g} to "
+            f"{law.measured[1]:.4g} °C: there its {type(law).__name__} law extrapolates"
+            + ("; is it in K? T is in °C" if T - law.measured[1] > 150 else ""),
+            OutsideIsotherms,
+        )
+    return shift
+
+
 def law_to_dict(law: Law) -> dict[str, Any]:
     """The numbers of a law, ready for JSON; :func:`law_from_dict` reads them back."""
+    known = {} if law.measured is None else {"measured": list(law.measured)}
     if isinstance(law, WLF):
-        return {"law": "wlf", "C1": law.C1, "C2": law.C2, "T_ref": law.T_ref}
+        return {"law": "wlf", "C1": law.C1, "C2": law.C2, "T_ref": law.T_ref, **known}
     if isinstance(law, Arrhenius):
-        return {"law": "arrhenius", "Ea": law.Ea, "T_ref": law.T_ref}
+        return {"law": "arrhenius", "Ea": law.Ea, "T_ref": law.T_ref, **known}
     if isinstance(law, Joined):
         numbers = {"C1": law.C1, "C2": law.C2, "Tg": law.Tg, "Ea": law.Ea}
-        return {"law": "joined", **numbers, "T_ref": law.T_ref}
+        return {"law": "joined", **numbers, "T_ref": law.T_ref, **known}
     return {"law": "free", "T": list(law.T), "log_aT": list(law.log_aT), "T_ref": law.T_ref}
 
 
 def law_from_dict(data: dict[str, Any]) -> Law:
     """The law written by :func:`law_to_dict`; ValueError if the data are not a law."""
+    ends = data.get("measured") if isinstance(data, dict) else None
+    measured = (ends[0], ends[1]) if isinstance(ends, list) and len(ends) == 2 else None
     match data:
         case {"law": "wlf", "C1": C1, "C2": C2, "T_ref": T_ref}:
-            return WLF(C1, C2, T_ref)
+            return WLF(C1, C2, T_ref, measured=measured)
         case {"law": "arrhenius", "Ea": Ea, "T_ref": T_ref}:
-            return Arrhenius(Ea, T_ref)
+            return Arrhenius(Ea, T_ref, measured=measured)
         case {"law": "joined", "C1": C1, "C2": C2, "Tg": Tg, "Ea": Ea, "T_ref": T_ref}:
-            return Joined(C1, C2, Tg, Ea, T_ref)
+            return Joined(C1, C2, Tg, Ea, T_ref, measured=measured)
         case {"law": "free", "T": T, "log_aT": log_aT, "T_ref": T_ref}:
             return ShiftTable(tuple(T), tuple(log_aT), T_ref)
     raise ValueError(

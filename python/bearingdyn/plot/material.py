@@ -162,6 +162,8 @@ def shifts(curve: MasterCurve, ax: Axes | None = None) -> Axes:
     Axes
         The axes drawn into.
     """
+    if curve.law is None:
+        raise ValueError("curve is one sweep, which has no shifts; draw it by plot.master(curve)")
     T = np.array(list(curve.shifts))
     values = np.array([curve.shifts[t] for t in T.tolist()])
     errors = np.array([curve.shift_errors[t] for t in T.tolist()])

@@ -17,16 +17,18 @@ from numpy.typing import NDArray
 
 from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_bulk
-from bearingdyn.material.dma import shear_modulus
+from bearingdyn.material.dma import DMAData, shear_modulus
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification.bounds import Limits
 from bearingdyn.material.identification.low_end import low_end
 from bearingdyn.material.identification.points import Points
 from bearingdyn.material.identification.polish import Polished, polish
 from bearingdyn.material.identification.projection import Projection
+from bearingdyn.material.identification.relaxation_fit import fit_relaxation
 from bearingdyn.material.low_end import SLACK
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.superposition import MasterCurve
+from bearingdyn.material.relaxation import RelaxationData
+from bearingdyn.material.superposition import MasterCurve, one_curve
 from bearingdyn.notice import warn
 from bearingdyn.types import Array
 
@@ -35,7 +37,7 @@ _SPREADS = (0.0, 0.4, -0.3)  # decades by which the starts are wider than the ba
 
 
 def fit_maxwell(
-    master: MasterCurve,
+    master: MasterCurve | DMAData,
     n: int | Literal["auto"] = 5,
     band: tuple[float, float] | None = None,
     *,
@@ -53,8 +55,11 @@ def fit_maxwell(
     Parameters
     ----------
     master
-        Master curve. One measured in tension is turned into shear by G* = 3KE*/(9K − E*) with the K below,
-        and a warning says so; :meth:`MasterCurve.to_shear` beforehand is silent.
+        Master curve, or a single sweep as it was read (a supplier's finished curve, one temperature): then
+        the model has no shift law. RelaxationData of one temperature is fitted in time, by least squares of
+        ln G(t), without dashpot; `fit` then reports G(t) as storage, and of `bounds`, `fixed` and `bootstrap`
+        only fixed={"G0": ...} is offered. A curve measured in tension is turned into shear by G* = 3KE*/(9K
+        − E*) with the K below, and a warning says so; :meth:`MasterCurve.to_shear` beforehand is silent.
     n
         Number of branches; those to which the data give no strength are left out of the result.
         "auto": the smallest number whose rms deviations of G′ and of tan δ are within `tolerance`, or
@@ -111,6 +116,12 @@ def fit_maxwell(
         positive(name, value)
     remedy = "the number of refits must be zero or a positive integer"
     require(isinstance(bootstrap, int) and bootstrap >= 0, "bootstrap", bootstrap, remedy)
+    if isinstance(master, RelaxationData):
+        require(not bounds, "bounds", bounds, "a fit to relaxation takes none")
+        require(not bootstrap, "bootstrap", bootstrap, "a fit to relaxation has one isotherm; leave it out")
+        require(pin is None, "pin", pin, "a fit to relaxation reaches as far down as its data; leave it out")
+        return fit_relaxation(master, n, band, K=K, density=density, fixed=fixed, tolerance=tolerance)
+    master = one_curve(master)
     points = replace(_inside(master, band, K, 1 if n == "auto" else n), pin=_pinned(master, K, pin))
     held = dict(fixed or {}) | ({} if dashpot else {"eta0": 0.0})
     limits = {k: v for k, v in (bounds or {}).items() if dashpot or k != "eta0"}
@@ -135,7 +146,7 @@ def fit_maxwell(
 
 
 def fit_dense(
-    master: MasterCurve,
+    master: MasterCurve | DMAData,
     band: tuple[float, float] | None = None,
     *,
     K: float,
@@ -167,6 +178,7 @@ def fit_dense(
     """
     for name, value in (("K", K), ("density", density), ("per_decade", per_decade)):
         positive(name, value)
+    master = one_curve(master)
     points = _inside(master, band, K, "dense")
     times, x = points.dense(per_decade)
     model = Maxwell(float(x[0]), x[1:-1], times, float(x[-1]), K=K, density=density)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from bearingdyn.material.reading.columns import (
+    LONGEST_TITLE,
+    UNIT_WORDS,
     UNITS,
     Column,
     choose,
@@ -20,7 +23,9 @@ from bearingdyn.material.reading.request import Request
 from bearingdyn.material.reading.source import Row, Source, Splitter
 from bearingdyn.material.reading.units import ColumnUnits
 
-_UNIT_WORDS = {unit for table in UNITS.values() for unit in table} - {""}
+_UNIT_WORDS = UNIT_WORDS | {"s", "h", "k", "c", "min"}
+_STEP_NAME = re.compile(r"^step name\s*[:;,\t]?\s*(.+)$", re.IGNORECASE)
+_STEP_HEAD = re.compile(r"^\[(.+)\]$")
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,8 @@ class Block:
         Those a complex modulus is made of: a frequency and two others.
     labelled
         Whether a label stands in front of the header that has none in front of the numbers.
+    step
+        Name of the instrument's step, or "table 2" where it has none.
     """
 
     source: Source
@@ -44,6 +51,7 @@ class Block:
     columns: Mapping[str, Column]
     quantities: tuple[str, ...]
     labelled: bool = False
+    step: str = ""
 
     @property
     def where(self) -> str:
@@ -110,21 +118,41 @@ def find_blocks(source: Source, request: Request) -> list[Block]:
                 best = (position, splitter, columns)
             continue
         for quantity, first, second in doubles:
-            if quantity in (*chosen, "temperature"):
+            if quantity in (*chosen, "temperature", *request.columns):
+                same = first.title == second.title
+                choice = f"{first.index + 1} or {second.index + 1}, its number" if same else "..."
                 raise ReadingError(
-                    f"{source.at(row.number)}: columns {first!r} and {second!r} both look like the "
-                    f"{quantity}: choose by columns={{{quantity!r}: ...}}",
+                    f"{source.at(row.number)}: columns {first.title!r} and {second.title!r} both look like "
+                    f"the {quantity}: choose by columns={{{quantity!r}: {choice}}}",
                     "columns",
                 )
-        label = bool(cells) and cells[0].strip().endswith(":") and quantity_of(title_of(cells[0])[0]) is None
+        title = cells[0].strip()[-LONGEST_TITLE:] if cells else ""
+        label = title.endswith(":") and quantity_of(title_of(title)[0]) is None
         heads.append((position, Block(source, row, (), splitter, columns, chosen, label)))
     if not heads:
         raise _no_header(source, request, *best)
     ends = [position for position, _ in heads[1:]] + [len(source.rows)]
+    starts = [0, *(position + 1 for position, _ in heads[:-1])]
     return [
-        replace(block, rows=source.rows[position + 1 : end])
-        for (position, block), end in zip(heads, ends, strict=True)
+        replace(block, rows=source.rows[position + 1 : end], step=_step_name(source.rows[start:position], k))
+        for k, ((position, block), start, end) in enumerate(zip(heads, starts, ends, strict=True), 1)
     ]
+
+
+def _step_name(above: Sequence[Row], number: int) -> str:
+    """Name of the step whose header the rows lead to; those of the table before it are among them."""
+    for k in range(len(above) - 1, -1, -1):
+        text = above[k].text.strip()
+        if is_number(text.split()[-1]) and is_number(text.split()[0]):
+            break  # the numbers of the table before
+        named, head = _STEP_NAME.match(text), _STEP_HEAD.match(text)
+        if named:
+            return named.group(1).strip()
+        if head and head.group(1).strip().lower() == "step" and k + 1 < len(above):
+            return above[k + 1].text.strip()[:60]
+        if head:
+            return head.group(1).strip()
+    return f"table {number}"
 
 
 def _no_header(
@@ -133,7 +161,7 @@ def _no_header(
     """What the row that resembles a header best lacks, and what is wrong with its units."""
     has = columns.keys() | ({"frequency"} if "angular" in columns else set())
     missing = [q for q in ("frequency", "temperature", "storage", "loss") if q not in has]
-    known = tuple(q for q in columns if q != "isotherm")
+    known = tuple(q for q in columns if q in UNITS and q != "strain")
     block = Block(source, source.rows[position], source.rows[position + 1 :], splitter, columns, known)
     none = HeaderError(
         f"{block.where}: no column recognised as {', '.join(missing)}: the header must name "

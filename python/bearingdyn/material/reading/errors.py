@@ -23,6 +23,10 @@ class HeaderError(ReadingError):
     """No header names the columns that are needed; another sheet of the file may hold the table."""
 
 
+class NoStepError(HeaderError):
+    """No step of a source is the one that is wanted; another sheet may have it."""
+
+
 def together(where: str, faults: Sequence[ReadingError]) -> ReadingError:
     """All faults of one place as one error, which says the place once."""
     texts = [str(fault) for fault in faults]

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from bearingdyn.checks import require
 from bearingdyn.material.dma import Mode
-from bearingdyn.material.reading.columns import UNITS
+from bearingdyn.material.reading.columns import LABELS, UNITS
 
-_KNOWN = (*UNITS, "isotherm")
+_KNOWN = (*UNITS, *LABELS)
+
+Step = str | int | Sequence[str | int]
 
 
 @dataclass(frozen=True)
@@ -21,11 +23,14 @@ class Request:
     mode
         "shear" or "tension"; None if the header has to tell.
     columns, units
-        Column names and units by quantity; they take precedence over those in the table.
+        Column names (or numbers, 1 the first) and units by quantity; they take precedence over those in the
+        table.
     temperature
         Temperature of all points, °C, where the table has no such column.
     drop_invalid
         Whether points are left out, with a warning, if their frequency or a modulus is not positive.
+    step
+        Names or numbers of the steps of an instrument's file to be read; None for all.
 
     Raises
     ------
@@ -34,17 +39,29 @@ class Request:
     """
 
     mode: Mode | None = None
-    columns: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str | int] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     temperature: float | None = None
     drop_invalid: bool = False
+    step: Step | None = None
 
     def __post_init__(self) -> None:
         T = self.temperature
         known = T is None or -273.15 < T < 1e4
         require(known, "temperature", T, "it must be a temperature in °C")
+        for quantity, column in self.columns.items():
+            titled = isinstance(column, str) or (type(column) is int and column >= 1)
+            remedy = "it must be a title, or the number of a column, 1 the first"
+            require(titled, f"columns[{quantity!r}]", column, remedy)
         for name, mapping in (("columns", self.columns), ("units", self.units)):
             unknown = sorted(set(mapping) - set(_KNOWN))
             require(
                 not unknown, name, dict(mapping), f"unknown quantities {unknown}; known are {list(_KNOWN)}"
             )
+
+    def wants(self, number: int, name: str) -> bool:
+        """Whether the step of this number, 1 the first, and name is to be read; names by a part of them."""
+        if self.step is None:
+            return True
+        wanted = [self.step] if isinstance(self.step, str | int) else list(self.step)
+        return any(w == number if isinstance(w, int) else w.lower() in name.lower() for w in wanted)

@@ -49,6 +49,9 @@ class ColumnUnits:
         if bare_temperature and is_number(first) and number_of(first) <= _HOT:
             unit = "°C"
             self._assume(f"{where}, column {column.title!r}: no unit for the temperature", unit, quantity)
+        if given is None and quantity == "time" and not _bare(unit):
+            unit = "s"
+            self._assume(f"{where}, column {column.title!r}: no unit for the time", unit, quantity)
         self._convert(quantity, unit, column, where)
 
     def _of_frequency(self, quantity: str, column: Column, where: str) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.material.dma import DMAData
+from bearingdyn.material.superposition.equal_frequency import at_odds, cells_of
 from bearingdyn.types import Array
 
 Reason = Literal["negative modulus", "fixture resonance"]
@@ -79,13 +80,14 @@ def suspects(dma: DMAData) -> tuple[NDArray[np.bool_], tuple[Suspect, ...]]:
 
     Negative (or zero) moduli always; and, with four isotherms or more, every point from the frequency on
     from which the median ratio over the isotherms exceeds 1.5 up to the highest one, two frequencies at
-    least, unless it does so at all frequencies: then it is the material.
+    least, unless it does so at all frequencies: then it is the material. Then every frequency at which the
+    isotherms contradict each other at equal reduced frequency (:func:`at_odds`): a resonance inside the band.
     """
     ratio = kk_ratio(dma)
     negative = ~((dma.storage > 0) & (dma.loss > 0))
     resonance = np.zeros(negative.size, dtype=bool)
     if dma.labels.max() + 1 >= _ISOTHERMS:
-        cell = np.round(np.log10(dma.frequency) / 0.02).astype(np.int64)  # 5 %: drives miss their frequency
+        cell = cells_of(dma.frequency)
         cells = np.unique(cell)
         median = np.array([_median(ratio[cell == c]) for c in cells])
         known = np.isfinite(median)
@@ -94,6 +96,9 @@ def suspects(dma: DMAData) -> tuple[NDArray[np.bool_], tuple[Suspect, ...]]:
             last_good = int(np.flatnonzero(known & ~above)[-1])
             if cells.size - last_good > 2:  # a single frequency may be an effect of the edge
                 resonance = (cell > cells[last_good]) & ~negative
+        good = np.flatnonzero(~(negative | resonance))
+        if good.size:
+            resonance[_in_order(dma, good)] |= at_odds(dma.take(good))
     flagged = negative | resonance
     found = tuple(
         Suspect(
@@ -105,6 +110,11 @@ def suspects(dma: DMAData) -> tuple[NDArray[np.bool_], tuple[Suspect, ...]]:
         for i in np.flatnonzero(flagged)
     )
     return flagged, found
+
+
+def _in_order(dma: DMAData, index: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The indices in the order in which :meth:`DMAData.take` puts their points."""
+    return index[np.lexsort((dma.frequency[index], dma.labels[index]))]
 
 
 def _median(ratio: Array) -> float:

@@ -17,16 +17,17 @@ from numpy.typing import NDArray
 
 from bearingdyn.checks import nonnegative, require
 from bearingdyn.material.dma import DMAData, Mode, check_range, shear_modulus
-from bearingdyn.material.shift_laws import ZERO_CELSIUS, Law, RhoT
+from bearingdyn.material.relaxation import RelaxationData
+from bearingdyn.material.shift_laws import ZERO_CELSIUS, Law, RhoT, ShiftTable
+from bearingdyn.material.superposition.doubts import doubt_law, doubt_runs, doubt_steps
 from bearingdyn.material.superposition.free_shifts import Superposed, Superposition, first_shifts
 from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, suspects
 from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
-from bearingdyn.notice import warn
+from bearingdyn.notice import OutsideIsotherms, warn
 from bearingdyn.types import Array
 
 _JITTER = 0.5  # K; as far as a mean temperature may miss the one that was meant
 _FAR = 100.0  # K; a T_ref further outside the data is taken for kelvin
-_LAW_MISFIT = 0.3  # decades rms, beyond which a law misleads: a factor of two in frequency
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,7 @@ class MasterCurve:
         Standard error of each, decades, against the isotherm nearest to T_ref, from the scatter of the
         points.
     law
-        Law fitted to the shifts.
+        Law fitted to the shifts; None of a single sweep.
     law_residual
         rms deviation of the shifts from the law, decades.
     kk_residual
@@ -79,7 +80,7 @@ class MasterCurve:
     T_ref: float
     shifts: Mapping[float, float]
     shift_errors: Mapping[float, float]
-    law: Law
+    law: Law | None
     law_residual: float
     kk_residual: tuple[float, float]
     source: str = field(default="", repr=False)
@@ -171,7 +172,9 @@ def master_curve(
     if smoothness is not None:
         nonnegative("smoothness", smoothness)
     check_range(dma)
-    used, left_out = _cleaned(dma, clean)
+    doubt_runs(dma)
+    # converted relaxation is causal by construction
+    used, left_out = _cleaned(dma, clean and not isinstance(dma, RelaxationData))
     if vertical is not None:
         vertical = RhoT(float(T_ref)) if vertical == "rhoT" else vertical
         remedy = f"its T_ref must be that of the curve, {T_ref:g} °C"
@@ -193,6 +196,7 @@ def master_curve(
         start = start - start[anchor]
     fit = Superposition(used, start, np.flatnonzero(~fixed))
     found = fit.run(smoothness, nearest)
+    misfit_free = found.misfit
     fitted, offset = fit_law(T, found.shifts, float(T_ref), law, pinned)
     if law_from == "data":
         fitted, misfit, points = fit_law_to_data(fit, fitted, float(T_ref), law)
@@ -202,12 +206,12 @@ def master_curve(
     else:
         by_law, shifts_found = fitted.log_shift(T), found.shifts - offset
     residual = float(np.sqrt(np.mean((shifts_found - by_law) ** 2)))
-    if not residual < _LAW_MISFIT:
-        warn(
-            f"{dma.source}: the shifts deviate from the {law} law by {residual:.2g} decades rms: a WLF or "
-            "Arrhenius law does not hold through a glass transition; take law='joined' or 'free', or fewer "
-            "isotherms",
-        )
+    if not isinstance(fitted, ShiftTable):
+        fitted = replace(fitted, measured=(float(T[0]), float(T[-1])))
+        error = float(np.sqrt(np.mean(found.errors**2)))
+        missed = fit.misfit(fitted.log_shift(used.temperature) + offset)
+        doubt_law(dma.source, law, residual, error, missed, misfit_free)
+    doubt_steps(dma.source, T, found.shifts)
     frequency = used.frequency * 10 ** (found.point_shifts - offset)
     order = np.argsort(frequency, kind="stable")
     return MasterCurve(
@@ -282,6 +286,7 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
     if not T[0] - _JITTER <= T_ref <= T[-1] + _JITTER:
         warn(
             f"T_ref is {T_ref:g} °C, outside the measured {T[0]:.4g} to {T[-1]:.4g} °C: the law extrapolates",
+            OutsideIsotherms,
         )
     return T
 
