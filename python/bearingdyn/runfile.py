@@ -200,6 +200,7 @@ def _facts(header: Any) -> dict[str, Any]:
             raise ValueError(f"{name} is {header.get(name)!r:.80}")
     if len(header["channels"]) != len(header["units"]):
         raise ValueError(f"{len(header['channels'])} channels have {len(header['units'])} units")
+    header["dt"] = float(header["dt"])  # a whole number of any length is JSON too
     return header
 
 
