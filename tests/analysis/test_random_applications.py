@@ -95,5 +95,6 @@ def test_ordinary_applications_neither_fail_nor_warn(count):
             lowest.append(float(found[found > 1.0].min()))
     print(
         f"{count} applications: pressures {min(pressures) / 1e9:.2f} to {max(pressures) / 1e9:.2f} GPa, "
-        f"lowest modes {min(lowest):.0f} to {max(lowest):.0f} Hz, {1e3 * statistics.median(seconds):.0f} ms"
+        f"lowest modes {min(lowest):.0f} to {max(lowest):.0f} Hz, "
+        f"{1e3 * statistics.median(seconds):.0f} ms each"
     )
