@@ -129,7 +129,7 @@ def whole(field: str, value: object, least: int, most: int | None = None, remedy
 def one_of(field: str, value: object, choices: Sequence[object]) -> None:
     """Raise ValueError unless the value is one of the choices."""
     require(
-        isinstance(value, str | int | float) and value in choices,
+        isinstance(value, str | int | float | None) and value in choices,
         field,
         value,
         f"it must be {' or '.join(repr(c) for c in choices)}",
