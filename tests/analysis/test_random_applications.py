@@ -50,7 +50,7 @@ def application(rng: np.random.Generator) -> tuple[bd.Application, bd.BallBearin
     for side in seats:
         outer = "ground"
         if soft:
-            layer = bd.Layer(r + 1e-3, r + 3e-3, entry.width, rubber, refinement=0.3)
+            layer = bd.Layer(r, r + 2e-3, entry.width, rubber, refinement=0.3)
             app.add(f"layer_{side}", layer)
             app.add(f"ring_{side}", bd.RigidBody.ring(0.85 * r, r, entry.width))
             app.connect(f"ring_{side}.centre", f"layer_{side}.inner")

@@ -37,7 +37,7 @@ def loaded(rubber: object = RUBBER) -> bd.Application:
 def motor(rubber: bd.Maxwell = RUBBER) -> bd.Application:
     app = bd.Application()
     app.add("shaft", bd.RigidBody(mass=1.0, inertia=(1e-3, 1e-3, 1e-3), rotating=True))
-    app.add("ring", bd.Layer(0.026, 0.030, 0.015, rubber, refinement=0.3))
+    app.add("ring", bd.Layer(0.0235, 0.0275, 0.014, rubber, refinement=0.3))
     app.ground("ring.outer")
     app.bearing("left", bearing("6204", clearance=10e-6), inner="shaft.centre", outer="ring.inner")
     app.load("shaft.centre", (0.0, -100.0, 50.0, 0.0, 0.0, 0.0))

@@ -33,14 +33,15 @@ def warn_of_overload(
     BearingWarning
         Naming the bearing, its pressure and its static rating.
     """
-    t, x, *_ = model.unpack(state)
+    finite = bool(np.isfinite(state).all())  # energies overflow before displacements do
+    t, x = model.unpack(state)[:2] if finite else (0.0, np.zeros(0))
     turned = shaft_angle(march.stepping, t)
     for term in march.modal.bearings:
         bearing = term.bearing
         if not isinstance(bearing, BallBearing):
             continue
         loads = [0.0]
-        if np.isfinite(x).all():
+        if finite:
             z, kernel = term.B @ x, term.kernel()
             cage = kernel.angle0 + bearing.cage_ratio * turned
             loads.append(core.bearing_force(kernel, z, np.zeros_like(z), cage, 0.0, turned)[3].max())
