@@ -42,12 +42,21 @@ PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The package's own look, for as long as the context is open."""
+    """The package's own look, for as long as the context is open.
+
+    Only these settings are put back at its end. The first figure of a session loads the backend, perhaps in
+    here, and a notebook's backend then switches `interactive` on, without which it shows no further figure:
+    `matplotlib.rc_context` would switch it off again.
+    """
     import matplotlib
 
-    settings: Any = STYLE  # its keys are matplotlib's, which a type would have to list
-    with matplotlib.rc_context(settings):
+    settings: Any = matplotlib.rcParams  # its keys are matplotlib's, which a type would have to list
+    before = {key: settings[key] for key in STYLE}
+    settings.update(STYLE)
+    try:
         yield
+    finally:
+        settings.update(before)
 
 
 def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = None) -> Axes:
