@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import existing
 from bearingdyn.core import Report
 from bearingdyn.types import Array
 
@@ -92,7 +93,7 @@ def read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[Chunk], int
     ValueError
         If the file is none of ours or its header is damaged.
     """
-    data = Path(path).read_bytes()
+    data = existing(path, "run file").read_bytes()
     version = _version(data)
     if not version:
         raise ValueError(f"{os.fspath(path)} is not a run file of bearingdyn")

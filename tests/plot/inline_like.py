@@ -1,8 +1,6 @@
-"""A backend that does what Jupyter's does: once loaded, it switches `interactive` on and shows the figures
-made while it is on.
+"""A backend that does what Jupyter's does: loaded, it switches `interactive` on, and shows what is made then.
 
-It stands for matplotlib_inline.backend_inline, which needs an IPython session; tests/examples has the notebooks
-themselves.
+It stands for matplotlib_inline.backend_inline, which needs an IPython session; tests/examples runs notebooks.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -182,4 +183,4 @@ def test_each_name_is_led_to_its_own_line_and_no_line_goes_through_a_name(f_max,
     along = [boxes[n].x0 for n in sorted(boxes, key=known.get)]
     assert along == sorted(along), "names in the order of the lines: no leaders cross"
     widths = sorted((b.x0, b.x1) for b in boxes.values())
-    assert all(a[1] <= b[0] + 0.4 for a, b in zip(widths, widths[1:], strict=False))
+    assert all(a[1] <= b[0] + 0.4 for a, b in itertools.pairwise(widths))

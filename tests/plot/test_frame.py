@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-# three cells, and what the stand-in of Jupyter's backend showed of them
+# three cells, and how many figures the stand-in of Jupyter's backend showed
 SCRIPT = """
 import sys
 import numpy as np

@@ -16,6 +16,7 @@ from bearingdyn.analysis.statics import HOLD
 from bearingdyn.application import QUANTITIES, RATES, Application
 from bearingdyn.checks import name_list, numbers
 from bearingdyn.material import Maxwell
+from bearingdyn.progress import Progress, told
 from bearingdyn.system import System, assemble
 from bearingdyn.types import Array, Complex
 
@@ -88,7 +89,7 @@ def frequency_response(
     *,
     speed: float = 0.0,
     quantity: str = "displacement",
-    progress: core.Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
     """Complex response at `outputs` to unit harmonic forces or ground motions at `inputs`, zero-to-peak.
 
@@ -110,6 +111,9 @@ def frequency_response(
         rad/s of the shaft, for gyroscopic forces; it is not the excitation frequency.
     quantity
         "displacement", "velocity" or "acceleration", of motions.
+    progress
+        True for a bar, False for none, or a function called with (frequencies done, in all); None for a bar
+        where standard error is a terminal.
 
     Returns
     -------
@@ -150,7 +154,8 @@ def frequency_response(
     force = np.array([i.force for i in given]).reshape(-1, state.system.n)
 
     omega = 2 * np.pi * f
-    x = state.solve(omega, force, requested(wanted, state.system.n), speed, progress)
+    with told(progress, "frequency") as tell:
+        x = state.solve(omega, force, requested(wanted, state.system.n), speed, tell)
     response = recovered(wanted, given, x, omega, speed, QUANTITIES.index(quantity), state.K, state.C)
 
     from bearingdyn.results import dataset, inputs_of

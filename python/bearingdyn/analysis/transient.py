@@ -12,8 +12,10 @@ from bearingdyn import core
 from bearingdyn.analysis.channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.room import check_room
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, whole
+from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import System
 
@@ -35,7 +37,7 @@ def transient(
     stream: str | os.PathLike[str] | None = None,
     audit: bool = False,
     scheme: core.Scheme | None = None,
-    progress: core.Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
     """March an application from its equilibrium, at constant speed or through a run-up.
 
@@ -73,7 +75,8 @@ def transient(
     scheme
         β, γ, tolerance, iterations and instruction set.
     progress
-        Called with the steps done and the steps in all.
+        True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
+        where standard error is a terminal.
 
     Returns
     -------
@@ -84,7 +87,8 @@ def transient(
     Raises
     ------
     ValueError
-        Before any long work: for dt ≤ 0, negative steps, an unknown channel, a part that would turn although
+        Before any long work: for dt ≤ 0, negative steps, a record that the memory cannot hold, an unknown
+        channel, a part that would turn although
         its damping is known at rest only, the state of another application.
     SolverError
         When Newton's iteration diverges or the response is no longer finite; its `partial` is the Dataset up
@@ -128,18 +132,20 @@ def transient(
         audit=audit,
         scheme=scheme,
     )
+    check_room(march.steps // march.decimate, record)
     found = [channel_of(march.modal, name) for name in record]
     model = march.modal.model([channel for channel, _ in found])
     state = march.start(model, initial) if resume is None else march.resumed(model, resume)
     facts = march.facts(record, [unit for _, unit in found])
-    rows, state, report = march.run(
-        model,
-        state,
-        start=resume is None,
-        progress=progress,
-        stream=stream,
-        header=facts if stream is None else {**facts, "digest": march.digest(state)},
-    )
+    with told(progress, "step") as tell:
+        rows, state, report = march.run(
+            model,
+            state,
+            start=resume is None,
+            progress=tell,
+            stream=stream,
+            header=facts if stream is None else {**facts, "digest": march.digest(state)},
+        )
     energies = march.energies(model, state) if audit else {}
     result = march_dataset(facts, rows, state, report, {f"energy_{k}": v for k, v in energies.items()})
     return march.ended(result, report)

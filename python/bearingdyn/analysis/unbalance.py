@@ -101,4 +101,4 @@ def unbalance_response(
         {"analysis": "unbalance response", "quantity": quantity, **inputs_of(system.inputs)},
         {"speed": (given, "rad/s"), "output": (list(outputs), "")},
     )
-    return made.assign_coords(unit=("output", units))
+    return made.assign_coords(unit=("output", units, {"units": "", "long_name": "unit of each output"}))

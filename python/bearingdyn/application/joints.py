@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.application.place import Place
 from bearingdyn.bearing import BallBearing, LooseFit, Pair, catalogue
 from bearingdyn.checks import number, require, vector
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 
@@ -58,6 +59,8 @@ class Support:
     damping: Array | None
     offset: Array | None = None
 
+    __repr__ = short
+
     def __post_init__(self) -> None:
         _check_springs(self, str(self.interface))
 
@@ -89,6 +92,8 @@ class Bush:
     stiffness: Array
     damping: Array
     offset: Array
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         if self.a == self.b:

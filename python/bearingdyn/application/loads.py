@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.application.place import GRAVITY, GROUND, Place
 from bearingdyn.checks import nonnegative, number, positive, require, vector
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 FORCE = "six numbers (Fx, Fy, Fz, Mx, My, Mz) in N and N m"
@@ -105,6 +106,8 @@ class ConstantLoad(DirectedLoad):
 
     kind: ClassVar[str] = "constant"
 
+    __repr__ = short
+
     def core(self, rows: Array) -> CoreLoad:
         force = self._force(rows)
         return _core(self.kind, force, np.zeros_like(force))
@@ -133,12 +136,19 @@ class HarmonicLoad(DirectedLoad):
     frequency: float
     phase: float = 0.0
 
+    __repr__ = short
+
     def __post_init__(self) -> None:
         super().__post_init__()
         remedy = "it must be positive, in Hz (leave it out for a constant load)"
         object.__setattr__(self, "frequency", positive(self._name("frequency"), self.frequency, remedy))
         phase = number(self._name("phase"), self.phase, "it must be finite, in rad")
         object.__setattr__(self, "phase", phase)
+
+    @property
+    def size(self) -> str:
+        turned = f", phase {self.phase:g} rad" if self.phase else ""
+        return f"{super().size} at {self.frequency:g} Hz{turned}"
 
     def core(self, rows: Array) -> CoreLoad:
         force, c, s = self._force(rows), math.cos(self.phase), math.sin(self.phase)
@@ -168,6 +178,8 @@ class SampledLoad(DirectedLoad):
     kind: ClassVar[str] = "sampled"
     time: Array
     value: Array
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         super().__post_init__()

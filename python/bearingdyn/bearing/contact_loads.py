@@ -12,12 +12,9 @@ from bearingdyn.bearing.ball_bearing import STATIC_PRESSURE, BallBearing
 from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.checks import number, positive
+from bearingdyn.notice import BearingWarning as BearingWarning
 from bearingdyn.notice import warn
 from bearingdyn.types import Array
-
-
-class BearingWarning(UserWarning):
-    """A bearing is asked for more than its parts bear, or than its model covers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +35,14 @@ class LoadDistribution:
     """Largest pressure of the inner contact, Pa."""
     pressure_outer: Array
     """Largest pressure of the outer contact, Pa."""
+
+    def __repr__(self) -> str:
+        """One line: the loaded balls, and the largest load and pressure."""
+        p = max(self.pressure_inner.max(), self.pressure_outer.max())
+        return (
+            f"<LoadDistribution: {self.loaded} of {self.azimuth.size} balls loaded, at most "
+            f"{self.load_outer.max():.4g} N and {p / 1e9:.3g} GPa>"
+        )
 
     @property
     def loaded(self) -> int:

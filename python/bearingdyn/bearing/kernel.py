@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.bearing.excitation import Imperfections
 from bearingdyn.checks import nonnegative, number, require, vector
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 Law: TypeAlias = Literal["constant", "table", "load"]
@@ -57,6 +58,8 @@ class TabulatedDamping:
 
     delta: Array
     c: Array
+
+    __repr__ = short
 
     def __init__(self, delta: ArrayLike, c: ArrayLike) -> None:
         n = np.size(delta)
@@ -152,6 +155,8 @@ class BearingKernel:
     """Azimuth of the first ball at the start, rad."""
     imperfections: Imperfections = field(default_factory=Imperfections)
     """Waves, pits and unequal balls; none by default."""
+
+    __repr__ = short
 
     def packed(self) -> dict[str, object]:
         """The fields by name, as the core parses them (bd_bearing_data).

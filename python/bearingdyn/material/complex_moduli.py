@@ -21,6 +21,7 @@ from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable
 from bearingdyn.material.superposition import MasterCurve
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex
 
 _PER_DECADE = 40  # points at which a modulus is handed to the fit
@@ -95,6 +96,8 @@ class TabulatedModulus:
     density: float
     law: Law | None = None
     temperature: float | None = None
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         _check("TabulatedModulus", {"K": self.K, "density": self.density})

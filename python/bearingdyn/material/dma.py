@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.checks import positive, require
-from bearingdyn.notice import warn
+from bearingdyn.notice import UnlikelyModulus, warn
 from bearingdyn.types import Array, Complex
 
 Mode = Literal["shear", "tension"]
@@ -63,6 +63,15 @@ class DMAData:
     isotherm: NDArray[np.int64] | None = None
     notes: tuple[str, ...] = ()
     K: float | None = None
+
+    def __repr__(self) -> str:
+        """One line: points, isotherms, and ranges."""
+        T = self.isotherm_temperatures
+        return (
+            f"<DMAData in {self.mode}, {self.frequency.size} points: {T.size} isotherms from {T.min():.4g} "
+            f"to {T.max():.4g} °C, {self.frequency.min():.3g} to {self.frequency.max():.3g} Hz, storage "
+            f"modulus {self.storage.min():.3g} to {self.storage.max():.3g} Pa; {self.source}>"
+        )
 
     def __post_init__(self) -> None:
         for name in ("frequency", "temperature", "storage", "loss"):
@@ -229,6 +238,7 @@ def check_range(dma: DMAData) -> None:
         warn(
             f"{dma.source}: median storage modulus {middle:.3g} Pa in {dma.mode} lies outside {_SOFT:g} to "
             f"{_HARD:g} Pa, the range of gels, elastomers and polymers: {_UNIT}",
+            UnlikelyModulus,
         )
 
 

@@ -26,6 +26,7 @@ from bearingdyn.fem import Section, assemble_beam, bending_wavelength
 from bearingdyn.magnitude import LONGEST_SHAFT, check_length
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at f_max, 2e-4 at half of it
@@ -133,6 +134,8 @@ class Shaft:
     damping: float = 0.0
     f_max: float = F_MAX
     element_length: float | None = None
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sections", tuple(self.sections))

@@ -32,6 +32,7 @@ from bearingdyn.magnitude import LARGEST_SOLID, check_length
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import ViscoelasticSolid
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -144,6 +145,8 @@ class Solid:
     attach: tuple[str, ...] = ()
     radiating: tuple[str, ...] = ()
     inertia: int = 1
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         check_f_max(self.f_max)

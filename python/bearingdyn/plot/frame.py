@@ -183,9 +183,14 @@ def colour(k: int) -> str:
     return COLOURS[k % len(COLOURS)]
 
 
+def is_result(datasets: object) -> bool:
+    """Whether it is one result and no mapping of several: a Dataset is a Mapping too, of its variables."""
+    return hasattr(datasets, "data_vars")
+
+
 def some(datasets: Mapping[str, Any]) -> Mapping[str, Any]:
     """The results by label; ValueError if there are none, or one without a label."""
-    if hasattr(datasets, "data_vars"):  # a Dataset is a Mapping too, of its variables
+    if is_result(datasets):
         raise ValueError('this is a result without a label; give results by label, such as {"run": result}')
     if not datasets:
         raise ValueError("there is nothing to draw; give at least one result with its label")

@@ -19,6 +19,7 @@ from bearingdyn.plot.frame import (
     engineering,
     finish,
     halve,
+    is_result,
     new_axes,
     some,
     style,
@@ -36,12 +37,13 @@ DEPTH = 1e-6
 PHASE_END = 135.0
 SMALL_PHASE = 15.0  # °; the axes of a phase show at least that much
 POINT = 1.0 / 72.0  # inch
-# names of lines: their size, points; what one takes along the axis, in its size; height of the leaders, of the axes
+# names of lines: their size, points; what one takes along the axis, in that size; height of the leaders, of
+# the axes
 NAME, PITCH, LEADER = 8.0, 1.35, 0.07
 
 
 def frequency_response(
-    datasets: Mapping[str, xarray.Dataset],
+    datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
     output: str,
     input: str,
     ax: Axes | None = None,
@@ -56,7 +58,7 @@ def frequency_response(
     Parameters
     ----------
     datasets
-        Results of `bd.frequency_response` by label.
+        A result of `bd.frequency_response`, or several by label.
     output
         Channel of the response.
     input
@@ -78,7 +80,9 @@ def frequency_response(
         over the speed, which `unbalance_response` draws.
     """
     curves = {}
-    for label, data in some(datasets).items():
+    alone = is_result(datasets)
+    several: Any = {"response": datasets} if alone else datasets
+    for label, data in some(several).items():
         if "frequency" not in data.coords:
             hint = "; draw it with plot.unbalance_response" if "speed" in data.coords else ""
             raise ValueError(
@@ -89,7 +93,7 @@ def frequency_response(
             if wanted not in known:
                 raise ValueError(f"{label!r} has no {kind} {wanted!r}; there are {known}")
         curves[label] = data["response"].sel(output=output, input=input)
-    quantity = _one_quantity(datasets)
+    quantity = _one_quantity(several)
     unit = _response_unit(quantity, output, input)
     with style():
         ax = ax or new_axes(height=4.8 if phase else 3.4)
@@ -107,7 +111,7 @@ def frequency_response(
         _span(bottom, *(c["frequency"].values for c in curves.values()))
         if lower is not None:
             finish_phase(lower)
-        finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=True)
+        finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=not alone)
     return ax
 
 
@@ -411,7 +415,7 @@ def _mark(ax: Axes, lines: Mapping[str, float]) -> float:
     height = max(map(len, names)) * 0.6 * letter / ax.bbox.height + 0.02
     moved = bool(np.abs(stands - at).max() * ax.bbox.width > 0.5)  # pixels
     foot = 1.0 - height - (LEADER if moved else 0.01)
-    for name, x, stand in zip(names, at, stands, strict=True):
+    for name, stand in zip(names, stands, strict=True):
         ax.axvline(
             lines[name], ymax=foot, color=GREY, linestyle=(0, (3, 3)), linewidth=0.7, zorder=1, gid=name
         )

@@ -8,7 +8,6 @@ property of time or frequency, not of the matrices.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -19,9 +18,10 @@ import scipy.linalg
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Channel, Part
 from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, LooseFit, RacewaySeries
-from bearingdyn.checks import number
+from bearingdyn.checks import meant, number
 from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.material import Maxwell
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 # below this share of the largest eigenvalue of (K, M) its round-off may hide a slow mode
@@ -44,6 +44,8 @@ class LayerTerm:
     part: str
     material: Any
     L: Array
+
+    __repr__ = short
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +72,8 @@ class BearingTerm:
     series: RacewaySeries = RIGID
     offset: float = 0.0
     ends: Mapping[str, Array] = field(default_factory=dict)
+
+    __repr__ = short
 
     def kernel(self) -> BearingKernel:
         """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves."""
@@ -104,6 +108,8 @@ class PartTerm:
     rigid: Array
     source: Part
 
+    __repr__ = short
+
 
 @dataclass(frozen=True, eq=False)
 class SpringTerm:
@@ -127,6 +133,8 @@ class SpringTerm:
     damping: Array
     ends: Mapping[str, Array] = field(default_factory=dict)
 
+    __repr__ = short
+
 
 @dataclass(frozen=True, eq=False)
 class LoadTerm:
@@ -144,6 +152,8 @@ class LoadTerm:
     part: str = ""
     own_cos: Array | None = None
     own_sin: Array | None = None
+
+    __repr__ = short
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -212,9 +222,7 @@ class System:
             Where none has that name.
         """
         if name not in self.outputs:
-            near = difflib.get_close_matches(name, self.outputs, n=1)
-            meant = f"; did you mean {near[0]!r}?" if near else ";"
-            raise ValueError(f"{name!r} is no interface or output{meant} there are {sorted(self.outputs)}")
+            raise ValueError(f"{name!r} is no interface or output; {meant(name, self.outputs)}")
         return self.outputs[name]
 
     def row(self, channel: str | Channel) -> Array:

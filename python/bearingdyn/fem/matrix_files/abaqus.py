@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.abaqus_input import blocks, node
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
+from bearingdyn.fem.matrix_files.text_tables import columns, symmetric_from, whole
 from bearingdyn.types import Array, Index
 
 

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.matrix_files.text_tables import columns, existing, symmetric_from, whole
+from bearingdyn.fem.matrix_files.text_tables import columns, symmetric_from, whole
 
 
 def read_calculix(

@@ -7,8 +7,8 @@ from typing import Any
 
 import scipy
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.matrix_files.text_tables import existing
 
 
 def is_matrix_market(path: Path) -> bool:

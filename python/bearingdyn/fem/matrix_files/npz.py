@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, check_matrices
-from bearingdyn.fem.matrix_files.text_tables import existing
 
 
 def _from_arrays(arrays: Mapping[str, Any], name: str, path: Path) -> Any:

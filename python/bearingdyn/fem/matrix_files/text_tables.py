@@ -1,4 +1,4 @@
-"""Files of numbers: that they are there, their columns, and the entries of a sparse matrix."""
+"""Files of numbers: their columns, and the entries of a sparse matrix."""
 
 from __future__ import annotations
 
@@ -9,14 +9,6 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.types import Array, Index
-
-
-def existing(path: str | Path) -> Path:
-    """The path of a file that is there. Raises ValueError if it is not."""
-    p = Path(path)
-    if not p.is_file():
-        raise ValueError(f"{p} is not a file; check the path")
-    return p
 
 
 def columns(path: Path, delimiter: str | None, widths: tuple[int, ...], kind: str) -> Array:

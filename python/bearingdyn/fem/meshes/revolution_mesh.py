@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
@@ -77,6 +78,8 @@ class RevolutionMesh:
     z: Array
     elements: Index
     region: Index
+
+    __repr__ = short
 
     @property
     def size(self) -> float:

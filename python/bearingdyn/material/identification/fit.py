@@ -23,7 +23,7 @@ from bearingdyn.material.identification.polish import Polished, polish
 from bearingdyn.material.identification.projection import Projection
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.superposition import MasterCurve
-from bearingdyn.notice import warn
+from bearingdyn.notice import CoarseModel, TensionAsShear, warn
 from bearingdyn.types import Array
 
 _MOST = 20  # branches tried by n = "auto"
@@ -221,6 +221,7 @@ def _smallest(
     warn(
         f"n = 'auto': no number of branches up to {most} comes within the tolerance of {tolerance:g} or 1.2 "
         f"times the floor {floor[0]:.3g}, {floor[1]:.3g}; the best is {best[0]:.2g} times that",
+        CoarseModel,
     )
     return best[1], best[2]
 
@@ -251,7 +252,7 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
     modulus = master.storage[keep] + 1j * master.loss[keep]
     if master.mode == "tension":
         modulus, note = shear_modulus(modulus, K, None)
-        warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand")
+        warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand", TensionAsShear)
     elif master.K is not None and not math.isclose(master.K, K, rel_tol=1e-6):
         raise ValueError(
             f"K is {K:g} Pa; the curve was turned into shear with K = {master.K:g} Pa; both must be the same"

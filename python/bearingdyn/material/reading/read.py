@@ -16,7 +16,7 @@ from bearingdyn.material.reading.errors import ReadingError
 from bearingdyn.material.reading.request import Request
 from bearingdyn.material.reading.source import read_source, source_of
 from bearingdyn.material.reading.table import NO_LETTER, Table, read_table
-from bearingdyn.notice import warn
+from bearingdyn.notice import AssumedMeaning, UnlikelyModulus, warn
 from bearingdyn.types import Index
 
 
@@ -115,7 +115,8 @@ def read_dma(
     if 10.0 <= top < SOFTEST:  # below, check_range has warned
         warn(
             f"{dma.source}: no storage modulus above {top:.4g} Pa, softer than any rubber: are the numbers "
-            "in kPa or MPa? Then give units={'storage': 'kPa', 'loss': 'kPa'}"
+            "in kPa or MPa? Then give units={'storage': 'kPa', 'loss': 'kPa'}",
+            UnlikelyModulus,
         )
     return dma
 
@@ -135,7 +136,8 @@ def _mode(table: Table, mode: Mode | None) -> Mode:
         raise ReadingError(f"{table.header}: {NO_LETTER}", "mode")
     warn(
         f"{table.header}: the header does not tell G from E: taken as shear, because the file speaks of "
-        "shear (torque, plates); mode='tension' says otherwise"
+        "shear (torque, plates); mode='tension' says otherwise",
+        AssumedMeaning,
     )
     return "shear"
 

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import existing
+
 _OLE, _ZIP = b"\xd0\xcf\x11\xe0", b"PK\x03\x04"
 _EXTRA = "give it as CSV, or install the extra that reads it: pip install 'bearingdyn[xls]'"
 _SEPARATORS = ("\t", ";", ",")
@@ -72,8 +74,7 @@ def read_source(path: Path) -> list[Source]:
     ValueError naming the file if it is binary, of unknown encoding, a spreadsheet that cannot be read, or
     empty.
     """
-    if not path.exists():
-        raise FileNotFoundError(f"file {path} is not there")
+    existing(path, "table")
     with path.open("rb") as file:
         data = file.read()
     if data[:4] == _OLE:

@@ -16,7 +16,7 @@ from bearingdyn.material.reading.columns import is_number, names_shear, number_o
 from bearingdyn.material.reading.errors import HeaderError, ReadingError, together
 from bearingdyn.material.reading.request import Request
 from bearingdyn.material.reading.source import Row, Source
-from bearingdyn.notice import warn
+from bearingdyn.notice import LeftOut, warn
 from bearingdyn.types import Array
 
 _MISSING = ("", "-", "--", "---", "nan", "n/a", "na", "null", "none", "#n/a")
@@ -265,13 +265,14 @@ class TableReader:
         """Say what was left out, and how much of it."""
         if self.left_out:
             total = len(self.left_out) + len(self.points)
-            warn(f"{len(self.left_out)} of {total} points left out: first {self.left_out[0]}")
+            warn(f"{len(self.left_out)} of {total} points left out: first {self.left_out[0]}", LeftOut)
         if self.after:
             row = self.after[0]
             numbers = sum(any(map(is_number, r.text.split())) for r in self.after)
             warn(
                 f"{self.source.at(row.number)}: {len(self.after)} lines after the table left out, {numbers} "
-                f"of them with numbers: first {row.text.strip()[:60]!r}"
+                f"of them with numbers: first {row.text.strip()[:60]!r}",
+                LeftOut,
             )
 
     def _require_points(self) -> None:

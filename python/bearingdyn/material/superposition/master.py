@@ -21,7 +21,7 @@ from bearingdyn.material.shift_laws import ZERO_CELSIUS, Law, RhoT
 from bearingdyn.material.superposition.free_shifts import Superposed, Superposition, first_shifts
 from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, suspects
 from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
-from bearingdyn.notice import warn
+from bearingdyn.notice import LeftOut, OutsideIsotherms, PoorLaw, ThinIsotherm, warn
 from bearingdyn.types import Array
 
 _JITTER = 0.5  # K; as far as a mean temperature may miss the one that was meant
@@ -88,6 +88,15 @@ class MasterCurve:
     vertical: RhoT | None = None
     notes: tuple[str, ...] = field(default=(), repr=False)
     K: float | None = None
+
+    def __repr__(self) -> str:
+        """One line: points, ranges, law and errors."""
+        return (
+            f"<MasterCurve in {self.mode} at {self.T_ref:g} °C, {self.frequency.size} points: "
+            f"{self.frequency.min():.3g} to {self.frequency.max():.3g} Hz, storage modulus "
+            f"{self.storage.min():.3g} to {self.storage.max():.3g} Pa, {type(self.law).__name__} law within "
+            f"{self.law_residual:.2g} decades, {len(self.left_out)} points left out>"
+        )
 
     @property
     def tan_delta(self) -> Array:
@@ -207,6 +216,7 @@ def master_curve(
             f"{dma.source}: the shifts deviate from the {law} law by {residual:.2g} decades rms: a WLF or "
             "Arrhenius law does not hold through a glass transition; take law='joined' or 'free', or fewer "
             "isotherms",
+            PoorLaw,
         )
     frequency = used.frequency * 10 ** (found.point_shifts - offset)
     order = np.argsort(frequency, kind="stable")
@@ -245,6 +255,7 @@ def _cleaned(dma: DMAData, clean: bool) -> tuple[DMAData, tuple[Suspect, ...]]:
     warn(
         f"{dma.source}: {len(found)} of {flagged.size} points left out that no passive material could give: "
         f"{summary(found)}{more}",
+        LeftOut,
     )
     return dma.take(np.flatnonzero(~flagged)), found
 
@@ -273,6 +284,7 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
         warn(
             f"{dma.source}: one frequency only at {', '.join(f'{T[k]:.4g}' for k in single)} °C: these "
             "shifts rest on a single point",
+            ThinIsotherm,
         )
     if not T[0] - _FAR <= T_ref <= T[-1] + _FAR:
         raise ValueError(
@@ -282,6 +294,7 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
     if not T[0] - _JITTER <= T_ref <= T[-1] + _JITTER:
         warn(
             f"T_ref is {T_ref:g} °C, outside the measured {T[0]:.4g} to {T[-1]:.4g} °C: the law extrapolates",
+            OutsideIsotherms,
         )
     return T
 
