@@ -124,7 +124,7 @@ def test_a_file_of_several_results_asks_which(response, tmp_path):
 
 def test_missing_group_is_named(response, tmp_path):
     results.save({"layer": response}, tmp_path / "r.nc")
-    with pytest.raises(ValueError, match=r"group 'no layer' of .*r\.nc"):
+    with pytest.raises(ValueError, match=r"r\.nc has no result 'no layer'; it is one result"):
         results.open_result(tmp_path / "r.nc", "no layer")
 
 

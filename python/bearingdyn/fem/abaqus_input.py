@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from bearingdyn.checks import existing
-
 
 def blocks(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
     """Keyword, options and data lines of each block, *INCLUDE followed."""
@@ -26,7 +24,10 @@ def blocks(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
                 keyword, options, lines = *_keyword(pending), []
                 pending = ""
                 if keyword == "INCLUDE":
-                    yield from blocks(existing(path.parent / options.get("INPUT", ""), "file for *INCLUDE"))
+                    other = path.parent / options.get("INPUT", "")
+                    if not other.is_file():
+                        raise ValueError(f"*INCLUDE names {other}, which is not a file")
+                    yield from blocks(other)
                     keyword = ""
             else:
                 lines.append(line)
