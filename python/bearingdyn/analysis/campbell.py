@@ -58,8 +58,9 @@ def campbell(
     xarray.Dataset
         Over (speed, mode): frequency (Hz, |λ|/2π); damping_ratio; eigenvalue (rad/s); whirl of the parts that
         turn (of all parts, if none turns): +1 a circle in the sense of the shaft, from x to y, −1 a circle
-        against it, 0 a line; mac, the modal assurance to the same mode at the next higher speed, 0 … 1. Over "mode": direction,
-        "lateral", "axial" or "torsional", in which the parts that turn move most at the lowest speed.
+        against it, 0 a line; mac, the modal assurance to the same mode at the next higher speed, 0 … 1. Over
+        "mode": direction, "lateral", "axial" or "torsional", in which the parts that turn move most at the
+        lowest speed.
 
     Raises
     ------

@@ -13,9 +13,9 @@ DIRECTIONS = ("lateral", "axial", "torsional")
 
 
 def directions(system: System, shapes: Complex) -> NDArray[np.str_]:
-    """Of each of the shapes (m, n), the largest of DIRECTIONS at the interfaces of the parts that turn.
+    """The largest of DIRECTIONS in each shape (m, n), over the places of the parts that turn.
 
-    A turn θz counts with the radius of gyration of its part about its first interface, a tilt θx, θy likewise,
+    A turn θz counts with the radius of gyration of its part about its first interface, tilts θx, θy likewise,
     so that a rigid body that only tilts is lateral. All parts count if none turns.
     """
     turning = set(system.turning)
@@ -36,4 +36,4 @@ def directions(system: System, shapes: Complex) -> NDArray[np.str_]:
             if len(rows) == 6:
                 size[0] += square[0] * motion[3] + square[1] * motion[4]
                 size[2] += square[2] * motion[5]
-    return np.array(DIRECTIONS)[np.argmax(size, axis=0)]
+    return np.asarray(np.array(DIRECTIONS)[np.argmax(size, axis=0)])

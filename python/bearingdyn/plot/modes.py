@@ -26,7 +26,8 @@ NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, point
 def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes | None = None) -> Axes:
     """Natural frequencies by bd.campbell over the speed, in rpm; the modes told apart by their motion.
 
-    Lateral modes that whirl are forward or backward, the others lateral; and there are axial and torsional ones.
+    Lateral modes that whirl are forward or backward, the others lateral; there are axial and torsional
+    ones too.
 
     A ring stands where a mode that swings crosses an order (straight between the speeds computed), and
     beside it the speed in rpm where there is room.
@@ -50,7 +51,8 @@ def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes 
     frequency, whirl = data["frequency"].values[order], data["whirl"].values[order]
     rpm = rpm[order]
     kinds = {
-        "forward": (0, "-"), "backward": (1, "--"), "lateral": (2, ":"), "axial": (3, "-."), "torsional": (4, "-."),
+        "forward": (0, "-"), "backward": (1, "--"), "lateral": (2, ":"),
+        "axial": (3, "-."), "torsional": (4, "-."),
     }  # fmt: skip
     # results of before 0.3 do not say it
     direction = data["direction"].values if "direction" in data else ["lateral"] * frequency.shape[1]
@@ -180,11 +182,10 @@ def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis:
                     x * 1e3, y * 1e3, color=colour(k), linewidth=width, marker="o", markersize=3, label=label
                 )
         if along_only:
-            for start, shift in zip(z, along.real, strict=True):
-                ax.annotate(
-                    "", ((start + shift) * 1e3, 0.0), (start * 1e3, 0.0), xycoords=ax.get_xaxis_transform(),
-                    arrowprops={"arrowstyle": "->", "color": "0.2", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0},
-                )  # fmt: skip
+            look = {"arrowstyle": "->", "color": "0.2", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+            foot = ax.get_xaxis_transform()
+            for start, shift in zip(z * 1e3, along.real * 1e3, strict=True):
+                ax.annotate("", (start + shift, 0.02), (start, 0.02), xycoords=foot, arrowprops=look)
         ax.set_xlabel("z, mm" + ("; arrows: the motion along z" if along_only else ""))
         ax.set_ylabel(f"{axis}, mm")
         frequency = float(data["frequency"].values[mode])
