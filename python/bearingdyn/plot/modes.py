@@ -181,6 +181,10 @@ def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis:
                 ax.plot(
                     x * 1e3, y * 1e3, color=colour(k), linewidth=width, marker="o", markersize=3, label=label
                 )
+        low, high = ax.get_ylim()
+        least = 2e3 * SWING * size  # mm; round-off beside an axial motion is not drawn large
+        if high - low < least:
+            ax.set_ylim((low + high - least) / 2, (low + high + least) / 2)
         if along_only:
             look = {"arrowstyle": "->", "color": "0.2", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
             foot = ax.get_xaxis_transform()
