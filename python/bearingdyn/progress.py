@@ -50,7 +50,9 @@ def told(progress: Progress | bool | None, unit: str) -> Iterator[Progress | Non
             yield None
             return
         raise
-    with tqdm(unit=unit, unit_scale=True, delay=0.0 if progress else DELAY, leave=bool(progress)) as bar:
+    with tqdm(
+        unit=unit, unit_scale=unit == "step", delay=0.0 if progress else DELAY, leave=bool(progress)
+    ) as bar:
 
         def show(done: int, total: int) -> None:
             bar.total = total
