@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import inspect
 import io
+import re
 import runpy
 import shutil
 import tempfile
@@ -16,14 +18,55 @@ STATIC = HERE / "_static"
 
 
 def make() -> None:
-    """Write _static/architecture.svg, _static/first_hour.png and what the script printed."""
+    """Write _static/architecture.svg, _static/first_hour.png and what the script printed, and the tables."""
     import matplotlib
 
     matplotlib.use("Agg")
     STATIC.mkdir(exist_ok=True)
+    (STATIC / "warnings.txt").write_text(warnings_table(), encoding="utf-8")
+    (STATIC / "names.txt").write_text(names(), encoding="utf-8")
     architecture.draw(STATIC / "architecture.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))
         shutil.copy(Path("out", "first_hour.png"), STATIC)
     (STATIC / "first_hour.txt").write_text(printed.getvalue(), encoding="utf-8")
+
+
+def warnings_table() -> str:
+    """Every class of warning, Markdown: what it says, when it is raised, and what helps."""
+    from bearingdyn import notice
+
+    found = [c for _, c in inspect.getmembers(notice, inspect.isclass) if issubclass(c, notice.Notice)]
+    rows = ["| class | what | when | remedy |", "|---|---|---|---|"]
+    for each in found:
+        if each is not notice.Notice:
+            what, when, remedy = told(each)
+            rows.append(f"| `{each.__name__}` | {what} | {when} | {remedy} |")
+    return "\n".join(rows) + "\n"
+
+
+def told(warning: type[Warning]) -> tuple[str, str, str]:
+    """What a warning says, when it is raised and what helps; ValueError where its docstring lacks it."""
+    text = inspect.getdoc(warning) or ""
+    parts = re.split(r"^(When|Remedy): ", text, flags=re.MULTILINE)
+    if parts[1::2] != ["When", "Remedy"]:
+        raise ValueError(f"{warning.__name__}: its docstring needs a paragraph When: and then one Remedy:")
+    what, when, remedy = (" ".join(part.split()).replace("|", "\\|") for part in parts[0::2])
+    return what, when, remedy
+
+
+def names() -> str:
+    """The public names by what they are about, Markdown, each with the first line of its docstring."""
+    import bearingdyn
+
+    lines = []
+    for group, homes in bearingdyn.PUBLIC.items():
+        lines += [f"## {group.capitalize()}", "", "| name | room | what |", "|---|---|---|"]
+        for home, public in homes.items():
+            for name in public:
+                doc = inspect.getdoc(getattr(bearingdyn, name)) or ""
+                first = doc.split("\n\n")[0].replace("\n", " ").replace("|", "\\|").replace("*", "\\*")
+                lines.append(f"| `{name}` | `{home}` | {first} |")
+        lines.append("")
+    return "\n".join(lines)

@@ -185,6 +185,9 @@ def levels(found: Mapping[str, Harmonic]) -> None:
         means, curves = ("".join(f"{pair[k]:>9.1f}" for pair in pairs) for k in (0, 1))
         print(f"  {label:<24}{means}   {curves}")
     print("  top y, z: velocity of the left housing's top; ERP: all the outside of both, as plane waves")
+    print(
+        "  ERP is no sound power: a sphere of Ø100 mm radiates 35 dB less at 200 Hz, 8 at 1 kHz, 1 at 2 kHz"
+    )
 
 
 def modes_table(bending: Mapping[str, motor.Bending]) -> None:

@@ -15,9 +15,9 @@ from bearingdyn.analysis import equilibrium, frequency_response, modes, transien
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, PointContact, Walther
 from bearingdyn.bearing.catalogue import bearing
-from bearingdyn.core import Progress
 from bearingdyn.material import Elastic, Maxwell
 from bearingdyn.parts import Disc, Layer, RigidBody, Section, Shaft
+from bearingdyn.progress import Progress
 
 RPM = math.pi / 30
 HARRIS = "T. A. Harris, Rolling Bearing Analysis"

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import difflib
 import math
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -124,6 +127,34 @@ def whole(field: str, value: object, least: int, most: int | None = None, remedy
     x = number(field, value, remedy)
     require(x % 1 == 0 and x >= least and (most is None or x <= most), field, value, remedy)
     return int(value)  # type: ignore[call-overload, no-any-return]
+
+
+def meant(name: str, known: Collection[str]) -> str:
+    """The end of a message that a name is not known: the nearest that is, and all there are."""
+    near = difflib.get_close_matches(name, known, n=1)
+    return (f"did you mean {near[0]!r}? " if near else "") + f"there are {sorted(known)}"
+
+
+def existing(path: str | os.PathLike[str], what: str = "file") -> Path:
+    """The path of a file that is there.
+
+    Raises
+    ------
+    FileNotFoundError
+        Where nothing is there: every reader of this package says it so.
+    IsADirectoryError
+        Where a folder is.
+    ValueError
+        Where a device or a pipe is.
+    """
+    p = Path(path)
+    if p.is_dir():
+        raise IsADirectoryError(f"{p} is a folder; give the path of a {what}")
+    if not p.exists():
+        raise FileNotFoundError(f"{p}: no such file; give the path of a {what}")
+    if not p.is_file():
+        raise ValueError(f"{p} is not a file; give the path of a {what}")
+    return p
 
 
 def one_of(field: str, value: object, choices: Sequence[object]) -> None:

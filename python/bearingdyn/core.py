@@ -5,17 +5,17 @@ Everything here is arrays in, arrays out; what the arrays mean is said in csrc/b
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
-from typing import Any, Protocol, TypeAlias
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import _core
+from bearingdyn.progress import Progress as Progress
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex
 
-Progress: TypeAlias = Callable[[int, int], object]
 Model = _core.Model
 
 # the words that C owns, in the lists of csrc/bearingdyn.h
@@ -137,6 +137,8 @@ class Stepping:
     speed: float | tuple[ArrayLike, ArrayLike] = field(default=0.0, kw_only=True)
     audit: bool = field(default=False, kw_only=True)
     scheme: Scheme = field(default_factory=Scheme, kw_only=True)
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         _core.check_scheme(self.packed())

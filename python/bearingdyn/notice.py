@@ -142,7 +142,87 @@ class CutFile(Notice):
     """
 
 
-def warn(text: str, category: type[Warning] = UserWarning) -> None:
+class OutsideBand(Notice):
+    """A material model is used at a frequency it was not fitted at.
+
+    When: a Maxwell model that knows its band is asked for its modulus outside it, in a response, in damped
+    modes or by `complex_modulus`; or `fit_maxwell` is given a band that reaches beyond the master curve.
+
+    Remedy: fit a band that covers the frequencies asked for, with data that reach there; or take the answer
+    as an extrapolation.
+    """
+
+
+class AssumedMeaning(Notice):
+    """A file does not say what a number means, and the usual is taken.
+
+    When: `read_dma` finds no unit for a frequency or a temperature, an angular frequency in a unit of
+    frequency, moduli of which only the words around them tell shear from tension, or a temperature only in
+    the file's name; or when the first of several sheets that hold a table is read.
+
+    Remedy: say it: `units={...}`, `mode=...`, `temperature=...`, `step=...`; the text names the argument.
+    """
+
+
+class LeftOut(Notice):
+    """Something of a measurement is not used.
+
+    When: `read_dma` leaves out rows that are not valid or stand behind the table; `master_curve` leaves out
+    points that no passive material could give, such as a resonance of the fixture.
+
+    Remedy: look at the rows or points named; `clean=False` keeps what is positive, `dma.select` leaves out
+    more.
+    """
+
+
+class UnlikelyModulus(Notice):
+    """A measured modulus is far from what gels, elastomers and polymers have; its unit is likely wrong.
+
+    When: the median of the storage moduli that `read_dma` read lies outside 100 Pa to 20 GPa, or no storage
+    modulus is as large as a rubber's.
+
+    Remedy: give the unit of the columns: `units={"storage": "MPa", "loss": "MPa"}`.
+    """
+
+
+class ThinIsotherm(Notice):
+    """A shift rests on a single point.
+
+    When: `master_curve` meets an isotherm with one frequency only.
+
+    Remedy: leave that temperature out by `dma.select`, or measure a sweep there.
+    """
+
+
+class CoarseModel(Notice):
+    """No number of branches tried renders the measurement within the tolerance.
+
+    When: `fit_maxwell(n="auto")` has tried all it may.
+
+    Remedy: a narrower band, a larger `tolerance`, or better data: a causal spectrum as dense as it may be
+    leaves the floor that the text names.
+    """
+
+
+class TensionAsShear(Notice):
+    """Moduli measured in tension are turned into shear by the bulk modulus alone.
+
+    When: `fit_maxwell` is given a master curve in tension.
+
+    Remedy: `master.to_shear(K=...)` or `to_shear(nu=...)` beforehand says how it is meant.
+    """
+
+
+class UnfinishedLine(Notice):
+    """The last number of a text file may have been cut.
+
+    When: the file's last line has no line end, which programs write and a copy that broke off lacks.
+
+    Remedy: compare the file's length with the original; if it is whole, add a line end.
+    """
+
+
+def warn(text: str, category: type[Notice]) -> None:
     """Warn at the nearest caller that is not of this package.
 
     The caller is known by its module's name, not its file: the `__init__` of a dataclass has no file.

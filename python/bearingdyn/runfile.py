@@ -30,6 +30,7 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import existing
 from bearingdyn.core import Report
 from bearingdyn.types import Array
 from bearingdyn.writing import check_target
@@ -129,7 +130,7 @@ def read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[Chunk], int
         If the file is none of ours, its header is damaged, or a block passes its checksum and yet holds no
         run.
     """
-    return _parsed(Path(path).read_bytes(), path)
+    return _parsed(existing(path, "run file").read_bytes(), path)
 
 
 def _parsed(data: bytes, path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[Chunk], int]:

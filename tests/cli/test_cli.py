@@ -233,7 +233,7 @@ def test_interrupt_is_code_130(monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["fit", "missing.csv"], "file missing.csv is not there"),
+        (["fit", "missing.csv"], "missing.csv: no such file"),
         (["fit", SAMPLE, "--K", "2000"], "a rubber's bulk modulus is near 2e9 Pa"),
         (["fit", SAMPLE, "--T-ref", "293"], "is it in kelvin"),
         (["fit", SAMPLE, "--plot", "nowhere/at/all.png"], "--plot nowhere"),

@@ -310,8 +310,6 @@ def test_files_that_do_not_fit_are_named(block, tmp_path):
         (lambda: read_matrices(f["a"], f["a"], {1: (0, 0, 0)}), "points has no node 7"),
         (lambda: read_matrices(f["a"], f["a"], block.points[:4]), r"points has shape \(4, 3\), .* 12 nodes"),
         (lambda: read_matrices(tmp_path / "k.unv"), "ends in '.unv'; known are"),
-        (lambda: read_matrices(tmp_path / "no.sti"), "no.sti is not a file"),
-        (lambda: read_matrices(tmp_path / "alone.sti"), "alone.mas is not a file"),
         (lambda: read_matrices(tmp_path / "few.sti"), "rows up to 36, while .* names 2"),
         (lambda: read_matrices(tmp_path / "bad.sti"), "not node.direction"),
         (lambda: read_nodes(tmp_path / "x.inp"), r"has no \*NODE block"),
@@ -319,6 +317,9 @@ def test_files_that_do_not_fit_are_named(block, tmp_path):
     ):
         with pytest.raises(ValueError, match=message):
             call()
+    for lacking, wanted in (("no", "no.sti"), ("alone", "alone.mas")):
+        with pytest.raises(FileNotFoundError, match=f"{wanted}: no such file"):
+            read_matrices(tmp_path / f"{lacking}.sti")
 
 
 def test_nodes_are_read_through_includes_and_blanks_are_zero(tmp_path):

@@ -19,7 +19,8 @@ import bearingdyn as bd
 from bearingdyn.fem import check_matrices, read_matrices
 from bearingdyn.fem.matrix_files import matrix_market as matrix_market_file
 from bearingdyn.fem.matrix_files import text_tables
-from bearingdyn.fem.matrix_files.text_tables import Form, UnfinishedLine, triples
+from bearingdyn.fem.matrix_files.text_tables import Form, triples
+from bearingdyn.notice import UnfinishedLine
 
 Write = Callable[[Path, Any, Callable[[float], str]], None]
 

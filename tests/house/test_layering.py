@@ -31,7 +31,7 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 
 # A room may import the rooms of earlier rows, and nothing beside or after it. "" is bearingdyn/__init__.py.
 ORDER: tuple[tuple[str, ...], ...] = (
-    ("types",),
+    ("progress", "short", "types"),
     ("checks", "core", "inputs", "notice", "writing"),
     ("magnitude",),
     ("material",),

@@ -9,6 +9,7 @@ import pytest
 
 import make_sample_dma
 from bearingdyn.material import DMAData, group_isotherms, read_dma, sample_dma_path
+from bearingdyn.notice import LeftOut
 from measured import DATA, written
 
 ROWS = [(1.0, 20.0, 5e6, 1e6), (10.0, 20.1, 6e6, 1.5e6), (1.0, 40.0, 4e6, 0.7e6), (10.0, 39.9, 4.5e6, 0.9e6)]
@@ -195,7 +196,7 @@ def test_binary_file_is_refused(tmp_path):
 def test_remedies_work(tmp_path):
     """What the messages offer: drop_invalid with a count, sort, units, columns, mode."""
     path = written(tmp_path, HEAD + "3,20,5e6,1e6\n1,20,4e6,1e6\n2,20,,1e6\n4,20,5e6,0\n2,20,4.5e6,1e6\n")
-    with pytest.warns(UserWarning, match="2 of 5 points left out: first .*line 4"):
+    with pytest.warns(LeftOut, match="2 of 5 points left out: first .*line 4"):
         dma = read_dma(path, drop_invalid=True, sort=True)
     assert dma.frequency.tolist() == [1.0, 2.0, 3.0]
     assert dma.storage.tolist() == [4e6, 4.5e6, 5e6]

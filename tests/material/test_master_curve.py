@@ -20,6 +20,7 @@ from bearingdyn.material import (
     read_dma,
     sample_dma_path,
 )
+from bearingdyn.notice import OutsideBand, PoorLaw
 from measured import DATA, measured, shift_table
 
 
@@ -121,7 +122,7 @@ def test_measured_rubber_superposes(epdm_master):
 
 def test_five_branches_render_the_measured_rubber_over_four_decades(epdm_master):
     """10 Hz to 100 kHz at 20 °C: tan δ within 4 % rms and 12 % at worst; the points alone scatter by 3 %."""
-    with pytest.warns(UserWarning, match="beyond the master curve"):
+    with pytest.warns(OutsideBand, match="beyond the master curve"):
         rubber = fit_maxwell(epdm_master, n=5, band=(10.0, 1e5), K=2e9, density=1000.0)
     assert rubber.fit.tan_delta_rms < 0.04
     assert rubber.fit.tan_delta_max < 0.12
@@ -145,7 +146,7 @@ def test_glassy_polymer_follows_wlf_above_its_transition():
 
 def test_wlf_does_not_hold_through_a_glass_transition():
     """From −50 to 100 °C the shifts still fall with temperature, and the poor law is reported."""
-    with pytest.warns(UserWarning, match="deviate from the wlf law"):
+    with pytest.warns(PoorLaw, match="deviate from the wlf law"):
         master = master_curve(measured("adhesive").select(f_max=30.0), T_ref=80.0)
     _, shifts = shift_table(master)
     assert (np.diff(shifts) < 0).all()

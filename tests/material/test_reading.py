@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from bearingdyn.material import read_dma
 from bearingdyn.material.reading import HeaderError, ReadingError
+from bearingdyn.notice import AssumedMeaning, LeftOut, UnlikelyModulus
 from measured import DATA, written
 
 FORMATS = DATA / "formats"
@@ -61,7 +62,7 @@ def test_spreadsheet_without_its_package_names_the_extra(monkeypatch):
 
 def test_text_sweep_in_latin_1_ends_where_its_table_ends():
     """60 rows in N/µm columns; what stands below is counted and shown."""
-    with pytest.warns(UserWarning, match=r"line 63: 1 lines after the table left out"):
+    with pytest.warns(LeftOut, match=r"line 63: 1 lines after the table left out"):
         dma = read_dma(export("frequency_sweep_T0.txt"))
     assert (dma.mode, dma.frequency.size, len(dma.isotherms)) == ("tension", 60, 1)
     assert (dma.temperature[0], dma.storage[0], dma.loss[0]) == (-0.59132, 2.93911e9, 5.45177e7)
@@ -81,7 +82,7 @@ def test_trios_csv_needs_its_temperature():
     path = export("trios.csv")
     with pytest.raises(ValueError, match="line 10: no column recognised as temperature: give temperature"):
         read_dma(path)
-    with pytest.warns(UserWarning, match="taken as shear"):
+    with pytest.warns(AssumedMeaning, match="taken as shear"):
         dma = read_dma(path, temperature=25.0)
     assert dma.frequency[0] == pytest.approx(6.28 / (2 * math.pi), rel=1e-15)
     assert (dma.mode, dma.storage[-1], dma.loss[-1]) == ("shear", 1305.7, 400.8)
@@ -89,7 +90,7 @@ def test_trios_csv_needs_its_temperature():
 
 def test_trios_lims_reads_every_step():
     """Twenty steps of 17 points in one file; Hz preferred to rad/s; a negative loss is kept, not dropped."""
-    with pytest.warns(UserWarning, match="taken as shear"):
+    with pytest.warns(AssumedMeaning, match="taken as shear"):
         dma = read_dma(export("trios_lims.txt"))
     assert (dma.frequency.size, len(dma.isotherms)) == (340, 20)
     assert dma.frequency[0] == pytest.approx(0.100000001490116, rel=1e-12)
@@ -150,14 +151,14 @@ HEAD = "frequency_Hz,temperature_C,G_storage_Pa,G_loss_Pa\n"
 def test_what_is_assumed_of_the_frequency_is_said(tmp_path):
     """Hz and rad/s cannot be told apart by the numbers: the assumption is a warning and a note."""
     body = "1,20,5e6,1e6\n2,20,5.5e6,1e6\n"
-    with pytest.warns(UserWarning, match="no unit for the frequency: taken as Hz"):
+    with pytest.warns(AssumedMeaning, match="no unit for the frequency: taken as Hz"):
         dma = read_dma(written(tmp_path, HEAD.replace("_Hz", "") + body))
     assert dma.frequency[0] == 1.0
     assert any("taken as Hz" in note for note in dma.notes)
-    with pytest.warns(UserWarning, match="taken as rad/s"):
+    with pytest.warns(AssumedMeaning, match="taken as rad/s"):
         dma = read_dma(written(tmp_path, HEAD.replace("frequency_Hz", "angular frequency") + body))
     assert dma.frequency[0] == pytest.approx(1 / (2 * math.pi))
-    with pytest.warns(UserWarning, match="an angular frequency in Hz"):
+    with pytest.warns(AssumedMeaning, match="an angular frequency in Hz"):
         read_dma(written(tmp_path, HEAD.replace("frequency_Hz", "angular frequency (Hz)") + body))
     assert any("read in Hz" in note for note in read_dma(written(tmp_path, HEAD + body)).notes)
 
@@ -165,7 +166,7 @@ def test_what_is_assumed_of_the_frequency_is_said(tmp_path):
 def test_missing_values_are_counted_and_negative_moduli_kept(tmp_path):
     """Nothing is dropped without a warning that says how many and why."""
     text = HEAD + "1,20,5e6,1e6\n2,20,,1e6\n3,20,5e6,nan\n4,20,6e6,-1e5\n"
-    with pytest.warns(UserWarning, match="2 of 4 points left out: first .*line 3.*empty for the storage"):
+    with pytest.warns(LeftOut, match="2 of 4 points left out: first .*line 3.*empty for the storage"):
         dma = read_dma(written(tmp_path, text))
     assert dma.loss.tolist() == [1e6, -1e5]
 
@@ -175,7 +176,7 @@ def test_a_unit_that_cannot_be_is_refused(tmp_path):
     body = "1,20,5e6,1e6\n2,20,5.5e6,1e6\n"
     with pytest.raises(ValueError, match=r"table.csv, line 2 .*harder than diamond.*is the unit right"):
         read_dma(written(tmp_path, HEAD.replace("Pa", "MPa") + body))
-    with pytest.warns(UserWarning, match="the range of gels.*is the unit right"):
+    with pytest.warns(UnlikelyModulus, match="the range of gels.*is the unit right"):
         read_dma(written(tmp_path, HEAD + "1,20,5,1\n2,20,5.5,1\n"))
 
 

@@ -381,7 +381,7 @@ def test_a_file_cut_inside_a_character_loses_its_last_line(tmp_path, encoding):
 
 def test_what_is_no_file_or_too_large_is_refused(tmp_path):
     """A folder, and a file larger than any table, before it is read."""
-    with pytest.raises(ValueError, match="no file but a folder"):
+    with pytest.raises(IsADirectoryError, match="is a folder; give the path of a table"):
         read_dma(tmp_path)
     path = tmp_path / "large.csv"
     with path.open("wb") as file:

@@ -24,6 +24,7 @@ from bearingdyn.material import (
     sample_dma_path,
     suspects,
 )
+from bearingdyn.notice import LeftOut, TensionAsShear, ThinIsotherm
 from measured import DATA, measured, shift_table
 
 
@@ -63,7 +64,7 @@ def test_fixture_resonance_is_found_where_the_readme_says():
 def test_suspect_points_are_left_out_listed_and_can_be_kept():
     """By default out, with a warning that counts; clean=False keeps them all."""
     dma = measured("epdm70")
-    with pytest.warns(UserWarning, match="left out that no passive material could give: .*fixture resonance"):
+    with pytest.warns(LeftOut, match="left out that no passive material could give: .*fixture resonance"):
         master = master_curve(dma)
     assert master.frequency.size + len(master.left_out) == dma.frequency.size
     assert all(s.ratio > 0 or np.isnan(s.ratio) for s in master.left_out)
@@ -78,7 +79,7 @@ def test_negative_moduli_are_flagged_never_fitted(sample):
     loss[[3, 40]] *= -1
     dma = replace(sample, loss=loss)
     for clean in (True, False):
-        with pytest.warns(UserWarning, match="2 of 135 points left out.*2 for negative modulus"):
+        with pytest.warns(LeftOut, match="2 of 135 points left out.*2 for negative modulus"):
             master = master_curve(dma, clean=clean)
         assert [s.reason for s in master.left_out] == ["negative modulus"] * 2
     with pytest.raises(ValueError, match="no point has positive moduli"):
@@ -271,7 +272,7 @@ def test_curve_in_shear_keeps_the_bulk_modulus_it_was_made_with(sample):
     """A model with another K would not be the material measured."""
     tension = replace(sample, storage=3 * sample.storage, loss=3 * sample.loss, mode="tension")
     master = master_curve(tension)
-    with pytest.warns(UserWarning, match="tension turned into shear by 3KE"):
+    with pytest.warns(TensionAsShear, match="tension turned into shear by 3KE"):
         loud = fit_maxwell(master, 5, K=2e9, density=1e3)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -289,7 +290,7 @@ def test_bad_measurements_are_refused_or_warned_of(sample):
     with pytest.raises(ValueError, match="two isotherms at"):
         master_curve(replace(sample, temperature=T, isotherm=label))
     keep = (sample.labels != 4) | (sample.frequency < 0.11)
-    with pytest.warns(UserWarning, match="one frequency only at 20"):
+    with pytest.warns(ThinIsotherm, match="one frequency only at 20"):
         master_curve(sample.take(np.flatnonzero(keep)))
     for change in ({"law_from": "guess"}, {"law": "free", "law_from": "data"}, {"smoothness": -1.0}):
         with pytest.raises(ValueError, match=r"law_from|smoothness"):

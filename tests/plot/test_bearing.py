@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -144,3 +145,42 @@ def test_spectrum_names_the_lines():
 def test_bad_input_is_named(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+@pytest.mark.parametrize(("f_max", "waviness"), [(200.0, False), (3000.0, False), (600.0, True), (6e4, True)])
+def test_each_name_is_led_to_its_own_line_and_no_line_goes_through_a_name(f_max, waviness):
+    """6203 at 150 rad/s: BPFO 73, 2 BSF 95 and BPFI 118 Hz, a few pixels apart where f_max is high."""
+    f = np.linspace(0, f_max, 400)
+    data = xarray.Dataset(
+        {"amplitude": ("frequency", 1e-9 + 1e-6 * np.exp(-((f - 107) ** 2)), {"units": "m"})},
+        {"frequency": f},
+        {"channel": "shaft.left.y"},
+    )
+    brg = bearing("6203", clearance=10e-6)
+    ax = drawn(plot.bearing_spectrum({"run": data}, brg, 150.0, f_max=f_max, waviness=waviness, harmonics=3))
+    ax.figure.canvas.draw()
+    known = fault_lines(brg, 150.0, harmonics=3)
+    if waviness:
+        known |= waviness_lines(brg, 150.0, multiples=3)
+    leaders = {
+        p.get_gid(): (p.coords1.transform(p.xy1), p.coords2.transform(p.xy2))
+        for p in ax.findobj(matplotlib.patches.ConnectionPatch)
+    }
+    boxes = {t.get_text(): t.get_window_extent() for t in ax.texts}
+    assert set(boxes) == set(leaders) >= {"BPFO", "BPFI", "2 BSF"} & {n for n in known if known[n] <= f_max}
+    scale = ax.get_xaxis_transform()
+    for name, (foot, head) in leaders.items():
+        # the foot is the upper end of the line of that frequency: to a hundredth of a pixel
+        (line,) = [ln for ln in ax.get_lines() if ln.get_gid() == name]
+        top = scale.transform((known[name], line.get_ydata()[1]))
+        np.testing.assert_allclose(foot, top, atol=0.01)
+        # the head is nearest to that name of all, and below it by less than a letter
+        away = {n: np.hypot((b.x0 + b.x1) / 2 - head[0], b.y0 - head[1]) for n, b in boxes.items()}
+        assert min(away, key=away.get) == name
+        assert away[name] < 8.0
+        # whatever goes down from there begins below all names
+        assert top[1] <= min(b.y0 for b in boxes.values())
+    along = [boxes[n].x0 for n in sorted(boxes, key=known.get)]
+    assert along == sorted(along), "names in the order of the lines: no leaders cross"
+    widths = sorted((b.x0, b.x1) for b in boxes.values())
+    assert all(a[1] <= b[0] + 0.4 for a, b in itertools.pairwise(widths))

@@ -14,6 +14,7 @@ mpl.use("Agg")
 
 import matplotlib.pyplot as plt
 
+import bearingdyn as bd
 from bearingdyn import plot
 from bearingdyn.analysis import (
     envelope_spectrum,
@@ -164,3 +165,23 @@ def test_each_order_has_its_crossings_and_no_order_none() -> None:
     speeds = sorted(ring.get_xdata())
     np.testing.assert_allclose(speeds, [1800 / 1.9, 1500.0, 2000.0, 3000.0], rtol=1e-12)
     assert not rings(plot.campbell(fan(), orders=()))
+
+
+def test_a_campbell_diagram_tells_axial_and_torsional_modes_by_name() -> None:
+    """A rigid disc on springs: kz, kθz and the lateral ones each give a mode of a known frequency."""
+    app = bd.Application()
+    app.add("disc", bd.RigidBody(mass=2.0, inertia=(4e-3, 4e-3, 8e-3)))
+    app.ground("disc.centre", stiffness=[1e6, 1e6, 4e6, 2e3, 2e3, 500.0])
+    data = bd.campbell(app, [0.0, 100.0], 6)
+    told = dict(zip(data["direction"].values, data["frequency"].values[0], strict=True))
+    assert told["axial"] == pytest.approx(math.sqrt(4e6 / 2.0) / 2 / math.pi, rel=1e-9)
+    assert told["torsional"] == pytest.approx(math.sqrt(500.0 / 8e-3) / 2 / math.pi, rel=1e-9)
+    assert list(data["direction"].values).count("lateral") == 4
+    ax = plot.campbell(data)
+    assert {"axial", "torsional"} < {t.get_text() for t in ax.get_legend().get_texts()}
+    # the axial mode, along the line that is drawn, has arrows
+    found = bd.modes(app)
+    axial = int(np.argmin(np.abs(found["frequency"].values - told["axial"])))
+    drawn = plot.mode_shape(bd.mode_shapes(app, found), axial)
+    assert sum(t.arrow_patch is not None for t in drawn.texts) == 1
+    assert "arrows" in drawn.get_xlabel()

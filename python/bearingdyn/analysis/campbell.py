@@ -8,6 +8,7 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import ArrayLike
 
+from bearingdyn.analysis.directions import directions
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of, system_of
 from bearingdyn.analysis.modes import modes
 from bearingdyn.application import Application, Place
@@ -57,7 +58,9 @@ def campbell(
     xarray.Dataset
         Over (speed, mode): frequency (Hz, |λ|/2π); damping_ratio; eigenvalue (rad/s); whirl of the parts that
         turn (of all parts, if none turns): +1 a circle in the sense of the shaft, from x to y, −1 a circle
-        against it, 0 a line; mac, the modal assurance to the same mode at the next higher speed, 0 … 1.
+        against it, 0 a line; mac, the modal assurance to the same mode at the next higher speed, 0 … 1. Over
+        "mode": direction, "lateral", "axial" or "torsional", in which the parts that turn move most at the
+        lowest speed.
 
     Raises
     ------
@@ -122,6 +125,12 @@ def campbell(
                 np.array([a[keep] for a in assurance]),
                 "1",
                 "modal assurance criterion with the next higher speed",
+            ),
+            "direction": (
+                "mode",
+                directions(system, shapes[slowest][keep]),
+                "",
+                "which way the parts that turn move most, at the lowest speed",
             ),
         },
         {

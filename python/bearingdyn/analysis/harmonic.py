@@ -18,6 +18,7 @@ from bearingdyn.application import COMPONENTS, QUANTITIES, RATES, Application
 from bearingdyn.checks import name_list, numbers, one_of
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import warn_beyond
+from bearingdyn.progress import Progress, told
 from bearingdyn.system import System, natural
 from bearingdyn.types import Array, Complex
 
@@ -144,7 +145,7 @@ def frequency_response(
     *,
     speed: float = 0.0,
     quantity: str = "displacement",
-    progress: core.Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
     """Complex response at `outputs` to unit harmonic forces or ground motions at `inputs`, zero-to-peak.
 
@@ -166,6 +167,9 @@ def frequency_response(
         rad/s of the shaft, for gyroscopic forces; it is not the excitation frequency.
     quantity
         "displacement", "velocity" or "acceleration", of motions.
+    progress
+        True for a bar, False for none, or a function called with (frequencies done, in all); None for a bar
+        where standard error is a terminal.
 
     Returns
     -------
@@ -221,7 +225,8 @@ def frequency_response(
             "take the lowest frequency that the data reach instead, or equilibrium(app, after=...) for a "
             "deflection, ",
         )
-    x = state.solve(omega, force, requested(wanted, state.system.n), speed, progress)
+    with told(progress, "frequency") as tell:
+        x = state.solve(omega, force, requested(wanted, state.system.n), speed, tell)
     response = recovered(wanted, given, x, omega, speed, QUANTITIES.index(quantity), state.K, state.C)
 
     from bearingdyn.results import dataset, inputs_of

@@ -14,6 +14,7 @@ from bearingdyn.analysis.channels import CoreChannel
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.application import Application
+from bearingdyn.progress import Progress, told
 from bearingdyn.system import System, factor
 from bearingdyn.types import Array
 
@@ -48,7 +49,7 @@ def dissipation(
     steps: int,
     settle: int = 0,
     scheme: core.Scheme | None = None,
-    progress: core.Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
     """March as `transient` does, and sum what every part, bearing and spring turns into heat.
 
@@ -93,13 +94,14 @@ def dissipation(
     state = march.start(model)
     energy, last, done = np.zeros(len(sinks)), np.zeros((0, len(sinks))), 0
     # the power of the last state before the record is the first that counts
-    for rows, _, report in march.pieces(
-        model, state, start=True, size=PIECE, keep_settled=True, progress=progress
-    ):
-        power = np.vstack([last, _powers(sinks, sizes, rows)])
-        if len(power):
-            energy += dt * (power.sum(axis=0) - 0.5 * (power[0] + power[-1]))
-        last, done = power[-1:], done + report.steps
+    with told(progress, "step") as tell:
+        for rows, _, report in march.pieces(
+            model, state, start=True, size=PIECE, keep_settled=True, progress=tell
+        ):
+            power = np.vstack([last, _powers(sinks, sizes, rows)])
+            if len(power):
+                energy += dt * (power.sum(axis=0) - 0.5 * (power[0] + power[-1]))
+            last, done = power[-1:], done + report.steps
 
     from bearingdyn.results import dataset, inputs_of
 

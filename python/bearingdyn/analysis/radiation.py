@@ -1,9 +1,9 @@
-"""Equivalent radiated power (ERP) of vibrating surfaces: one number for a whole housing.
+"""Equivalent radiated power (ERP) of vibrating surfaces: what they would radiate if they did it like a plane.
 
-ERP = ½ ρ c ∫ |v_n|² dA, with the amplitude v_n of the normal velocity, is what the surfaces would radiate as
-plane waves do, with radiation efficiency 1. The surface of a machine reaches that efficiency above its
-critical frequency and falls short of it below. ERP is thus an upper estimate, and a fairer measure for
-comparing designs than the motion of any one point.
+ERP = ½ ρ c ∫ |v_n|² dA, with the amplitude v_n of the normal velocity, takes a radiation efficiency of 1.
+Small bodies are far below it at low frequency: a sphere of Ø100 mm that moves to and fro in air,
+P = (2π/3) ρ c a² v² (ka)⁴/(4 + (ka)⁴), radiates less than its ERP by 35.5 dB at 200 Hz, 19.7 dB at 500 Hz,
+8.3 dB at 1 kHz and 1.3 dB at 2 kHz.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.harmonic import frequencies, linear
 from bearingdyn.analysis.recovery import Input
 from bearingdyn.application import Application, Place
-from bearingdyn.checks import name_list, positive
+from bearingdyn.checks import meant, name_list, positive
 from bearingdyn.cms import Surface
+from bearingdyn.progress import Progress, told
 from bearingdyn.system import PartTerm, System
 
 if TYPE_CHECKING:
@@ -36,18 +36,27 @@ def radiated_power(
     speed: float = 0.0,
     density: float = 1.204,
     sound_speed: float = 343.2,
-    progress: core.Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
     """Equivalent radiated power of surfaces ("housing.outside") under unit harmonic forces at `inputs`.
 
+    It is no sound power, and no fair measure to compare designs by: it takes every surface to radiate like a
+    plane. A sphere of Ø100 mm that moves to and fro radiates 35.5 dB less at 200 Hz, 8.3 dB at 1 kHz and 1.3
+    dB at 2 kHz. Where a design moves the motion from one frequency to another, as a soft layer does, the sum
+    over a band weighs the low end too much; only levels at one frequency, of bodies of one size, compare.
+
     Parameters
     ----------
-    source, frequency, inputs, speed
+    source, frequency, inputs
         As in `frequency_response`; a "ground" input is a unit velocity of the ground.
     surfaces
         Surfaces of parts, by part and name.
+    speed
+        As in `frequency_response`, rad/s.
     density, sound_speed
         Of the medium, kg/m³ and m/s; those of air at 20 °C.
+    progress
+        As in `frequency_response`.
 
     Returns
     -------
@@ -73,7 +82,8 @@ def radiated_power(
     parts = {term.name: term for term, _ in found}
     rows = np.vstack([np.zeros((0, state.system.n)), *(t.place for t in parts.values())])
     omega = 2 * np.pi * f
-    x = state.solve(omega, force, rows, speed, progress)
+    with told(progress, "frequency") as tell:
+        x = state.solve(omega, force, rows, speed, tell)
     rate = 1j * omega
     at = 0
     square = np.zeros((f.size, len(found), len(given)))
@@ -130,5 +140,5 @@ def _surface(system: System, name: str) -> tuple[PartTerm, Surface]:
         raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")
     place, known = Place.parse(name), owner.element.surfaces
     if place.name not in known:
-        raise ValueError(f"part {owner.name!r} has no surface {place.name!r}; it has {sorted(known)}")
+        raise ValueError(f"part {owner.name!r} has no surface {place.name!r}; {meant(place.name, known)}")
     return owner, known[place.name]

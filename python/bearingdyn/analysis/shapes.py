@@ -12,6 +12,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.application import COMPONENTS, Application, arm
 from bearingdyn.checks import name_list
 from bearingdyn.parts import Outlined
+from bearingdyn.short import short
 from bearingdyn.system import System, assemble
 from bearingdyn.types import Array, Complex, Index
 
@@ -39,6 +40,8 @@ class MovedSurface:
     points: Array
     faces: Index
     motion: Complex
+
+    __repr__ = short
 
 
 def mode_shapes(source: Equilibrium | Application | System, found: xarray.Dataset) -> xarray.Dataset:

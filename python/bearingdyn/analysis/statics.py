@@ -50,6 +50,15 @@ class BearingState:
     loads: Array
     series: RacewaySeries = RIGID
 
+    def __repr__(self) -> str:
+        """One line: the loaded balls, the force and the stiffness."""
+        force = ", ".join(f"{f:.4g}" for f in self.force)
+        return (
+            f"<BearingState: {int((self.loads > 0).sum())} of {self.loads.size} balls loaded, at most "
+            f"{self.loads.max(initial=0.0):.4g} N; force ({force}) N, radial stiffness "
+            f"{self.radial_stiffness:.4g} N/m>"
+        )
+
     @property
     def radial_stiffness(self) -> float:
         """Mean of the two radial diagonal tangents, N/m; of the balls alone, without the rings' own give."""

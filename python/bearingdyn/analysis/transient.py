@@ -15,8 +15,10 @@ from bearingdyn.analysis.coarseness import STEP_ERROR_MADE, step_error
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.overload import warn_of_overload
+from bearingdyn.analysis.room import check_room
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, whole
+from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import System
 
@@ -40,7 +42,7 @@ def transient(
     audit: bool = False,
     check_step: bool = False,
     scheme: core.Scheme | None = None,
-    progress: core.Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
     """March an application from its equilibrium, at constant speed or through a run-up.
 
@@ -96,7 +98,8 @@ def transient(
     scheme
         β, γ, tolerance, iterations and instruction set.
     progress
-        Called with the steps done and the steps in all.
+        True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
+        where standard error is a terminal.
 
     Returns
     -------
@@ -107,8 +110,9 @@ def transient(
     Raises
     ------
     ValueError
-        Before any long work: for dt ≤ 0, negative steps, an unknown channel, a part that would turn although
-        its damping is known at rest only, the state of another application.
+        Before any long work: for dt ≤ 0, negative steps, a record that the memory cannot hold, an unknown
+        channel, a part that would turn although its damping is known at rest only, the state of another
+        application.
     SolverError
         When Newton's iteration diverges or the response is no longer finite; its `partial` is the Dataset up
         to there.
@@ -157,20 +161,22 @@ def transient(
         audit=audit,
         scheme=scheme,
     )
+    check_room(march.steps // march.decimate, record)
     found = [channel_of(march.modal, name) for name in record]
     model = march.modal.model([channel for channel, _ in found])
     state = march.start(model, initial) if resume is None else march.resumed(model, resume)
     facts = march.facts(record, [unit for _, unit in found])
-    rows, state, report, tail = march.run(
-        model,
-        state,
-        start=resume is None,
-        progress=progress,
-        stream=stream,
-        header=facts if stream is None else {**facts, "digest": march.digest(state)},
-        plain=np.array([channel[0] == core.CHANNEL_KINDS["loaded"] for channel, _ in found], dtype=bool),
-        past=None if resume is None else march.past(resume, record),
-    )
+    with told(progress, "step") as tell:
+        rows, state, report, tail = march.run(
+            model,
+            state,
+            start=resume is None,
+            progress=tell,
+            stream=stream,
+            header=facts if stream is None else {**facts, "digest": march.digest(state)},
+            plain=np.array([channel[0] == core.CHANNEL_KINDS["loaded"] for channel, _ in found], dtype=bool),
+            past=None if resume is None else march.past(resume, record),
+        )
     warn_of_overload(march, model, state, record, rows)
     energies = march.energies(model, state) if audit else {}
     error: dict[str, Any] = {}

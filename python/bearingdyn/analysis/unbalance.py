@@ -105,4 +105,4 @@ def unbalance_response(
         },
         {"speed": (given, "rad/s"), "output": (list(outputs), "")},
     )
-    return made.assign_coords(unit=("output", units))
+    return made.assign_coords(unit=("output", units, {"units": "", "long_name": "unit of each output"}))

@@ -11,6 +11,7 @@ from bearingdyn.application.place import Place
 from bearingdyn.bearing import BallBearing, LooseFit, Pair, catalogue
 from bearingdyn.checks import require, vector
 from bearingdyn.magnitude import plausible
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 
@@ -59,6 +60,8 @@ class Support:
     damping: Array | None
     offset: Array | None = None
 
+    __repr__ = short
+
     def __post_init__(self) -> None:
         _check_springs(self, str(self.interface))
 
@@ -90,6 +93,8 @@ class Bush:
     stiffness: Array
     damping: Array
     offset: Array
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         if self.a == self.b:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.application.place import GRAVITY, GROUND, Place
 from bearingdyn.checks import nonnegative, positive, real, require, vector
 from bearingdyn.magnitude import plausible
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 FORCE = "six numbers (Fx, Fy, Fz, Mx, My, Mz) in N and N m"
@@ -113,6 +114,8 @@ class ConstantLoad(DirectedLoad):
 
     kind: ClassVar[str] = "constant"
 
+    __repr__ = short
+
     def core(self, rows: Array) -> CoreLoad:
         force = self._force(rows)
         return _core(self.kind, force, np.zeros_like(force))
@@ -141,6 +144,8 @@ class HarmonicLoad(DirectedLoad):
     frequency: float
     phase: float = 0.0
 
+    __repr__ = short
+
     def __post_init__(self) -> None:
         super().__post_init__()
         remedy = "it must be positive, in Hz (leave it out for a constant load)"
@@ -148,6 +153,11 @@ class HarmonicLoad(DirectedLoad):
         object.__setattr__(self, "frequency", plausible("frequency", self._name("frequency"), frequency))
         phase = plausible("angle", self._name("phase"), self.phase, "it must be finite, in rad")
         object.__setattr__(self, "phase", phase)
+
+    @property
+    def size(self) -> str:
+        turned = f", phase {self.phase:g} rad" if self.phase else ""
+        return f"{super().size} at {self.frequency:g} Hz{turned}"
 
     def core(self, rows: Array) -> CoreLoad:
         force, c, s = self._force(rows), math.cos(self.phase), math.sin(self.phase)
@@ -177,6 +187,8 @@ class SampledLoad(DirectedLoad):
     kind: ClassVar[str] = "sampled"
     time: Array
     value: Array
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -141,6 +141,19 @@ class BallBearing:
     boundary: tuple[float, float, float] | None
     overrides: Overrides
 
+    def __repr__(self) -> str:
+        """One line: the geometry, and what is not usual."""
+        play = (
+            f"clearance {1e6 * self.clearance:.4g} µm"
+            if self.clearance is not None
+            else f"contact angle {math.degrees(self.contact_angle or 0.0):.4g}°"
+        )
+        film = f", film {1e6 * self.film:.4g} µm" if self.film else ""
+        return (
+            f"<BallBearing: {self.Z} balls of Ø{1e3 * self.Dw:.5g} mm on Ø{1e3 * self.Dpw:.5g} mm, grooves "
+            f"{self.fi:g} and {self.fo:g}, {play}{film}>"
+        )
+
     def __init__(
         self,
         Z: int,

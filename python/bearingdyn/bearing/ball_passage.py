@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.checks import require
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 
@@ -24,6 +25,8 @@ class Passage:
     """(n, 6) of the inner ring, m and rad."""
     stiffness: Array
     """(n, 6, 6) tangent at each equilibrium, N/m, N and N m."""
+
+    __repr__ = short
 
     @property
     def mean_displacement(self) -> Array:

@@ -7,7 +7,9 @@ a maker's. Most are estimates by `estimate`.
 
 from __future__ import annotations
 
+import difflib
 import math
+import re
 from typing import Any, Literal, NamedTuple
 
 from bearingdyn.bearing.ball_bearing import BallBearing
@@ -175,9 +177,14 @@ def entry(designation: str | int) -> Entry:
     ValueError
         If the designation is not listed.
     """
-    listed = ", ".join(CATALOGUE)
-    require(str(designation) in CATALOGUE, "designation", designation, f"it must be one of {listed}")
-    return CATALOGUE[str(designation)]
+    name = str(designation)
+    if name not in CATALOGUE:
+        # a maker's name before, a cage, seal or clearance after it: "SKF 6203-2RS/C3"
+        core = next(iter(re.findall(r"(?<!\d)\d{4}(?!\d)", name)), name)
+        near = [core] if core in CATALOGUE else difflib.get_close_matches(core, CATALOGUE, n=1, cutoff=0.7)
+        meant = f"did you mean {near[0]!r}? " if near else ""
+        require(False, "designation", designation, f"{meant}it must be one of {', '.join(CATALOGUE)}")
+    return CATALOGUE[name]
 
 
 def bearing(designation: str | int, *, clearance: float | None = None, **keywords: Any) -> BallBearing:

@@ -13,7 +13,8 @@ from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.pressure import check_pressure
 from bearingdyn.checks import instance, number, positive
-from bearingdyn.notice import BearingWarning, warn
+from bearingdyn.notice import BearingWarning as BearingWarning
+from bearingdyn.notice import warn
 from bearingdyn.types import Array
 
 
@@ -35,6 +36,14 @@ class LoadDistribution:
     """Largest pressure of the inner contact, Pa."""
     pressure_outer: Array
     """Largest pressure of the outer contact, Pa."""
+
+    def __repr__(self) -> str:
+        """One line: the loaded balls, and the largest load and pressure."""
+        p = max(self.pressure_inner.max(), self.pressure_outer.max())
+        return (
+            f"<LoadDistribution: {self.loaded} of {self.azimuth.size} balls loaded, at most "
+            f"{self.load_outer.max():.4g} N and {p / 1e9:.3g} GPa>"
+        )
 
     @property
     def loaded(self) -> int:
@@ -59,17 +68,17 @@ def load_distribution(
         Height of the shoulders over the bottom of their grooves, m; None: not checked. The ellipse ends at
         α + arcsin(a/R), R = 2fDw/(2f + 1), the shoulder at arccos(1 − height/fDw) (Harris).
 
-    Warns
-    -----
-    BearingWarning
-        Where a pressure exceeds 4.2 GPa (ISO 76), or the shoulder cuts an ellipse; the ball is
-        named, counted from 1.
-
     Raises
     ------
     ValueError
         On a wrong shape, a pressure above 21 GPa, or where a ball runs beyond the shoulder: the axial load
         is more than it can hold.
+
+    Warns
+    -----
+    BearingWarning
+        Where a pressure exceeds 4.2 GPa (ISO 76), or the shoulder cuts an ellipse; the ball is named,
+        counted from 1.
     """
     instance("bearing", bearing, (BallBearing, Running), "give a BallBearing, or it Running")
     if shoulder is not None:

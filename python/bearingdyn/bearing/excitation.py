@@ -16,6 +16,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.checks import items, one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 Body = Literal["inner", "outer", "ball"]
@@ -152,6 +153,8 @@ class Imperfections:
     waves: Array = field(default_factory=lambda: np.zeros((0, 5)))
     pits: Array = field(default_factory=lambda: np.zeros((0, 5)))
     oversize: Array = field(default_factory=lambda: np.zeros(0))
+
+    __repr__ = short
 
     @property
     def none(self) -> bool:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from bearingdyn.bearing.excitation import Imperfections
 from bearingdyn.checks import nonnegative, number, require, vector
 from bearingdyn.magnitude import plausible
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 Law: TypeAlias = Literal["constant", "table", "load"]
@@ -63,6 +64,8 @@ class TabulatedDamping:
 
     delta: Array
     c: Array
+
+    __repr__ = short
 
     def __init__(self, delta: ArrayLike, c: ArrayLike) -> None:
         n = np.size(delta)
@@ -169,6 +172,8 @@ class BearingKernel:
     """Sine of the contact angle on the open side from which a ball runs off."""
     imperfections: Imperfections = field(default_factory=Imperfections)
     """Waves, pits and unequal balls; none by default."""
+
+    __repr__ = short
 
     def packed(self) -> dict[str, object]:
         """The fields by name, as the core parses them (bd_bearing_data).

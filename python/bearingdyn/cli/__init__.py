@@ -17,6 +17,7 @@ from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, run_fit
 from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
 from bearingdyn.cli.own import run_check, run_demo, run_version
 from bearingdyn.cli.show import run_show
+from bearingdyn.results import versions
 
 EPILOG = """\
 examples:
@@ -81,6 +82,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    parser.add_argument("--version", action="version", version=f"%(prog)s {versions()['bearingdyn']}")
     commands = parser.add_subparsers(required=True, metavar="command")
 
     def add(name: str, run: Command, summary: str, description: str) -> argparse.ArgumentParser:

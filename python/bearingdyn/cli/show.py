@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bearingdyn import results
+from bearingdyn.checks import existing
 from bearingdyn.cli.outcome import GOOD
 
 if TYPE_CHECKING:
@@ -22,11 +22,7 @@ LONGEST = 120
 
 def run_show(arguments: argparse.Namespace) -> tuple[str, int]:
     """Every group of the file."""
-    path = Path(arguments.result)
-    if not path.is_file():
-        raise ValueError(
-            f"{path}: " + ("is a folder, not a result file" if path.is_dir() else "no such file")
-        )
+    path = existing(arguments.result, "result")
     held = {name: _describe(results.open_result(path, name)) for name in results.groups(path) or [""]}
     if arguments.json:
         return json.dumps({"file": str(path), "groups": held}, indent=1), GOOD

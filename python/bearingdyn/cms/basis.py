@@ -17,6 +17,7 @@ from bearingdyn.cms.options import check_f_max, check_moduli, check_rounds
 from bearingdyn.cms.superelement import ComplexModulus
 from bearingdyn.fem import factorise, lowest_modes
 from bearingdyn.material import Maxwell
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off
@@ -40,6 +41,8 @@ class Basis:
     Psi: Array
     K: Array
     frequency: Array
+
+    __repr__ = short
 
     def reduce(self, A: Any, *, skew: bool = False) -> Array:
         """Psiᵀ A Psi for a symmetric (or skew) A, (r + m, r + m), round-off asymmetry removed."""

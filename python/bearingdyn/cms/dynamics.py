@@ -11,6 +11,7 @@ import scipy
 
 from bearingdyn.cms.full import FullModel
 from bearingdyn.fem import Factors, order_of
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex, Index
 
 DENSE_LIMIT = 500  # below this size LAPACK solves quicker than sparse factors
@@ -34,6 +35,8 @@ class Transfer:
     D: Complex
     A: Complex
     Y: Complex
+
+    __repr__ = short
 
     def receptance(self, free: Index) -> Complex:
         """Motion of the free interface coordinates, then the points, under forces on them; the rest held."""

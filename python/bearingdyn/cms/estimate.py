@@ -15,6 +15,7 @@ from bearingdyn.cms.dynamics import Dynamics, Transfer
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.reduction import project
 from bearingdyn.fem import rigid_transfer
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex, Index
 
 CHANGE = 0.1  # of the estimated error by the last full solve: below it, no further one is made
@@ -40,6 +41,8 @@ class ReductionError:
     by_load: Array
     exact: bool
     solved: Array
+
+    __repr__ = short
 
     @property
     def error(self) -> Array:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.cms.superelement import Superelement, Viscoelastic, check_symmetry, frozen, frozen_sparse
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 
@@ -29,6 +30,8 @@ class RigidInterface:
     dofs: Index
     T: Array
     position: Array
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         dofs = np.array(self.dofs)
@@ -89,6 +92,8 @@ class FullModel:
     viscoelastic: tuple[Viscoelastic, ...] = ()
     spin: Any = None
     grounded: bool = False
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) or hasattr(self.M, "tocsr") else 0

@@ -16,6 +16,7 @@ from bearingdyn.checks import positive
 from bearingdyn.cms.full import FullModel
 from bearingdyn.cms.superelement import Superelement
 from bearingdyn.fem import factorise
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 
@@ -25,6 +26,8 @@ class March:
 
     time: Array
     motion: Mapping[str, Array]
+
+    __repr__ = short
 
 
 def branch_weights(dt: float, modulus: float, tau: float) -> tuple[float, float, float]:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import RacewaySeries
 from bearingdyn.checks import positive
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex, Index
 
 # Largest accepted |A_ij ∓ A_ji| over the largest |A|. The round-off of a congruence of 1e5 coordinates is
@@ -85,6 +86,8 @@ class Viscoelastic:
     material: ComplexModulus
     H: Any
 
+    __repr__ = short
+
     def __post_init__(self) -> None:
         if not callable(getattr(self.material, "complex_modulus", None)):
             raise ValueError(
@@ -115,6 +118,8 @@ class Raceway:
     arm: float
     rows: Array
 
+    __repr__ = short
+
     def __post_init__(self) -> None:
         n = np.shape(self.rows)[-1] if np.ndim(self.rows) else 0
         object.__setattr__(self, "rows", frozen("rows", self.rows, (len(self.series), n)))
@@ -135,6 +140,8 @@ class Surface:
 
     area: float
     W: Array
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         positive("area", self.area, "it must be a positive area in m²")

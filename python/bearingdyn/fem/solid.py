@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.fem.meshes.solid_element import HEX20, HEX27, WEDGE15, SolidElement, points, shapes
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 from bearingdyn.material import Elastic
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 CHUNK = 1024  # elements whose matrices are in memory at a time, 54 MB a matrix of 27-node bricks
@@ -42,6 +43,8 @@ class SolidMatrices:
     mass: scipy.sparse.csr_matrix
     volumetric: scipy.sparse.csr_matrix
     deviatoric: scipy.sparse.csr_matrix
+
+    __repr__ = short
 
     def stiffness(self, material: Elastic) -> scipy.sparse.csr_matrix:
         """Stiffness of an elastic material, (3n, 3n), N/m."""

@@ -23,6 +23,7 @@ from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
 from bearingdyn.material.superposition import MasterCurve, one_curve
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex
 
 _PER_DECADE = 40  # points at which a modulus is handed to the fit
@@ -100,6 +101,8 @@ class TabulatedModulus:
     density: float
     law: Law | None = None
     temperature: float | None = None
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         _check("TabulatedModulus", {"K": self.K, "density": self.density})

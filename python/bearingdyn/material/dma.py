@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.checks import positive, require
-from bearingdyn.notice import warn
+from bearingdyn.notice import UnlikelyModulus, warn
 from bearingdyn.types import Array, Complex
 
 Mode = Literal["shear", "tension"]
@@ -73,6 +73,16 @@ class DMAData:
     runs_chosen: bool = False
 
     PER_POINT: ClassVar[tuple[str, ...]] = ("frequency", "temperature", "storage", "loss", "isotherm", "run")
+
+    def __repr__(self) -> str:
+        """One line: points, isotherms, and ranges."""
+        T, f = self.isotherm_temperatures, self.frequency
+        runs = f", {len(self.runs)} runs" if self.runs else ""
+        return (
+            f"<{type(self).__name__} in {self.mode}, {f.size} points{runs}: {T.size} isotherms from "
+            f"{T.min():.4g} to {T.max():.4g} °C, {f.min():.3g} to {f.max():.3g} Hz, storage "
+            f"modulus {self.storage.min():.3g} to {self.storage.max():.3g} Pa; {self.source}>"
+        )
 
     def __post_init__(self) -> None:
         for name in ("frequency", "temperature", "storage", "loss"):
@@ -147,14 +157,6 @@ class DMAData:
                 f"{self.source}: frequency[{i}] is {self.frequency[i]:g} Hz and runs back within the "
                 f"isotherm at {self.temperature[i]:.4g} °C; it must rise throughout, or fall throughout"
             )
-
-    def __repr__(self) -> str:
-        T, f = self.isotherm_temperatures, self.frequency
-        runs = f", {len(self.runs)} runs" if self.runs else ""
-        return (
-            f"<{type(self).__name__} in {self.mode}: {f.size} points, {T.size} isotherms from {T[0]:.4g} to "
-            f"{T[-1]:.4g} °C, {f.min():.4g} to {f.max():.4g} Hz{runs}; {self.source}>"
-        )
 
     @property
     def tan_delta(self) -> Array:
@@ -266,6 +268,7 @@ def check_range(dma: DMAData) -> None:
         warn(
             f"{dma.source}: median storage modulus {middle:.3g} Pa in {dma.mode} lies outside {_SOFT:g} to "
             f"{_HARD:g} Pa, the range of gels, elastomers and polymers: {_UNIT}",
+            UnlikelyModulus,
         )
 
 

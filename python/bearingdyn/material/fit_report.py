@@ -7,11 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bearingdyn.material.low_end import LowEnd
+from bearingdyn.notice import OutsideBand as OutsideBand
+from bearingdyn.short import short
 from bearingdyn.types import Array
-
-
-class OutsideBand(UserWarning):
-    """A material model is used at a frequency it was not fitted at."""
 
 
 def _none() -> Array:
@@ -61,6 +59,8 @@ class FitReport:
     floor: tuple[float, float] = (0.0, 0.0)
     bootstrap: Array = field(default_factory=_none, compare=False, repr=False)
     low_end: LowEnd | None = None
+
+    __repr__ = short
 
     @property
     def standard_errors(self) -> dict[str, float]:

@@ -102,6 +102,21 @@ class Maxwell(Retunable):
     fit: FitReport | None = field(repr=False)
     low_end: LowEnd | None = field(repr=False)
 
+    def __repr__(self) -> str:
+        """One line: moduli, times, and where it is good."""
+        branches = (
+            f", {self.tau.size} branches of {self.tau.min():.3g} to {self.tau.max():.3g} s"
+            if self.tau.size
+            else ""
+        )
+        band = "" if self.band is None else f", fitted from {self.band[0]:.3g} to {self.band[1]:.3g} Hz"
+        at = "" if self.temperature is None else f" at {self.temperature:g} °C"
+        dashpot = f", eta0 {self.eta0:.3g} Pa s" if self.eta0 else ""
+        return (
+            f"<Maxwell{at}: G0 {self.G0:.4g} Pa, at once {self.G0 + self.G.sum():.4g} Pa{branches}{dashpot}, "
+            f"K {self.K:.3g} Pa, {self.density:g} kg/m³{band}>"
+        )
+
     def __init__(
         self,
         G0: float,

@@ -17,6 +17,7 @@ from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.short import short
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
 
@@ -98,6 +99,8 @@ class Housing:
     f_max: float = F_MAX
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     element_size: float | None = None
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "length", "bore_diameter"):

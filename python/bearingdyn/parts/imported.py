@@ -22,6 +22,7 @@ from bearingdyn.cms import (
     reduce,
 )
 from bearingdyn.fem import FEMatrices
+from bearingdyn.short import short
 from bearingdyn.types import Array
 
 
@@ -40,6 +41,8 @@ class NodeSet:
 
     nodes: Sequence[int] | Callable[[Array], NDArray[np.bool_]]
     reference: tuple[float, float, float] | None = None
+
+    __repr__ = short
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +78,8 @@ class Imported:
     damping: float = 0.0
     held: str | None = None
     f_max: float = F_MAX
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         if self.matrices.points is None:

@@ -7,6 +7,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 AZIMUTHS = 48  # around a body of revolution
@@ -29,6 +30,8 @@ class Outline:
     points: Array
     faces: Index
     rows: Array
+
+    __repr__ = short
 
 
 @runtime_checkable

@@ -42,6 +42,7 @@ from bearingdyn.parts.regions import Patch, Region, quasi_static, shape_moduli
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex, Index
 
 
@@ -63,6 +64,8 @@ class RevolvedModes:
     order: int
     frequency: Array
     shapes: Array
+
+    __repr__ = short
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +123,8 @@ class Revolved:
     grooves: Mapping[str, Groove] = field(default_factory=dict)
     section: RevolutionMesh | None = None
     inertia: int = 0
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "regions", tuple(self.regions))

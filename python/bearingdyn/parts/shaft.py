@@ -28,6 +28,7 @@ from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 from bearingdyn.parts.round_face import RoundFace
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 KINDS: tuple[Literal["shaft", "bore"], ...] = ("shaft", "bore")
@@ -139,6 +140,8 @@ class Shaft:
     damping: float = 0.0
     f_max: float = F_MAX
     element_length: float | None = None
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         instance(

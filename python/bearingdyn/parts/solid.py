@@ -41,6 +41,7 @@ from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import ViscoelasticSolid, quasi_static
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
+from bearingdyn.short import short
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -153,6 +154,8 @@ class Solid:
     attach: tuple[str, ...] = ()
     radiating: tuple[str, ...] = ()
     inertia: int = 1
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         check_f_max(self.f_max)

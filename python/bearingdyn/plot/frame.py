@@ -42,12 +42,21 @@ PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The package's own look, for as long as the context is open."""
+    """The package's own look, for as long as the context is open.
+
+    Only these settings are put back at its end. The first figure of a session loads the backend, perhaps in
+    here, and a notebook's backend then switches `interactive` on, without which it shows no further figure:
+    `matplotlib.rc_context` would switch it off again.
+    """
     import matplotlib
 
-    settings: Any = STYLE  # its keys are matplotlib's, which a type would have to list
-    with matplotlib.rc_context(settings):
+    settings: Any = matplotlib.rcParams  # its keys are matplotlib's, which a type would have to list
+    before = {key: settings[key] for key in STYLE}
+    settings.update(STYLE)
+    try:
         yield
+    finally:
+        settings.update(before)
 
 
 def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = None) -> Axes:
@@ -174,9 +183,14 @@ def colour(k: int) -> str:
     return COLOURS[k % len(COLOURS)]
 
 
+def is_result(datasets: object) -> bool:
+    """Whether it is one result and no mapping of several: a Dataset is a Mapping too, of its variables."""
+    return hasattr(datasets, "data_vars")
+
+
 def some(datasets: Mapping[str, Any]) -> Mapping[str, Any]:
     """The results by label; ValueError if there are none, or one without a label."""
-    if hasattr(datasets, "data_vars"):  # a Dataset is a Mapping too, of its variables
+    if is_result(datasets):
         raise ValueError('this is a result without a label; give results by label, such as {"run": result}')
     if not datasets:
         raise ValueError("there is nothing to draw; give at least one result with its label")

@@ -24,7 +24,10 @@ NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, point
 
 
 def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes | None = None) -> Axes:
-    """Natural frequencies by bd.campbell over the speed, in rpm; forward, backward and other modes apart.
+    """Natural frequencies by bd.campbell over the speed, in rpm; the modes told apart by their motion.
+
+    Lateral modes that whirl are forward or backward, the others lateral; there are axial and torsional
+    ones too.
 
     A ring stands where a mode that swings crosses an order (straight between the speeds computed), and
     beside it the speed in rpm where there is room.
@@ -47,13 +50,20 @@ def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes 
     order = np.argsort(rpm)
     frequency, whirl = data["frequency"].values[order], data["whirl"].values[order]
     rpm = rpm[order]
-    kinds = {"forward": (0, "-"), "backward": (1, "--"), "neither": (2, ":")}
+    kinds = {
+        "forward": (0, "-"), "backward": (1, "--"), "lateral": (2, ":"),
+        "axial": (3, "-."), "torsional": (4, "-."),
+    }  # fmt: skip
+    # results of before 0.3 do not say it
+    direction = data["direction"].values if "direction" in data else ["lateral"] * frequency.shape[1]
     with style():
         ax = ax or new_axes()
         named: set[str] = set()
         for k in range(frequency.shape[1]):
             turn = float(np.mean(whirl[:, k]))
-            kind = "forward" if turn > ROUND else "backward" if turn < -ROUND else "neither"
+            kind = str(direction[k])
+            if kind == "lateral" and abs(turn) > ROUND:
+                kind = "forward" if turn > 0 else "backward"
             shade, dash = kinds[kind]
             label = kind if kind not in named else None
             named.add(kind)
@@ -118,7 +128,8 @@ def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis:
     """One mode by `bd.mode_shapes` from the side, part by part: motion along `axis` over z, at rest in grey.
 
     The largest motion is drawn a tenth as long as the structure. Phases are turned so that it is real; the
-    motion of a damped mode a quarter period later is drawn thin.
+    motion of a damped mode a quarter period later is drawn thin. Where the largest motion is along z, arrows
+    at the bottom say where each place moves.
 
     Parameters
     ----------
@@ -152,6 +163,7 @@ def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis:
     height = data["position"].sel(axis=axis).values
     both = np.concatenate([up, along])
     largest = both[int(np.argmax(np.abs(both)))]
+    along_only = float(np.abs(along).max()) > float(np.abs(up).max())  # along the line drawn: hard to see
     size = max(float(np.ptp(z)), float(np.ptp(height)), 1e-3)
     scale = SWING * size / largest if largest else 0.0
     up, along = up * scale, along * scale
@@ -169,8 +181,18 @@ def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis:
                 ax.plot(
                     x * 1e3, y * 1e3, color=colour(k), linewidth=width, marker="o", markersize=3, label=label
                 )
-        ax.set_xlabel("z, mm")
+        low, high = ax.get_ylim()
+        least = 2e3 * SWING * size  # mm; round-off beside an axial motion is not drawn large
+        if high - low < least:
+            ax.set_ylim((low + high - least) / 2, (low + high + least) / 2)
+        if along_only:
+            look = {"arrowstyle": "->", "color": "0.2", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+            foot = ax.get_xaxis_transform()
+            for start, shift in zip(z * 1e3, along.real * 1e3, strict=True):
+                ax.annotate("", (start + shift, 0.02), (start, 0.02), xycoords=foot, arrowprops=look)
+        ax.set_xlabel("z, mm" + ("; arrows: the motion along z" if along_only else ""))
         ax.set_ylabel(f"{axis}, mm")
         frequency = float(data["frequency"].values[mode])
-        finish(ax, f"Mode {mode} (from 0) at {frequency:.4g} Hz", legend=True)
+        drawn = f", the largest motion drawn {1e3 * SWING * size:.3g} mm long"
+        finish(ax, f"Mode {mode} (from 0) at {frequency:.4g} Hz{drawn}", legend=True)
     return ax

@@ -19,6 +19,7 @@ from bearingdyn.plot.frame import (
     engineering,
     finish,
     halve,
+    is_result,
     new_axes,
     some,
     style,
@@ -36,10 +37,13 @@ DEPTH = 1e-6
 PHASE_END = 135.0
 SMALL_PHASE = 15.0  # °; the axes of a phase show at least that much
 POINT = 1.0 / 72.0  # inch
+# names of lines: their size, points; what one takes along the axis, in that size; height of the leaders, of
+# the axes
+NAME, PITCH, LEADER = 8.0, 1.35, 0.07
 
 
 def frequency_response(
-    datasets: Mapping[str, xarray.Dataset],
+    datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
     output: str,
     input: str,
     ax: Axes | None = None,
@@ -54,7 +58,7 @@ def frequency_response(
     Parameters
     ----------
     datasets
-        Results of `bd.frequency_response` by label.
+        A result of `bd.frequency_response`, or several by label.
     output
         Channel of the response.
     input
@@ -76,7 +80,9 @@ def frequency_response(
         over the speed, which `unbalance_response` draws.
     """
     curves = {}
-    for label, data in some(datasets).items():
+    alone = is_result(datasets)
+    several: Any = {"response": datasets} if alone else datasets
+    for label, data in some(several).items():
         if "frequency" not in data.coords:
             hint = "; draw it with plot.unbalance_response" if "speed" in data.coords else ""
             raise ValueError(
@@ -87,7 +93,7 @@ def frequency_response(
             if wanted not in known:
                 raise ValueError(f"{label!r} has no {kind} {wanted!r}; there are {known}")
         curves[label] = data["response"].sel(output=output, input=input)
-    quantity = _one_quantity(datasets)
+    quantity = _one_quantity(several)
     unit = _response_unit(quantity, output, input)
     with style():
         ax = ax or new_axes(height=4.8 if phase else 3.4)
@@ -105,7 +111,7 @@ def frequency_response(
         _span(bottom, *(c["frequency"].values for c in curves.values()))
         if lower is not None:
             finish_phase(lower)
-        finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=True)
+        finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=not alone)
     return ax
 
 
@@ -391,27 +397,45 @@ def finish_phase(ax: Axes) -> None:
 
 
 def _mark(ax: Axes, lines: Mapping[str, float]) -> float:
-    """Dashed verticals with their names at the top, on the side where there is room, else a row lower.
+    """Dashed verticals, each led to its name in one row at the top: no line goes through a name.
 
-    Returns the share of the height of the axes that the first row of names takes.
+    The names keep the order of the lines; where those are closer than letters are wide, the names move apart
+    and slanted leaders join them. Returns the share of the height of the axes that names and leaders take.
     """
     if not lines:
         return 0.0
-    size = 8.0
-    # in shares of the axes: height of the longest name, a letter being 0.6 of its size wide, and its width
+    from matplotlib.patches import ConnectionPatch
+
+    names = sorted(lines, key=lambda name: lines[name])
+    at = np.array([lines[name] for name in names]) / ax.get_xlim()[1]
+    # in shares of the axes: what a name takes along them; names too many for them are written smaller
+    size = min(NAME, ax.bbox.width / (PITCH * len(names) * POINT * ax.figure.dpi))
     letter = size * POINT * ax.figure.dpi
-    height = max(map(len, lines)) * 0.6 * letter / ax.bbox.height + 0.02
-    width = 1.5 * letter / ax.bbox.width
-    ends: list[float] = []  # right edge of the last name in each row
-    for name, frequency in sorted(lines.items(), key=lambda item: item[1]):
-        x = frequency / ax.get_xlim()[1]
-        places = [(row, left) for row, end in enumerate(ends) for left in (x - width, x) if left >= end]
-        row, left = places[0] if places else (len(ends), max(x - width, 0.0))
-        ends[row : row + 1] = [left + width]
-        ax.axvline(frequency, color=GREY, linestyle=(0, (3, 3)), linewidth=0.7, zorder=1)
-        ax.text(
-            left + 0.5 * width, 0.985 - row * height, name, rotation=90, transform=ax.transAxes,
-            ha="center", va="top", fontsize=size, color=GREY, zorder=5,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.5},
+    stands = _spread(at, PITCH * letter / ax.bbox.width)
+    height = max(map(len, names)) * 0.6 * letter / ax.bbox.height + 0.02
+    moved = bool(np.abs(stands - at).max() * ax.bbox.width > 0.5)  # pixels
+    foot = 1.0 - height - (LEADER if moved else 0.01)
+    for name, stand in zip(names, stands, strict=True):
+        ax.axvline(
+            lines[name], ymax=foot, color=GREY, linestyle=(0, (3, 3)), linewidth=0.7, zorder=1, gid=name
+        )
+        leader = ConnectionPatch(
+            (lines[name], foot), (stand, 1.0 - height), ax.get_xaxis_transform(), ax.transAxes,
+            color=GREY, linewidth=0.7, zorder=1, gid=name,
         )  # fmt: skip
-    return min(height + 0.01, 0.5)
+        leader.set_in_layout(False)
+        ax.add_artist(leader)
+        ax.text(
+            stand, 1.0 - height + 0.005, name, rotation=90, transform=ax.transAxes,
+            ha="center", va="bottom", fontsize=size, color=GREY, zorder=5,
+        )  # fmt: skip
+    return min(1.0 - foot + 0.01, 0.5)
+
+
+def _spread(at: Array, pitch: float) -> Array:
+    """Places (n,) in 0 … 1, `pitch` apart at least, in the order of `at` and nearest to it in squares."""
+    from scipy.optimize import isotonic_regression
+
+    rank = np.arange(len(at)) * pitch
+    most = max(1.0 - (len(at) - 0.5) * pitch, 0.5 * pitch)
+    return np.asarray(np.clip(isotonic_regression(at - rank).x, 0.5 * pitch, most) + rank)

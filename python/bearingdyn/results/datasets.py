@@ -81,7 +81,7 @@ def dataset(
     made_by = ", ".join(f"{name} {number}" for name, number in versions().items())
     made = xarray.Dataset(attrs={"made_by": made_by, "made_at": stamp(), **attrs})
     for name, (values, unit) in (coords or {}).items():
-        made = made.assign_coords({name: (name, np.asarray(values), {"units": unit} if unit else {})})
+        made = made.assign_coords({name: (name, np.asarray(values), {"units": unit})})
     for name, (dims, values, unit, meaning) in variables.items():
         made[name] = (dims, values, {"units": unit, "long_name": meaning})
     return made
@@ -139,4 +139,5 @@ def march_dataset(
         },
         {"time": (time, "s"), "channel": (facts["channels"], "")},
     )
-    return data.assign_coords(unit=("channel", facts["units"]))
+    meaning = {"units": "", "long_name": "unit of each channel"}
+    return data.assign_coords(unit=("channel", facts["units"], meaning))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn import runfile
+from bearingdyn.checks import existing, meant
 from bearingdyn.results.datasets import march_dataset, stamp
 from bearingdyn.writing import check_target, write_whole
 
@@ -96,19 +97,24 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
     Raises
     ------
     ValueError
-        If the file does not exist, is no netCDF-4 file, or lacks the group.
+        If the file is no netCDF-4 file, or lacks the group.
+    FileNotFoundError
+        If there is no such file.
     """
     import h5netcdf  # noqa: F401  # so that its absence is not taken for a damaged file
     import xarray
 
+    existing(path, "result")
     if runfile.is_run(path):
         return _run_dataset(path)
     try:
         with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
             found = _complex(data.load())
-    except FileNotFoundError:
-        raise ValueError(f"{os.fspath(path)}: no such file") from None
     except Exception as error:  # the layers under it raise whatever the damage of a file leads to
+        known = groups(path) if group else []
+        if group and group not in known:
+            hint = meant(group, known) if known else "it is one result: leave group out"
+            raise ValueError(f"{os.fspath(path)} has no result {group!r}; {hint}") from None
         place = f"group {group!r} of " if group else ""
         raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}") from None
     if not group and not found.variables and groups(path):
@@ -136,6 +142,7 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
     """
     import h5netcdf
 
+    existing(path, "result")
     if runfile.is_run(path):
         return []
     try:

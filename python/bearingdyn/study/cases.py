@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bearingdyn import inputs
+from bearingdyn.short import short
 
 Parameters: TypeAlias = Mapping[str, Any]
 
@@ -25,6 +26,8 @@ class Case:
     parameters: Parameters
     values: Mapping[str, float]
     error: str | None = None
+
+    __repr__ = short
 
 
 def grid(**axes: Iterable[Any]) -> list[dict[str, Any]]:

@@ -25,11 +25,11 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from bearingdyn.progress import Progress, told
 from bearingdyn.study.cases import Case, Parameters, checked
 from bearingdyn.study.store import Store, name_of
 
 Study: TypeAlias = Callable[[dict[str, Any]], Mapping[str, float]]
-Progress: TypeAlias = Callable[[int, int], object]
 
 # each worker is one process on one core: a BLAS with threads of its own would only get in the others' way
 WORKER_ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
@@ -44,7 +44,7 @@ def sweep(
     cases: Iterable[Parameters],
     executor: Executor | None = None,
     store: str | os.PathLike[str] | None = None,
-    progress: Progress | bool = False,
+    progress: Progress | bool | None = None,
     *,
     retry: bool = False,
 ) -> list[Case]:
@@ -72,7 +72,8 @@ def sweep(
         of installed packages and modules it uses, their names alone: when these change, take another folder.
         Several studies may share a folder, at the same time too.
     progress
-        Called with (cases done, cases in all) after each; True draws a bar on standard error.
+        Called with (cases done, cases in all) after each; True for a bar on standard error, False for none,
+        None for a bar where standard error is a terminal.
     retry
         Compute again what failed before and lies in the store with its error.
 
@@ -99,7 +100,8 @@ def sweep(
         if kept is not None and not (retry and kept.error is not None):
             done[index] = kept
     ahead = [index for index in range(len(todo)) if index not in done]
-    with _advance(progress, len(todo)) as advance:
+    with told(progress, "case") as tell:
+        advance = tell or (lambda done, total: None)
         if done:
             advance(len(done), len(todo))
         if ahead:
@@ -112,17 +114,6 @@ def sweep(
                         folder.write(case)
                     advance(len(done), len(todo))
     return [done[index] for index in range(len(todo))]
-
-
-@contextmanager
-def _advance(progress: Progress | bool, total: int) -> Iterator[Progress]:
-    if progress is True:
-        from tqdm import tqdm
-
-        with tqdm(total=total, unit="case") as bar:
-            yield lambda done, _: bar.update(done - bar.n)
-    else:
-        yield progress if callable(progress) else lambda done, _: None
 
 
 def _attempt(function: Study, parameters: dict[str, Any]) -> tuple[dict[str, float], str | None]:

@@ -57,7 +57,7 @@ def table(cases: Sequence[Case], units: Mapping[str, str] | None = None) -> xarr
         {"case": (np.arange(len(cases)), "")},
     )
     for n in parameters:
-        unit = {"units": units[n]} if n in units else {}
+        unit = {"units": units.get(n, "")}
         made = made.assign_coords({n: ("case", [label(case.parameters[n]) for case in cases], unit)})
     return made
 

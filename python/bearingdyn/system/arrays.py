@@ -8,7 +8,6 @@ property of time or frequency, not of the matrices.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
@@ -19,9 +18,11 @@ import scipy.linalg
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Channel, Part
 from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, LooseFit, RacewaySeries
+from bearingdyn.checks import meant
 from bearingdyn.cms import Superelement, coupled_blocks
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import Maxwell
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 # of layers at rest: "relaxed", "instantaneous", a time after loading, s, or a modulus for each, Pa
@@ -48,6 +49,8 @@ class LayerTerm:
     material: Any
     L: Array
 
+    __repr__ = short
+
 
 @dataclass(frozen=True, eq=False)
 class BearingTerm:
@@ -73,6 +76,8 @@ class BearingTerm:
     series: RacewaySeries = RIGID
     offset: float = 0.0
     ends: Mapping[str, Array] = field(default_factory=dict)
+
+    __repr__ = short
 
     def kernel(self) -> BearingKernel:
         """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves."""
@@ -107,6 +112,8 @@ class PartTerm:
     rigid: Array
     source: Part
 
+    __repr__ = short
+
 
 @dataclass(frozen=True, eq=False)
 class SpringTerm:
@@ -130,6 +137,8 @@ class SpringTerm:
     damping: Array
     ends: Mapping[str, Array] = field(default_factory=dict)
 
+    __repr__ = short
+
 
 @dataclass(frozen=True, eq=False)
 class LoadTerm:
@@ -147,6 +156,8 @@ class LoadTerm:
     part: str = ""
     own_cos: Array | None = None
     own_sin: Array | None = None
+
+    __repr__ = short
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -215,9 +226,7 @@ class System:
             Where none has that name.
         """
         if name not in self.outputs:
-            near = difflib.get_close_matches(name, self.outputs, n=1)
-            meant = f"; did you mean {near[0]!r}?" if near else ";"
-            raise ValueError(f"{name!r} is no interface or output{meant} there are {sorted(self.outputs)}")
+            raise ValueError(f"{name!r} is no interface or output; {meant(name, self.outputs)}")
         return self.outputs[name]
 
     def row(self, channel: str | Channel) -> Array:

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.abaqus_input import blocks, node
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
 from bearingdyn.fem.matrix_files.text_tables import (
     Form,
-    existing,
     first_line,
     rows_fit,
     symmetric_from,

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
-from bearingdyn.fem.matrix_files.text_tables import Form, existing, symmetric_from, triples
+from bearingdyn.fem.matrix_files.text_tables import Form, symmetric_from, triples
 
 ENTRIES = Form(
     ("count", "count", "number"), "", "*",

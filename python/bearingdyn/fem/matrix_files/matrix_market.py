@@ -12,8 +12,9 @@ from typing import Any, BinaryIO
 import numpy as np
 import scipy.sparse
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
-from bearingdyn.fem.matrix_files.text_tables import Form, both_triangles, existing, rows_fit, table, triples
+from bearingdyn.fem.matrix_files.text_tables import Form, both_triangles, rows_fit, table, triples
 
 BANNER = b"%%matrixmarket"
 FIELDS = ("real", "double", "integer", "unsigned-integer")

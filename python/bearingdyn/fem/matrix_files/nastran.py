@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
-from bearingdyn.fem.matrix_files.text_tables import existing
 
 
 def read_op4(

@@ -18,8 +18,8 @@ from typing import IO, Any
 import numpy as np
 import scipy.sparse
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
-from bearingdyn.fem.matrix_files.text_tables import existing
 from bearingdyn.writing import write_whole
 
 # what zipfile and NumPy raise for damage, which depends on where it is

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.abaqus import read_abaqus, read_nodes
 from bearingdyn.fem.matrix_files.calculix import read_calculix
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
 from bearingdyn.fem.matrix_files.matrix_market import is_matrix_market, read_matrix_market
 from bearingdyn.fem.matrix_files.nastran import read_op4
 from bearingdyn.fem.matrix_files.npz import read_npz
-from bearingdyn.fem.matrix_files.text_tables import existing
 
 
 def read_matrices(

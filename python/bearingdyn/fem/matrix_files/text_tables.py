@@ -1,4 +1,4 @@
-"""Files of numbers: that they are there, their entries read strictly, and the sparse matrix of them.
+"""Files of numbers: their entries read strictly, and the sparse matrix of them.
 
 A file is read in blocks of whole lines. Each block is first held against the exact form of its lines, at the
 speed of one regular expression, and only then given to a fast parser: those take 2.0D+08 for 2.0 and 2,5 for
@@ -17,7 +17,7 @@ from typing import BinaryIO
 import numpy as np
 import scipy
 
-from bearingdyn.notice import Notice, warn
+from bearingdyn.notice import UnfinishedLine, warn
 from bearingdyn.types import Array, Index
 
 BLOCK = 1 << 24  # bytes read at once; a line may be as long
@@ -31,15 +31,6 @@ _NUMBER = rb"[+-]?+(?:\d++\.?+\d*+|\.\d++)(?:[eEdD][+-]?+\d++|[+-]\d++)?+"
 _BLANK = re.compile(rb"\n[ \t]*\n")
 _PLUS = re.compile(rb"(?<!e)\+")  # SciPy takes none before a number
 _NO_LETTER = re.compile(rb"(?<=[\d.])(?=[+-])")  # Fortran leaves the letter out: 1.5-100
-
-
-class UnfinishedLine(Notice):
-    """The last number of a text file may have been cut.
-
-    When: the file's last line has no line end, which programs write and a copy that broke off lacks.
-
-    Remedy: compare the file's length with the original; if it is whole, add a line end.
-    """
 
 
 @dataclass(frozen=True)
@@ -72,14 +63,6 @@ class Form:
         line += blank + (b",?+" + blank if self.separator else b"")
         left_out = rb"|" + blank + re.escape(self.comment.encode()) + rb"[^\n]*+" if self.comment else b""
         return re.compile(rb"(?:(?:" + line + left_out + rb"|" + blank + rb")\r?+\n)*+")
-
-
-def existing(path: str | Path) -> Path:
-    """The path of a file that is there. Raises ValueError if it is not."""
-    p = Path(path)
-    if not p.is_file():
-        raise ValueError(f"{p} is not a file; check the path")
-    return p
 
 
 def first_line(path: Path, comment: str) -> str:

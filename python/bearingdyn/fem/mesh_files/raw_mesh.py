@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bearingdyn.checks import positive
+from bearingdyn.checks import meant, positive
 from bearingdyn.fem.meshes.solid_element import KINDS, OF_CORNERS
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, merged, second_order
 from bearingdyn.types import Array, Index
@@ -136,7 +136,7 @@ def _regions(raw: RawMesh, chosen: Sequence[str] | None) -> dict[str, Index]:
     if chosen is not None:
         for name in chosen:
             if name not in known:
-                raise ValueError(f"regions has {name!r}; the file's sets of elements are {sorted(known)}")
+                raise ValueError(f"regions has {name!r}; {meant(name, known)}, the file's sets of elements")
         return {name: known[name] for name in chosen}
     if raw.preferred:
         return {name: known[name] for name in raw.preferred if name in known}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
 
+from bearingdyn.checks import existing
 from bearingdyn.fem.mesh_files.abaqus import read_inp
 from bearingdyn.fem.mesh_files.gmsh import read_msh
 from bearingdyn.fem.mesh_files.ideas import read_unv
@@ -67,9 +67,7 @@ def read_mesh(
         For what SolidMesh refuses, elements of another kind, a body longer than `largest`, and a file that
         cannot be read. The message names the file and the element or node.
     """
-    file = Path(path)
-    if not file.is_file():
-        raise ValueError(f"{file} is not a file; give the path of a mesh (.msh, .inp, .vtk, .vtu)")
+    file = existing(path, "mesh (.msh, .inp, .vtk, .vtu)")
     suffix = file.suffix.lower()
     if suffix in OTHERS:
         raise ValueError(

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from bearingdyn.checks import vector
+from bearingdyn.short import short
 from bearingdyn.types import Array, Index
 
 SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
@@ -80,6 +81,8 @@ class RevolutionMesh:
     z: Array
     elements: Index
     region: Index
+
+    __repr__ = short
 
     @property
     def size(self) -> float:

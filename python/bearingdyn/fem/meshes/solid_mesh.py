@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from bearingdyn.checks import meant
 from bearingdyn.fem.meshes.solid_element import (
     HEX20,
     HEX27,
@@ -300,7 +301,7 @@ class SolidMesh:
     def surface(self, name: str) -> Index:
         """Nodes of a surface. Raises ValueError, listing the known, for a name the mesh does not have."""
         if name not in self.surfaces:
-            raise ValueError(f"the mesh has no surface {name!r}; it has {sorted(self.surfaces)}")
+            raise ValueError(f"the mesh has no surface {name!r}; {meant(name, self.surfaces)}")
         return self.surfaces[name]
 
     def with_surface(self, name: str, where: Callable[[Array], Any]) -> SolidMesh:

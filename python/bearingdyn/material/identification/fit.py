@@ -29,7 +29,7 @@ from bearingdyn.material.low_end import SLACK
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.relaxation import RelaxationData
 from bearingdyn.material.superposition import MasterCurve, one_curve
-from bearingdyn.notice import warn
+from bearingdyn.notice import CoarseModel, TensionAsShear, warn
 from bearingdyn.types import Array
 
 _MOST = 20  # branches tried by n = "auto"
@@ -247,6 +247,7 @@ def _smallest(
     warn(
         f"n = 'auto': no number of branches up to {most} comes within the tolerance of {tolerance:g} or 1.2 "
         f"times the floor {floor[0]:.3g}, {floor[1]:.3g}; the best is {best[0]:.2g} times that",
+        CoarseModel,
     )
     return best[1], best[2]
 
@@ -297,7 +298,7 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
         f_lo, f_hi = max(f_lo, 0.5 * low), min(f_hi, 2 * high)
     points, note = _points(master, keep, K)
     if note:
-        warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand")
+        warn(f"{note}; master.to_shear(K=...) or to_shear(nu=...) beforehand", TensionAsShear)
     return replace(points, band=(f_lo, f_hi))
 
 

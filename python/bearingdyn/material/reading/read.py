@@ -20,7 +20,7 @@ from bearingdyn.material.reading.request import Request, Step
 from bearingdyn.material.reading.source import read_source, source_of
 from bearingdyn.material.reading.table import NO_LETTER, Table, read_table
 from bearingdyn.material.relaxation import RelaxationData
-from bearingdyn.notice import warn
+from bearingdyn.notice import AssumedMeaning, UnlikelyModulus, warn
 from bearingdyn.types import Index
 
 _AMPLITUDE = 1.5  # ratio of two strains that are not meant to be the same
@@ -221,7 +221,8 @@ def _read_one(data: Any, request: Request, sort: bool) -> DMAData:
     if 10.0 <= top < SOFTEST:  # below, check_range has warned
         warn(
             f"{made.source}: no storage modulus above {top:.4g} Pa, softer than any rubber: are the numbers "
-            "in kPa or MPa? Then give units={'storage': 'kPa', 'loss': 'kPa'}"
+            "in kPa or MPa? Then give units={'storage': 'kPa', 'loss': 'kPa'}",
+            UnlikelyModulus,
         )
     return made
 
@@ -241,7 +242,8 @@ def _mode(table: Table, mode: Mode | None) -> Mode:
         raise ReadingError(f"{table.header}: {NO_LETTER}", "mode")
     warn(
         f"{table.header}: the header does not tell G from E: taken as shear, because the file speaks of "
-        "shear (torque, plates); mode='tension' says otherwise"
+        "shear (torque, plates); mode='tension' says otherwise",
+        AssumedMeaning,
     )
     return "shear"
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import existing
 from bearingdyn.notice import CutFile, warn
 
 _OLE, _ZIP = b"\xd0\xcf\x11\xe0", b"PK\x03\x04"
@@ -97,10 +98,7 @@ def read_source(path: Path) -> list[Source]:
     ValueError naming the file if it is binary, of unknown encoding, a spreadsheet that cannot be read, or
     empty.
     """
-    if not path.exists():
-        raise FileNotFoundError(f"file {path} is not there")
-    if not path.is_file():
-        raise ValueError(f"{path}, line 1: no file but a folder or a device: give the name of a table")
+    existing(path, "table")
     with path.open("rb") as file:
         data = file.read(_LARGEST + 1)
     if len(data) > _LARGEST:

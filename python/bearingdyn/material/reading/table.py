@@ -16,7 +16,7 @@ from bearingdyn.material.reading.columns import LABELS, RELAXATION, is_number, n
 from bearingdyn.material.reading.errors import HeaderError, NoStepError, ReadingError, together
 from bearingdyn.material.reading.request import Request
 from bearingdyn.material.reading.source import Row, Source
-from bearingdyn.notice import warn
+from bearingdyn.notice import AssumedMeaning, LeftOut, warn
 from bearingdyn.types import Array
 
 _MISSING = ("", "-", "--", "---", "nan", "n/a", "na", "null", "none", "#n/a")
@@ -230,7 +230,8 @@ class TableReader:
         value = number_of(matches[0].group("number")) * (-1 if sign and sign != "+" else 1)
         warn(
             f"{self.source.name}: no temperature in the table: {value:g} °C is taken from the file's name; "
-            "temperature=... says otherwise"
+            "temperature=... says otherwise",
+            AssumedMeaning,
         )
         self.notes.append(f"{self.source.name}: temperature {value:g} °C from the file's name")
         return value
@@ -377,13 +378,14 @@ class TableReader:
         """Say what was left out, and how much of it."""
         if self.left_out:
             total = len(self.left_out) + len(self.points)
-            warn(f"{len(self.left_out)} of {total} points left out: first {self.left_out[0]}")
+            warn(f"{len(self.left_out)} of {total} points left out: first {self.left_out[0]}", LeftOut)
         if self.after:
             row = self.after[0]
             numbers = sum(any(map(is_number, r.text.split())) for r in self.after)
             warn(
                 f"{self.source.at(row.number)}: {len(self.after)} lines after the table left out, {numbers} "
-                f"of them with numbers: first {row.text.strip()[:60]!r}"
+                f"of them with numbers: first {row.text.strip()[:60]!r}",
+                LeftOut,
             )
 
     def _require_points(self) -> None:
@@ -432,7 +434,8 @@ def _tell_of_others(sheets: Sequence[Source], request: Request) -> None:
     if names:
         warn(
             f"{sheets[0].name}: the first sheet with a table is read, not {', '.join(map(repr, names))}: "
-            "step='...' names another"
+            "step='...' names another",
+            AssumedMeaning,
         )
 
 

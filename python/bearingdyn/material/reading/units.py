@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from bearingdyn.material.reading.columns import UNITS, Column, is_number, number_of
 from bearingdyn.material.reading.errors import ReadingError
-from bearingdyn.notice import warn
+from bearingdyn.notice import AssumedMeaning, warn
 
 _HOT = 150.0  # °C; temperatures above it, without a unit, may be in K
 
@@ -63,13 +63,16 @@ class ColumnUnits:
             self._assume(f"{place}: no unit for the {what}", unit, "frequency")
             return unit
         if quantity == "angular" and bare != "rad/s" and "ang" in column.title.lower():
-            warn(f"{place}: an angular frequency in {column.unit}: taken as {column.unit}, not rad/s")
+            warn(
+                f"{place}: an angular frequency in {column.unit}: taken as {column.unit}, not rad/s",
+                AssumedMeaning,
+            )
         return column.unit
 
     def _assume(self, what: str, unit: str, quantity: str) -> None:
         text = f"{what}: taken as {unit}; units={{{quantity!r}: ...}} says otherwise"
         self.assumed.append(text)
-        warn(text)
+        warn(text, AssumedMeaning)
 
     def _convert(self, quantity: str, unit: str, column: Column, where: str) -> None:
         known, key = UNITS[quantity], _bare(unit)

@@ -23,7 +23,7 @@ from bearingdyn.material.superposition.doubts import doubt_law, doubt_runs, doub
 from bearingdyn.material.superposition.free_shifts import Superposed, Superposition, first_shifts
 from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, suspects
 from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
-from bearingdyn.notice import OutsideIsotherms, warn
+from bearingdyn.notice import LeftOut, OutsideIsotherms, ThinIsotherm, warn
 from bearingdyn.types import Array
 
 _JITTER = 0.5  # K; as far as a mean temperature may miss the one that was meant
@@ -89,6 +89,15 @@ class MasterCurve:
     vertical: RhoT | None = None
     notes: tuple[str, ...] = field(default=(), repr=False)
     K: float | None = None
+
+    def __repr__(self) -> str:
+        """One line: points, ranges, law and errors."""
+        return (
+            f"<MasterCurve in {self.mode} at {self.T_ref:g} °C, {self.frequency.size} points: "
+            f"{self.frequency.min():.3g} to {self.frequency.max():.3g} Hz, storage modulus "
+            f"{self.storage.min():.3g} to {self.storage.max():.3g} Pa, {type(self.law).__name__} law within "
+            f"{self.law_residual:.2g} decades, {len(self.left_out)} points left out>"
+        )
 
     @property
     def tan_delta(self) -> Array:
@@ -249,6 +258,7 @@ def _cleaned(dma: DMAData, clean: bool) -> tuple[DMAData, tuple[Suspect, ...]]:
     warn(
         f"{dma.source}: {len(found)} of {flagged.size} points left out that no passive material could give: "
         f"{summary(found)}{more}",
+        LeftOut,
     )
     return dma.take(np.flatnonzero(~flagged)), found
 
@@ -277,6 +287,7 @@ def _temperatures(dma: DMAData, T_ref: float) -> Array:
         warn(
             f"{dma.source}: one frequency only at {', '.join(f'{T[k]:.4g}' for k in single)} °C: these "
             "shifts rest on a single point",
+            ThinIsotherm,
         )
     if not T[0] - _FAR <= T_ref <= T[-1] + _FAR:
         raise ValueError(

@@ -7,7 +7,7 @@ import numpy as np
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.superposition.kramers_kronig import summary, suspects
 from bearingdyn.material.superposition.master import MasterCurve
-from bearingdyn.notice import warn
+from bearingdyn.notice import LeftOut, warn
 
 
 def one_curve(data: MasterCurve | DMAData) -> MasterCurve:
@@ -36,7 +36,7 @@ def one_curve(data: MasterCurve | DMAData) -> MasterCurve:
     if bad.all():
         raise ValueError(f"{data.source}: no point has positive moduli: the columns or their signs are wrong")
     if found:
-        warn(f"{data.source}: {len(found)} of {bad.size} points left out: {summary(found)}")
+        warn(f"{data.source}: {len(found)} of {bad.size} points left out: {summary(found)}", LeftOut)
     used = data.take(np.flatnonzero(~bad))
     return MasterCurve(
         used.frequency,

@@ -1,0 +1,51 @@
+"""One-line descriptions of objects that hold arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import MISSING, fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+FEW = 6  # numbers that are written out
+LONG = 60  # letters of anything else
+
+
+def short(self: Any) -> str:
+    """The `__repr__` of a dataclass in one line: arrays by shape and range, no field at its default."""
+    told = []
+    for field in fields(self):
+        value = getattr(self, field.name)
+        if field.repr and not (field.default is not MISSING and _same(value, field.default)):
+            told.append(f"{field.name}={_told(value)}")
+    return f"{type(self).__name__}({', '.join(told)})"
+
+
+def _same(value: Any, default: Any) -> bool:
+    return value is default or (isinstance(value, int | float | str | tuple) and value == default)
+
+
+def _told(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return _array(value)
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, Mapping):
+        return f"<{len(value)}: {_cut(', '.join(map(str, value)))}>"
+    if is_dataclass(value) or not isinstance(value, tuple | list) or len(value) <= FEW:
+        return _cut(repr(value))
+    return f"<{len(value)} of {type(value[0]).__name__}>"
+
+
+def _array(x: np.ndarray) -> str:
+    if 0 < x.size <= FEW and x.ndim == 1 and x.dtype.kind in "iuf":
+        return "[" + ", ".join(f"{v:.5g}" for v in x) + "]"
+    shape = "×".join(map(str, x.shape)) or "1"
+    if x.size and x.dtype.kind in "iuf":
+        return f"<{shape}: {np.nanmin(x):.5g} … {np.nanmax(x):.5g}>"
+    return f"<{shape} {x.dtype}>"
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONG else text[: LONG - 1] + "…"
