@@ -51,7 +51,7 @@ def test_surfaces_and_regions_can_be_added_by_place_and_not_by_mistake():
         (lambda: mesh.with_surface("none", lambda p: p[:, 2] < -1), "surface 'none' is empty"),
         (lambda: mesh.with_region("body", lambda p: p[:, 2] < 1), "has a region 'body' already"),
         (lambda: mesh.with_region("none", lambda p: p[:, 2] < 0), "region 'none' is empty"),
-        (lambda: mesh.surface("lid"), r"no surface 'lid'; it has \['low', 'x\+'"),
+        (lambda: mesh.surface("lid"), r"no surface 'lid'; there are \['low', 'x\+'"),
         (lambda: mesh.with_surface("dot", lambda p: p.sum(axis=1) == 0).faces("dot"), "holds no whole face"),
     ):
         with pytest.raises(ValueError, match=message):

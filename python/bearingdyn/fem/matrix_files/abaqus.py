@@ -54,8 +54,10 @@ def read_abaqus(
 
     Raises
     ------
+    FileNotFoundError
+        If there is no such file.
     ValueError
-        For a file that does not exist or is not of that format, for an internal variable of Abaqus (a node
+        For a file that is not of that format, for an internal variable of Abaqus (a node
         number below 1), or where check_matrices does.
     """
     files = [existing(stiffness), existing(mass)]
@@ -111,8 +113,10 @@ def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
 
     Raises
     ------
+    FileNotFoundError
+        If there is no such file.
     ValueError
-        For a file that is not there, without nodes, or with a line that is no node.
+        For a file without nodes, or with a line that is no node.
     """
     p = existing(path)
     nodes: dict[int, tuple[float, float, float]] = {}

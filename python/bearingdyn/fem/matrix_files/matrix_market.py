@@ -50,9 +50,10 @@ def read_matrix_market(
 
     Raises
     ------
+    FileNotFoundError
+        If there is no such file.
     ValueError
-        For a file that does not exist, naming the file and the line that is not MatrixMarket's, or where
-        check_matrices does.
+        Naming the file and the line that is not MatrixMarket's, or where check_matrices does.
     """
     files = [existing(stiffness), existing(mass)]
     return checked_files(files, _read(files[0]), _read(files[1]), points, **check)

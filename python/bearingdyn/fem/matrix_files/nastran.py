@@ -39,8 +39,10 @@ def read_op4(
 
     Raises
     ------
+    FileNotFoundError
+        If there is no such file.
     ValueError
-        For a file that does not exist, is not output4 or lacks a named matrix, and where check_matrices does.
+        For a file that is not output4 or lacks a named matrix, and where check_matrices does.
     ImportError
         Without pyyeti.
     """

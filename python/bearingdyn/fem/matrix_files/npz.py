@@ -115,8 +115,10 @@ def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FE
 
     Raises
     ------
+    FileNotFoundError
+        If there is no such file.
     ValueError
-        For a file that does not exist or is not such an archive, or where check_matrices does.
+        For a file that is not such an archive, or where check_matrices does.
     """
     p = existing(path)
     arrays = _arrays(p)
