@@ -10,7 +10,7 @@ import numpy as np
 import bearingdyn as bd
 from bearingdyn import core
 from bearingdyn.analysis import Equilibrium, equilibrium, transient
-from rotors import motor, motor_rubber
+from rotors import LIKE_MEASURED, motor
 
 BASE = 20.0  # Hz: the sines are whole multiples, so that all of them repeat after 1/BASE
 OUTPUTS = [*example.OUTPUTS, "right_housing.top.y", "left_ring.centre.y"]
@@ -18,7 +18,7 @@ OUTPUTS = [*example.OUTPUTS, "right_housing.top.y", "left_ring.centre.y"]
 
 @cache
 def built(design: int) -> bd.Application:
-    return example.motor(example.designs(motor_rubber())[design])
+    return example.motor(example.designs(LIKE_MEASURED)[design])
 
 
 def lines(count: int) -> np.ndarray:

@@ -288,7 +288,8 @@ class Writer:
             return
         # a beginning that never reached the disk whole leaves a piece of it, or zeros
         begun = data.rstrip(b"\0")
-        if not (MAGIC.startswith(begun) or _torn_header(data)):
+        ours = MAGIC.startswith(begun) or (_version(data) > 0 and _torn_header(data))
+        if not ours:
             raise ValueError(f"{self.path} exists and is not a run file; give another file")
         self._file.truncate(0)
         self._version, self._end, self._head, self._tail = 3, 0, b"", b""

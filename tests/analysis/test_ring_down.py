@@ -10,13 +10,13 @@ import pytest
 
 from bearingdyn.analysis import Equilibrium, equilibrium, modes
 from marches import ring_down_of_a_layered_rotor
-from rotors import motor_rubber
+from rotors import LIKE_MEASURED
 from twins.linear_twin import dynamic_stiffness
 
 
 @cache
 def built(design: int) -> Equilibrium:
-    return equilibrium(example.motor(example.designs(motor_rubber())[design]))
+    return equilibrium(example.motor(example.designs(LIKE_MEASURED)[design]))
 
 
 def test_poles_of_a_ring_down_are_the_damped_modes():

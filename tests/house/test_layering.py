@@ -288,7 +288,6 @@ MAY_NAME_WORDS = {
         "bearingdyn.analysis.harmonic",
         "CHANNEL_KINDS",
     ): "the units of a response",
-    ("bearingdyn.analysis.coarseness", "PIT_KINDS"): "how fast a ball runs over the surface of each body",
     ("bearingdyn.bearing.ball_bearing", "PIT_KINDS"): "how far each body turns as the balls go round",
     ("bearingdyn.runfile", "REPORT_FIELDS"): "what files of version 1 hold, which will not change",
 }

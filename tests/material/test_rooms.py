@@ -17,7 +17,7 @@ FOUND = re.compile(r"^from bearingdyn\.material\.(\w+)(\.\w+)? import (.+?)$", r
 ORDER = (
     ("low_end",),
     ("creep", "dma", "elastic", "fit_report", "retuning", "shift_laws", "spectrum"),
-    ("maxwell",),
+    ("maxwell", "relaxation"),
     ("reading", "superposition"),
     ("identification",),
     ("complex_moduli", "export"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import matplotlib as mpl
@@ -43,7 +44,8 @@ def test_causality_shows_every_ratio_and_crosses_what_is_left_out(dma):
     np.testing.assert_array_equal(drawn, kk_ratio(dma))
     f = np.tile(np.logspace(0, 2, 9), 5)
     T = np.repeat([0.0, 10.0, 20.0, 30.0, 40.0], 9)
-    loss = 1e6 * np.where(f > 30, (f / 30) ** 2, 1.0)
+    # below 30 Hz the loss that belongs to this storage: (π/2) dG′/d ln ω
+    loss = math.pi / 2 * 0.2 * 3e6 * f**0.2 * np.where(f > 30, (f / 30) ** 2, 1.0)
     ringing = replace(dma, frequency=f, temperature=T, storage=3e6 * f**0.2, loss=loss, isotherm=None)
     ax = plot.causality(ringing)
     crosses = [line for line in ax.lines if line.get_marker() == "x"]

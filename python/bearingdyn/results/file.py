@@ -69,8 +69,10 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
         what = f"results[{name!r}]" if name else "results"
         if not hasattr(data, "to_netcdf") or not hasattr(data, "data_vars"):
             raise ValueError(f"{what} is {data!r}; it must be a Dataset, as every analysis returns it")
-        if "/" in name:
-            raise ValueError(f"results has the name {name!r}; the name of a result must be without /")
+        if name and not all(name.split("/")):
+            raise ValueError(
+                f"results has the name {name!r}; each part of a name must be a text, as in 'response/mass'"
+            )
     check_target(path)
     # in memory: HDF5 itself does not survive a disk that fills up under it
     made = io.BytesIO()
