@@ -180,7 +180,8 @@ def motor(design: Design, radial: float = 0.0) -> bd.Application:
             app.connect(f"{ring}.centre", f"{house}.bore")
         else:
             app.add(f"{side}_layer", layer)
-            app.connect(f"{ring}.centre", f"{side}_layer.inner")
+            # half as wide again as the bearing: a rigid sleeve carries what the ring leaves over
+            app.connect(f"{ring}.centre", f"{side}_layer.inner", fits=False)
             app.connect(f"{side}_layer.outer", f"{house}.bore")
         ball_bearing = bearing("6305", clearance=10e-6, damping=CONTACT_DAMPING)
         app.bearing(side, ball_bearing, inner=f"shaft.{side}", outer=f"{ring}.centre")

@@ -185,7 +185,7 @@ class TestTheTransient:
         print({c: f"{d:.1f} dB above 2 kHz" for c, d in fall.items()})
         assert fall["left_housing.top.y.velocity"] < -10.0
         # A finding against the paper: with the 1.8 MPa at rest that the data have, fewer balls carry and the
-        # shaft's end is rougher by 4 dB; with the 4.7 MPa of a rubber that does not relax it was smoother by 3.
+        # shaft's end is rougher by 4 dB; with the 4.7 MPa of a rubber that does not relax, smoother by 3.
         smoother = fall["shaft.end.y.velocity"] < -1.0
         assert smoother is not motor.MEASURED.exists()
 
