@@ -69,7 +69,8 @@ def test_first_bending_of_a_shaft_on_two_pins_is_half_a_sine():
     ax = plot.mode_shape(shapes, first)
     frequency = float(found.frequency.values[first])
     # the number asked for is the number told
-    assert ax.get_title(loc="left") == f"Mode {first} (from 0) at {frequency:.4g} Hz"
+    title = ax.get_title(loc="left")
+    assert title.startswith(f"Mode {first} (from 0) at {frequency:.4g} Hz")
     with pytest.raises(ValueError, match="mode is 999"):
         plot.mode_shape(shapes, 999)
     with pytest.raises(ValueError, match="axis is 'z'"):
