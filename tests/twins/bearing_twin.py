@@ -16,8 +16,11 @@ def contact_damping(spec: Any, delta: Any, s: Any) -> tuple[Any, Any]:
     if spec.damping_law == "constant":
         return spec.damping_c, 0.0
     if spec.damping_law == "load":
-        root = np.sqrt(s)
-        return spec.damping_c * 1.5 * spec.kappa * root, spec.damping_c * 0.75 * spec.kappa / root
+        root, give = solid_root(spec, s), spec.give
+        firm = 1.5 * spec.kappa * root / (1 + 1.5 * give * spec.kappa * root)
+        # d²F/ds² of s = u² + give κ u³, F = κ u³
+        bend = 0.75 * spec.kappa / root / (1 + 1.5 * give * spec.kappa * root) ** 3
+        return spec.damping_c * firm, spec.damping_c * bend
     table = np.asarray(spec.damping_table)
     x, c = table[:, 0], table[:, 1]
     i = int(np.searchsorted(x, np.real(delta), side="left")) - 1
@@ -29,16 +32,25 @@ def contact_damping(spec: Any, delta: Any, s: Any) -> tuple[Any, Any]:
     return c[i] + slope * (delta - x[i]), slope
 
 
+def solid_root(spec: Any, s: Any) -> Any:
+    """Root u of what film and solids are compressed by: u² + give κ u³ = s."""
+    u = np.sqrt(s)
+    for _ in range(8 if spec.give else 0):
+        u = u - (u**2 + spec.give * spec.kappa * u**3 - s) / (2 * u + 3 * spec.give * spec.kappa * u**2)
+    return u
+
+
 def contact_force(spec: Any, delta: Any, rate: Any) -> tuple[Any, Any, Any]:
-    """F = κ(δ+h0)^1.5 + c(δ) δ̇, never tensile, with dF/dδ and dF/dδ̇ (paper eq. 1, clipped)."""
+    """F = κ(δ+h0−give F_e)^1.5 + c(δ) δ̇, never tensile, with dF/dδ and dF/dδ̇ (paper eq. 1, clipped)."""
     s = delta + spec.h0
     if not np.real(s) > 0:
         return 0.0, 0.0, 0.0
     c, slope = contact_damping(spec, delta, s)
-    F = spec.kappa * s * np.sqrt(s) + c * rate
+    root = solid_root(spec, s)
+    F = spec.kappa * root**3 + c * rate
     if not np.real(F) > 0:
         return 0.0, 0.0, 0.0
-    return F, 1.5 * spec.kappa * np.sqrt(s) + slope * rate, c
+    return F, 1.5 * spec.kappa * root / (1 + 1.5 * spec.give * spec.kappa * root) + slope * rate, c
 
 
 def drop(D: float, width: float, depth: float, s: Any) -> Any:

@@ -11,6 +11,7 @@ from bearingdyn.bearing.contact_loads import LoadDistribution, load_distribution
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness
 from bearingdyn.bearing.geometry import Frequencies, Geometry
+from bearingdyn.bearing.half_space import footprint_profile, half_space_orders
 from bearingdyn.bearing.hertz import (
     PointContact,
     contact_modulus,
@@ -69,6 +70,8 @@ __all__ = [
     "dent",
     "diameter_scatter",
     "fault_lines",
+    "footprint_profile",
+    "half_space_orders",
     "hamrock_dowson",
     "load_distribution",
     "lubricate",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, minimum, runs_off
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, BearingKernel, minimum, runs_off
 from bearingdyn.checks import vector
 from bearingdyn.cms import Superelement
 from bearingdyn.material import warn_beyond
@@ -65,30 +65,30 @@ class FlexibleBearing:
             math.inf,
             "the static stiffness",
         )
-        K = element.stiffness().real
-        held = element.interfaces["outer"]
-        rows = element.raceways["raceway"].rows
-        at = np.flatnonzero(rows.any(axis=0))  # the coefficients are coordinates
-        rest = np.setdiff1d(np.arange(element.n), np.concatenate([held, at]))
-        S = K[np.ix_(at, at)]
-        if rest.size:
-            S = S - K[np.ix_(at, rest)] @ np.linalg.solve(K[np.ix_(rest, rest)], K[np.ix_(rest, at)])
+        rest = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
+        K = element.stiffness().real[np.ix_(rest, rest)]
+        rows = element.raceways["raceway"].rows[:, rest]
+        S = np.linalg.inv(rows @ np.linalg.solve(K, rows.T))
         return np.asarray(0.5 * (S + S.T))
 
     @cached_property
     def _relative(self) -> Array:
         return self.bearing.coefficients(self._element.raceways["raceway"].series)
 
+    @cached_property
+    def _kernel(self) -> BearingKernel:
+        raceway = self._element.raceways["raceway"]
+        return replace(self.bearing.kernel(raceway.series), give=raceway.give)
+
     def _press(self, relative: Array, angle: float) -> tuple[float, Array, Array, Array]:
         """Energy of the balls, force, tangent and loads at relative coefficients."""
         from bearingdyn import core  # late: only here is the compiled kernel needed
 
         b = self.bearing
-        kernel = b.kernel(self._element.raceways["raceway"].series)
+        kernel = self._kernel
         shaft = angle / b.cage_ratio if b.cage_ratio else 0.0
         g, K, _, loads = core.bearing_force(kernel, relative, 0 * relative, b.angle0 + angle, 0.0, shaft)
-        # ∫κ s^{3/2} ds = (2/5) F s with s = (F/κ)^{2/3}
-        return float(0.4 * (loads * (loads / kernel.kappa) ** (2 / 3)).sum()), g, K, loads
+        return kernel.stored(loads), g, K, loads
 
     def _settle(self, q: ArrayLike, angle: float) -> _State:
         """The raceway's shape at which the ring balances the balls, the inner ring held at q."""
@@ -156,7 +156,7 @@ class FlexibleBearing:
 
         size = (float(np.linalg.norm(f)) / self.bearing.kappa) ** (2 / 3) + self.bearing.geometry.Pd / 2
         x = minimum(stored, np.concatenate([unit @ f[:5], np.zeros(len(S))]), size or 1e-9)
-        kernel, relative = self.bearing.kernel(self._element.raceways["raceway"].series), J @ x
+        kernel, relative = self._kernel, J @ x
         astray = runs_off(kernel, relative, self._press(relative, angle)[3], self.bearing.angle0 + angle)
         if astray:
             raise ValueError(f"load is {f.tolist()}; {astray}; {OPEN_SIDE_REMEDY}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,7 +13,7 @@ from bearingdyn.checks import positive, require
 from bearingdyn.cms import modulus_levels
 from bearingdyn.fem import Rectangle
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import Elastic, warn_beyond
+from bearingdyn.material import Elastic, Maxwell, warn_beyond
 
 
 class ViscoelasticSolid(Protocol):
@@ -114,6 +114,19 @@ class Patch:
 
     def __post_init__(self) -> None:
         _check_material(self.material)
+
+
+def moduli_at(regions: Sequence[Region | Patch], omega: float) -> list[complex]:
+    """G*(ω) of the regions, Pa, also beyond the band of a fit: shapes are asked for at all frequencies."""
+    found: list[complex] = []
+    for q in regions:
+        if isinstance(q.material, Elastic):
+            found.append(complex(q.material.G))
+            continue
+        material: Any = q.material
+        bare = replace(material, fit=None, band=None) if isinstance(material, Maxwell) else material
+        found.append(complex(np.asarray(bare.complex_modulus(omega)).item()))
+    return found
 
 
 def shape_moduli(regions: Sequence[Region | Patch], moduli: Sequence[float] | None) -> list[list[float]]:

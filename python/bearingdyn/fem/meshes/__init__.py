@@ -2,7 +2,7 @@
 
 from bearingdyn.fem.meshes.built_in import block_with_bore, box_mesh, crowded, o_ring_mesh, ring_mesh
 from bearingdyn.fem.meshes.quadrilaterals import quadrilaterals
-from bearingdyn.fem.meshes.revolution_mesh import SAME, Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.fem.meshes.revolution_mesh import SAME, Rectangle, RevolutionMesh, lagrange, revolution_mesh
 from bearingdyn.fem.meshes.solid_element import by_size, face_shapes
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, SurfaceSamples
 
@@ -17,6 +17,7 @@ __all__ = [
     "by_size",
     "crowded",
     "face_shapes",
+    "lagrange",
     "o_ring_mesh",
     "quadrilaterals",
     "revolution_mesh",
