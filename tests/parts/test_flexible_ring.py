@@ -128,7 +128,7 @@ def test_a_cut_groove_takes_its_mass_out() -> None:
 def test_the_reduced_ring_in_rubber_answers_as_the_whole_one(frequency: float) -> None:
     """Receptance on the raceway, the outside held, against the whole model order by order."""
     omega = 2 * np.pi * frequency
-    ring = replace(CUSHIONED, order=4, f_max=15e3)
+    ring = replace(CUSHIONED, bearing=None, order=4)
     element, body = ring.superelement(), ring.body
     D = element.stiffness(omega) - omega**2 * element.M
     inner = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])

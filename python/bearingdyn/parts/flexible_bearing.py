@@ -45,6 +45,14 @@ class FlexibleBearing:
     ring: FlexibleRing
 
     def __post_init__(self) -> None:
+        own = self.ring.bearing
+        if own is None or own.Z != self.bearing.Z:
+            told = "None" if own is None else f"one of {own.Z} balls"
+            raise ValueError(
+                f"ring.bearing is {told}; what a ring gives beyond Hertz depends on its {self.bearing.Z} balls: "
+                f"make it with bearing="
+            )
+        assert self.ring.arm is not None
         if not math.isclose(self.bearing.arm, self.ring.arm, rel_tol=1e-9):
             raise ValueError(
                 f"ring.arm is {self.ring.arm:.9g}; it must be the bearing's, {self.bearing.arm:.9g} m"

@@ -31,7 +31,7 @@ SHOULDER = 0.2  # of the ball's diameter, the height of shoulders of deep groove
 SHOULDER_ANGULAR = 0.3
 STIFF = 100e3  # Hz, the least natural frequency of what follows at once
 NEGLIGIBLE = 1e-9  # of the largest folded compliance
-UNDER = (0.12, 0.28, 0.5)  # of the ring's height: lines of the mesh under the balls
+UNDER = (0.15, 0.45)  # of the ring's height: lines of the mesh under the balls
 
 
 @dataclass(frozen=True)
@@ -251,12 +251,13 @@ class FlexibleRing:
         if self.bearing is None or self.footprint is None:
             raise ValueError("bearing is None; what a ring gives beyond Hertz depends on its balls: give bearing=")
         assert self.order is not None
-        held = bool(self.body.interfaces)
-        normal = self.footprint.normal
+        normal, held = self.footprint.normal, self.body.interfaces
         low = [
-            self.body.groove_compliance(n, "raceway", normal) if held or n != 1 else math.nan
+            self.body.carried_compliance(n, "raceway", normal) if held or n > 1 else math.nan
             for n in range(self.order + 1)
         ]
+        if not held:
+            low[0] = self.body.groove_compliance(0, "raceway", normal)
         return ring_compliance(
             lambda n: self.body.groove_compliance(n, "raceway", normal),
             np.array(low),
@@ -323,7 +324,10 @@ class FlexibleRing:
             return revolution_mesh(rectangles, self.refinement, z_near=near)
         height = self.r_outer - self.r_inner
         r_cuts = [self.r_inner + share * height for share in UNDER]
-        return revolution_mesh(rectangles, self.refinement, r_cuts, self.footprint.lines(), near[[0, -1]])
+        lines, edges = self.footprint.lines(), near[[0, -1]]
+        if self.layer is not None:  # cuts would be graded towards, as the rubber's edges are
+            return revolution_mesh(rectangles, self.refinement, r_cuts, z_near=[*edges, *lines])
+        return revolution_mesh(rectangles, self.refinement, r_cuts, lines, edges)
 
     def _grooved(self, rectangles: list[Rectangle], track: float) -> RevolutionMesh:
         """The mesh of the rectangles, the ring's lines bent so that the innermost follows the groove."""

@@ -25,6 +25,9 @@ STILL = 4e-4  # the same at rest, at any modulus
 LOSS = 0.02  # loss factor at which a part without rubber is judged: no error is told at an undamped resonance
 MOMENTS = 2  # answers to inertia, beyond the static shapes
 PATH = 24  # frequencies at which the small models are compared
+OWN = 1e-10  # energy of a combination of shapes of unit energy, below which it is not one of its own
+CHECKS = (1.0, 0.55, 0.8, 0.3, 0.92, 0.67, 0.43, 0.17)  # of f_max: where the rich basis meets the whole model
+RICH = 0.2  # of what is wanted, the error of the rich basis there
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -89,9 +92,9 @@ class Order:
         load = np.hstack([-(D[inner][:, self.held] @ self.R), self.ports[:, inner].T])
         u = np.zeros((self.h.n, load.shape[1]), dtype=np.complex128)
         u[self.held, :r] = self.R
-        lu = scipy.sparse.linalg.splu(D[inner][:, inner].tocsc().astype(np.complex128))
-        u[inner] = lu.solve(load.astype(np.complex128))
-        T = np.vstack([u[:, :r].T @ (D @ u), self.ports @ u])
+        # with a loss, no pivot is near zero
+        u[inner] = factorise(D[inner][:, inner].astype(np.complex128)).solve(load.astype(np.complex128))
+        T = np.vstack([self.R.T @ (D @ u)[self.held], self.ports @ u])
         return u, T
 
 
@@ -103,7 +106,9 @@ def felt(D: Complex, L: Array, faces: int) -> Complex:
     u = np.zeros((len(D), load.shape[1]), dtype=np.complex128)
     u[:r, :r] = np.eye(r)
     u[r:] = np.linalg.solve(D[r:, r:], load)
-    return np.vstack([(D @ u)[:r], L @ u])
+    reaction = (D @ u)[:r]
+    reaction[:, r:] -= L[:, :r].T  # of the unit loads, what the faces' own shapes take
+    return np.vstack([reaction, L @ u])
 
 
 def misfit(got: Complex, wanted: Complex, scale: Array) -> float:
@@ -111,12 +116,11 @@ def misfit(got: Complex, wanted: Complex, scale: Array) -> float:
     return float(np.linalg.norm((got - wanted) / scale, 2) / max(np.linalg.norm(wanted / scale, 2), 1.0))
 
 
-def own_scale(T: Sequence[Complex]) -> list[Array]:
-    """Sizes by which entries are judged at each point: of its ports there, but no antiresonance counts for less than a
-    tenth of what is usual."""
-    own = np.array([np.abs(np.diag(t)) for t in T])
-    own = np.maximum(own, 0.1 * np.median(own, axis=0))
-    return [np.sqrt(np.outer(a, a)) for a in own]
+def own_scale(T: Complex, usual: Array) -> Array:
+    """Sizes by which the entries of what is felt are judged: those of their ports there, but no antiresonance counts
+    for less than a tenth of what is usual."""
+    own = np.maximum(np.abs(np.diag(T)), 0.1 * usual)
+    return np.asarray(np.sqrt(np.outer(own, own)))
 
 
 def port_shapes(
@@ -148,25 +152,39 @@ def port_shapes(
         motion[h.free] = h.rigid_shapes(np.arange(h.mesh.r.size))[h.free]
         rigid = np.linalg.solve(np.linalg.cholesky(motion.T @ (M @ motion)), motion.T).T
     faces, rich = _rich(order, levels, M, rigid, slow if rigid.size else 0.0)
-    if f_max > 0:
-        top = 2 * np.pi * f_max
-        for omega in (top, 0.6 * top):
-            u, _ = order.motion(_lossy(shear(omega), levels), omega)
+
+    def small_model() -> _Small:
+        shapes = np.hstack(rich)
+        shapes -= rigid @ (rigid.T @ (M @ shapes))
+        energy = np.sum(shapes * (K @ shapes), axis=0)
+        shapes = shapes[:, energy > 0] / np.sqrt(energy[energy > 0])
+        for _ in range(2):  # twice, for round-off
+            energy, mix = np.linalg.eigh(shapes.T @ (K @ shapes))
+            shapes = shapes @ (mix / np.sqrt(np.abs(energy)))[:, energy > OWN]
+        frequency, shapes = orthogonalise(shapes, K, M)
+        shapes = shapes / (2 * np.pi * frequency)  # of unit energy
+        return _Small(order, faces, rigid, shapes, levels, shear, f_max)
+
+    small, missed, passed = small_model(), 0.0, 0
+    for share in CHECKS if f_max > 0 else ():
+        omega = 2 * np.pi * f_max * share
+        u, T = order.motion(lossy(shear(omega)), omega)
+        missed = small.missed(T, lossy(shear(omega)), omega)
+        passed = passed + 1 if missed < RICH * WANTED else 0
+        if passed == 2:
+            break
+        if not passed:
             u[:, :r] -= faces
             rich.append(np.hstack([u.real, u.imag]))
-    shapes = np.hstack(rich)
-    shapes -= rigid @ (rigid.T @ (M @ shapes))
-    energy = np.sum(shapes * (K @ shapes), axis=0)
-    shapes = shapes[:, energy > 0] / np.sqrt(energy[energy > 0])
-    frequency, shapes = orthogonalise(shapes, K, M)
-    shapes = shapes / (2 * np.pi * frequency)  # of unit energy
-    small = _Small(order, np.hstack([faces, rigid, shapes]), r, rigid.shape[1])
-    kept, error = small.choose(levels, shear, f_max)
-    _, internal = orthogonalise(shapes @ kept, K, M)
-    return PortShapes(Psi=np.hstack([faces, rigid, internal]), faces=r, rigid=rigid.shape[1], error=error)
+            small = small_model()
+    kept, error = small.choose()
+    _, internal = orthogonalise(small.shapes @ kept, K, M)
+    return PortShapes(
+        Psi=np.hstack([faces, rigid, internal]), faces=r, rigid=rigid.shape[1], error=error + missed
+    )
 
 
-def _lossy(shear: Sequence[complex], levels: Sequence[Sequence[float]]) -> Complex:
+def lossy(shear: Sequence[complex]) -> Complex:
     """The moduli, with a loss where nothing has one."""
     G = np.asarray(shear, dtype=np.complex128)
     return G if np.abs(G.imag).max() > 0 else G * (1 + 1j * LOSS)
@@ -203,69 +221,87 @@ def _rich(
 class _Small:
     """The model in the rich basis, and the choice of the shapes that are felt."""
 
-    def __init__(self, order: Order, Psi: Array, faces: int, rigid: int) -> None:
-        h = order.h
-        self.r, self.fixed = faces, faces + rigid
+    def __init__(
+        self,
+        order: Order,
+        faces: Array,
+        rigid: Array,
+        shapes: Array,
+        levels: Sequence[Sequence[float]],
+        shear: Callable[[float], Sequence[complex]],
+        f_max: float,
+    ) -> None:
+        h, self.shapes = order.h, shapes
+        Psi = np.hstack([faces, rigid, shapes])
+        self.r, self.fixed = faces.shape[1], faces.shape[1] + rigid.shape[1]
+        self.size = shapes.shape[1]
         self.L = order.ports @ Psi
         self.several = len(self.L) > 2
-        self.rigid = self.L[:, faces : self.fixed] @ self.L[:, faces : self.fixed].T
+        self.free = bool(rigid.shape[1])
+        self.rigid = np.zeros((self.r + len(self.L),) * 2)
+        self.rigid[self.r :, self.r :] = self.L[:, self.r : self.fixed] @ self.L[:, self.r : self.fixed].T
         zero = [0.0] * len(order.bulk)
         self.M = Psi.T @ (h.mass_matrix(order.density) @ Psi)
         self.K = Psi.T @ (h.stiffness(order.bulk, zero) @ Psi)
-        unit = np.eye(len(order.bulk))
-        self.H = [Psi.T @ (h.stiffness(zero, e) @ Psi) for e in unit]
-        self.K[faces : self.fixed], self.K[:, faces : self.fixed] = 0.0, 0.0
-        for H in self.H:
-            H[faces : self.fixed], H[:, faces : self.fixed] = 0.0, 0.0
+        self.H = [Psi.T @ (h.stiffness(zero, e) @ Psi) for e in np.eye(len(order.bulk))]
+        for A in (self.K, *self.H):
+            A[self.r : self.fixed], A[:, self.r : self.fixed] = 0.0, 0.0
+        still = 60.0 if self.free else 0.0  # rad/s: a free body has no receptance at rest
+        rest = [np.asarray(level, dtype=np.complex128) for level in levels]
+        rest += [np.sqrt(a * b) for a, b in zip(rest, rest[1:], strict=False)]
+        omegas = [2 * np.pi * f_max * k / PATH for k in range(1, PATH + 1)] if f_max > 0 else []
+        self.points = [(G, still) for G in rest] + [(lossy(shear(w)), w) for w in omegas]
+        self.limits = np.array([STILL] * len(rest) + [WANTED] * len(omegas))
+        self.D = [self.dynamic(G, w) for G, w in self.points]
+        self.wanted = [felt(D, self.L, self.r) for D in self.D]
+        sizes = [np.abs(np.diag(self.elastic(t, w))) for t, (_, w) in zip(self.wanted, self.points, strict=True)]
+        self.usual = np.median(sizes, axis=0)
 
     def dynamic(self, shear: Any, omega: float) -> Complex:
+        """Dynamic stiffness of the small model."""
         D = self.K - omega**2 * self.M
         return np.asarray(D + sum(G * H for G, H in zip(shear, self.H, strict=True)), dtype=np.complex128)
 
-    def choose(
-        self, levels: Sequence[Sequence[float]], shear: Callable[[float], Sequence[complex]], f_max: float
-    ) -> tuple[Array, float]:
+    def elastic(self, T: Complex, omega: float) -> Complex:
+        """What is felt less what a free body does as a whole: that is exact, and may be cancelled by what will hold
+        it."""
+        return T + self.rigid / omega**2 if self.free else T
+
+    def missed(self, T: Complex, shear: Any, omega: float) -> float:
+        """Error of the rich basis against the whole model."""
+        got = felt(self.dynamic(shear, omega), self.L, self.r)
+        return self._misfit(got, T, omega)
+
+    def choose(self) -> tuple[Array, float]:
         """Combinations (m, k) of the internal shapes that are kept, and the largest error."""
-        free = self.fixed > self.r
-        still = 60.0 if free else 0.0  # rad/s: a free body has no receptance at rest
-        points = [(np.asarray(level, dtype=np.complex128), still, STILL) for level in levels]
-        for a, b in zip(levels, levels[1:], strict=False):
-            points.append((np.sqrt(np.multiply(a, b)).astype(np.complex128), still, STILL))
-        omegas = 2 * np.pi * f_max * np.linspace(1 / PATH, 1.0, PATH) if f_max > 0 else []
-        points += [(_lossy(shear(w), levels), float(w), WANTED) for w in omegas]
-        D = [self.dynamic(G, w) for G, w, _ in points]
-        if not self.L.shape[0] + self.r:
-            return np.zeros((len(self.K) - self.fixed, 0)), 0.0
-        wanted = [felt(d, self.L, self.r) for d in D]
-        # what a free body does as a whole is exact, and may be cancelled by what will hold it
-        elastic = [t + self.rigid / w**2 if free else t for t, (_, w, _) in zip(wanted, points, strict=True)]
-        scale = own_scale(elastic)
-        basis = np.zeros((len(self.K) - self.fixed, 0))
-        basis = _joined(basis, self._answers(D[0])[:, self.r :].real)
-        size = len(self.K) - self.fixed
+        basis = np.zeros((self.size, 0))
+        if not len(self.L) + self.r:
+            return basis, 0.0
+        basis = _joined(basis, self._answers(self.D[0])[:, self.r :].real)
         while True:
+            got = [self._felt(D, basis) for D in self.D]
             errors = np.array(
-                [
-                    self._misfit(self._felt(d, basis), t, s) / limit
-                    for d, t, s, (*_, limit) in zip(D, wanted, scale, points, strict=True)
-                ]
+                [self._misfit(g, t, w) for g, t, (_, w) in zip(got, self.wanted, self.points, strict=True)]
             )
-            worst = int(np.argmax(errors))
-            moving = errors[-len(omegas) :] * WANTED if len(omegas) else errors[:1] * STILL
-            if errors[worst] <= 1.0 or basis.shape[1] == size:
-                return basis, float(moving.max())
+            worst = int(np.argmax(errors / self.limits))
+            found = float(errors[self.limits == self.limits[-1]].max())
+            if errors[worst] <= self.limits[worst] or basis.shape[1] == self.size:
+                return basis, found
             # of what all ports move there, the part that is missed most
-            gap = (self._felt(D[worst], basis) - wanted[worst]) / scale[worst]
-            mix = np.linalg.svd(gap)[2][0].conj() / np.sqrt(np.diag(scale[worst]))
-            u = self._answers(D[worst]) @ mix
-            more = _joined(basis, np.stack([u.real, u.imag], axis=1))
+            own = own_scale(self.elastic(self.wanted[worst], self.points[worst][1]), self.usual)
+            mix = np.linalg.svd((got[worst] - self.wanted[worst]) / own)[2][0].conj() / np.sqrt(np.diag(own))
+            u = self._answers(self.D[worst]) @ mix
+            # in whichever phase most of it is new
+            fresh = np.stack([u.real, u.imag], axis=1)
+            fresh -= basis @ (basis.T @ fresh)
+            more = _joined(basis, fresh @ np.linalg.svd(fresh, full_matrices=False)[2][:1].T)
             if more.shape[1] == basis.shape[1]:
-                return basis, float(moving.max())
+                return basis, found
             basis = more
 
-    def _misfit(self, got: Complex, wanted: Complex, scale: Array) -> float:
+    def _misfit(self, got: Complex, wanted: Complex, omega: float) -> float:
         """Of what is felt; where one raceway may be held by springs, also of the stiffness between them."""
-        error = misfit(got, wanted, scale)
+        error = misfit(got, wanted, own_scale(self.elastic(wanted, omega), self.usual))
         if self.several:
             stiff = np.linalg.inv(wanted)
             own = np.sqrt(np.outer(np.abs(np.diag(stiff)), np.abs(np.diag(stiff))))

@@ -188,10 +188,10 @@ class Revolved:
             r for f in (*self.interfaces.values(), *tracks) if isinstance(f, EndFace) and f.r for r in f.r
         ]
         z_cuts = [z for f in self.interfaces.values() if isinstance(f, Cylinder) and f.z for z in f.z]
+        z_near = [z for f in tracks if isinstance(f, Cylinder) and f.z for z in f.z]
         for groove in self.grooves.values():
             if groove.footprint is not None:
-                z_cuts += groove.footprint.lines()
-        z_near = [z for f in tracks if isinstance(f, Cylinder) and f.z for z in f.z]
+                z_near += groove.footprint.lines()
         return revolution_mesh(rectangles, self.refinement, r_cuts, z_cuts, z_near)
 
     @cached_property
@@ -315,6 +315,17 @@ class Revolved:
         at = 2 * list(self.grooves).index(groove)
         row = direction @ self._boundaries.averages(h, beyond=True)[at : at + 2, inner]
         return float(row @ factorise(K).solve(row))
+
+    def carried_compliance(self, n: int, groove: str, direction: Array) -> float:
+        """The same of an order that is carried, from its shapes, which have it exactly: m/N."""
+        shear = shape_moduli(self.regions, self.moduli)[0]
+        for (order, _), shapes in zip(self._orders, self._ports, strict=True):
+            if order.h.order == n and order.h.components != TORSION:
+                Psi = shapes.Psi[:, shapes.faces :]
+                at = 2 * list(self.grooves).index(groove)
+                row = direction @ order.ports[at : at + 2] @ Psi
+                return float(row @ np.linalg.solve(Psi.T @ (order.h.stiffness(self._bulk, shear) @ Psi), row))
+        raise ValueError(f"order {n} is not carried")
 
     @cached_property
     def _orders(self) -> list[tuple[Order, int]]:
