@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import _core
 from bearingdyn.progress import Progress as Progress
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 Model = _core.Model

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import bearingdyn as bd
-from bearingdyn.analysis.coarseness import rhythms
-from bearingdyn.bearing.excitation import Pit, Waviness
+from bearingdyn.analysis.driving_periods import rhythms
+from bearingdyn.bearing.imperfections import Pit, Waviness
 from bearingdyn.notice import CoarseStep
 from rotors import oscillator
 

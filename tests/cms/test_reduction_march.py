@@ -11,7 +11,7 @@ import pytest
 from bearingdyn import Application
 from bearingdyn.analysis import equilibrium, transient
 from bearingdyn.cms import FullModel, RigidInterface, Superelement, Viscoelastic, march
-from bearingdyn.cms.history import branch_weights
+from bearingdyn.cms.part_march import branch_weights
 from bearingdyn.material import Maxwell
 from bearingdyn.parts import damping_sample
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import scipy.sparse
 
-from bearingdyn import inputs
+from bearingdyn import fingerprint
 from bearingdyn.material import Maxwell
 from bearingdyn.parts import Layer, Section, Shaft
 
@@ -31,7 +31,7 @@ class Held:
 
 
 def test_parts_become_json_that_names_every_dimension():
-    described = json.loads(inputs.text(Layer(0.026, 0.028, 0.016, RUBBER)))
+    described = json.loads(fingerprint.text(Layer(0.026, 0.028, 0.016, RUBBER)))
     assert described["class"].endswith("Layer")
     assert (described["r_inner"], described["width"]) == (0.026, 0.016)
     assert described["material"]["G"] == [2e6]
@@ -39,20 +39,20 @@ def test_parts_become_json_that_names_every_dimension():
 
 def test_equal_parts_have_one_hash_also_in_another_process():
     one, same = (Shaft([Section(0.1, 0.02)], seats={"a": 0.0}) for _ in range(2))
-    assert inputs.fingerprint(one) == inputs.fingerprint(same)
+    assert fingerprint.fingerprint(one) == fingerprint.fingerprint(same)
     code = (
         "from bearingdyn import inputs; from bearingdyn.parts import Section, Shaft\n"
-        "print(inputs.fingerprint(Shaft([Section(0.1, 0.02)], seats={'a': 0.0})))"
+        "print(fingerprint.fingerprint(Shaft([Section(0.1, 0.02)], seats={'a': 0.0})))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout.strip() == inputs.fingerprint(one)
+    assert run.stdout.strip() == fingerprint.fingerprint(one)
 
 
 def test_what_a_part_has_computed_does_not_change_its_hash():
     layer = Layer(0.026, 0.028, 0.016, RUBBER)
-    before = inputs.fingerprint(layer)
+    before = fingerprint.fingerprint(layer)
     layer.stiffness()
-    assert inputs.fingerprint(layer) == before
+    assert fingerprint.fingerprint(layer) == before
 
 
 LARGE = np.arange(1000.0)
@@ -89,32 +89,32 @@ DIFFERENT = [
 
 
 def test_different_things_have_different_hashes():
-    assert len({inputs.fingerprint(thing) for thing in DIFFERENT}) == len(DIFFERENT)
+    assert len({fingerprint.fingerprint(thing) for thing in DIFFERENT}) == len(DIFFERENT)
 
 
 def test_order_of_a_mapping_and_kind_of_a_sequence_do_not_count():
-    assert inputs.fingerprint({"a": 1, "b": (2, 3)}) == inputs.fingerprint({"b": [2, 3], "a": 1})
-    assert inputs.fingerprint({3, 1, 2}) == inputs.fingerprint({2, 3, 1})
-    assert inputs.fingerprint(np.float64(0.1)) == inputs.fingerprint(0.1)
+    assert fingerprint.fingerprint({"a": 1, "b": (2, 3)}) == fingerprint.fingerprint({"b": [2, 3], "a": 1})
+    assert fingerprint.fingerprint({3, 1, 2}) == fingerprint.fingerprint({2, 3, 1})
+    assert fingerprint.fingerprint(np.float64(0.1)) == fingerprint.fingerprint(0.1)
 
 
 def test_long_entries_are_told_by_their_digest_and_the_text_stays_an_attribute():
     long = {"long": ["part"] * 20_000, "short": 1}
-    text = inputs.text(long)
-    assert len(text) < inputs.LONGEST
+    text = fingerprint.text(long)
+    assert len(text) < fingerprint.LONGEST
     assert json.loads(text)["short"] == 1
-    assert inputs.text(long | {"long": ["Part"] * 20_000}) != text
-    assert len(inputs.text(["part"] * 20_000)) < 100
+    assert fingerprint.text(long | {"long": ["Part"] * 20_000}) != text
+    assert len(fingerprint.text(["part"] * 20_000)) < 100
 
 
 def test_what_has_no_content_is_refused():
     with pytest.raises(ValueError, match="cannot be told by its content"):
-        inputs.fingerprint({"x": object()})
+        fingerprint.fingerprint({"x": object()})
 
 
 def test_what_has_no_content_stands_by_its_class_in_a_result():
     """A part with an open file or the like can be computed with all the same."""
-    part = json.loads(inputs.text({"part": Held(object())}))["part"]
+    part = json.loads(fingerprint.text({"part": Held(object())}))["part"]
     assert part.pop("code")["class"] == f"{__name__}.Held"
     assert part == {"class": f"{__name__}.Held", "x": {"class": "builtins.object"}}
 
@@ -123,7 +123,7 @@ def test_small_entries_stay_readable_beside_many_long_ones():
     """A hundred entries of 2 kB are more than an HDF5 attribute keeps: only they go by hash."""
     content = {f"part {k}": "x" * 1990 + f"{k:010d}" for k in range(100)}
     content |= {"radius": 0.026, "layer": Layer(0.026, 0.028, 0.016, RUBBER), "bearing": "6205"}
-    written = inputs.text(content)
+    written = fingerprint.text(content)
     assert len(written) <= 64_000
     record = json.loads(written)
     assert record.keys() == content.keys()
@@ -134,9 +134,9 @@ def test_small_entries_stay_readable_beside_many_long_ones():
 
 def test_what_is_short_is_written_out_whole():
     content = {f"part {k}": "x" * 100 for k in range(100)}
-    assert json.loads(inputs.text(content)) == content
+    assert json.loads(fingerprint.text(content)) == content
 
 
 def test_what_cannot_be_kept_even_so_is_told_by_one_hash():
     """Ten thousand entries of ten bytes: nothing in it is long, and all of it is."""
-    assert json.loads(inputs.text({f"{k:08d}": k for k in range(10_000)})).keys() == {"sha256"}
+    assert json.loads(fingerprint.text({f"{k:08d}": k for k in range(10_000)})).keys() == {"sha256"}

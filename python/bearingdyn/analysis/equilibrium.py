@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import cast
 
 import numpy as np
 
-from bearingdyn.analysis.statics import BearingState, Statics, diagonal_blocks
+from bearingdyn.analysis.bearing_state import BearingState
+from bearingdyn.analysis.static_balance import Statics, diagonal_blocks
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, check_bearing_pressure, runs_off
 from bearingdyn.checks import one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import warn_beyond
 from bearingdyn.notice import UnloadedBearing, warn
-from bearingdyn.system import BearingTerm, LoadTerm, System, assemble
+from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
 from bearingdyn.types import Array
 
 PARTED = 1e-9
@@ -249,15 +249,6 @@ def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, Bear
         if astray:
             force = ", ".join(f"{f:.4g}" for f in state.force)
             raise ValueError(f"bearing {term.name!r} is loaded by ({force}) N; {astray}; {OPEN_SIDE_REMEDY}")
-
-
-def system_of(field: str, source: object) -> System:
-    """The system of an application, or the system itself; ValueError for anything else."""
-    if isinstance(source, System):
-        return source
-    remedy = "it must be an Application (bd.Application()), or its system"
-    require(isinstance(source, Application), field, source, remedy)
-    return assemble(cast(Application, source))
 
 
 def with_loads(system: System, loads: tuple[LoadTerm, ...]) -> System:

@@ -11,7 +11,7 @@ from bearingdyn.application.place import Place
 from bearingdyn.bearing import BallBearing, LooseFit, Pair, catalogue
 from bearingdyn.checks import require, vector
 from bearingdyn.magnitude import plausible
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 

@@ -10,10 +10,11 @@ from typing import ClassVar, TypedDict, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.application.place import GRAVITY, GROUND, Place
+from bearingdyn.application.channel import GROUND
+from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.checks import nonnegative, positive, real, require, vector
 from bearingdyn.magnitude import plausible
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 FORCE = "six numbers (Fx, Fy, Fz, Mx, My, Mz) in N and N m"

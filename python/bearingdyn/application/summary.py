@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from bearingdyn.application.place import GROUND, Place
+from bearingdyn.application.channel import GROUND
+from bearingdyn.application.free_motions import free_motions
+from bearingdyn.application.place import Place
 from bearingdyn.application.plan import Plan
-from bearingdyn.application.rigid import free_motions
 from bearingdyn.types import Array
 
 

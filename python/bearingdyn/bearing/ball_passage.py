@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.checks import require
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 

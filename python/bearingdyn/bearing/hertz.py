@@ -49,28 +49,6 @@ def resultant_deflection_coefficient(*kappa: float) -> float:
     return math.pow(math.fsum(math.pow(positive("kappa", k), -2 / 3) for k in kappa), -1.5)
 
 
-def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) -> float:
-    """Damping of one ball from its two contacts, each a pair (κ in N/m^1.5, c in N s/m), N s/m.
-
-    Spring and damper pairs in series, c = k²(c_i/k_i² + c_o/k_o²) with k ∝ κ^{2/3} under one force, as long
-    as the dampers carry little of it (ω ≪ k/c).
-
-    Parameters
-    ----------
-    inner
-        (κ, c) of the inner contact, N/m^1.5 and N s/m.
-    outer
-        (κ, c) of the outer contact.
-
-    Raises
-    ------
-    ValueError
-        If κ is not positive or c negative.
-    """
-    kappa = resultant_deflection_coefficient(inner[0], outer[0])
-    return math.fsum(nonnegative("c", c) * math.pow(kappa / k, 4 / 3) for k, c in (inner, outer))
-
-
 def ellipticity(F: float) -> float:
     """Ratio χ = a/b ≥ 1 of the contact ellipse's semi-axes from the curvature difference F(ρ), 0 ≤ F < 1.
 

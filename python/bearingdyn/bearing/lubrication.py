@@ -10,15 +10,10 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.contact_loads import load_distribution
-from bearingdyn.bearing.hertz import resultant_damping
-from bearingdyn.bearing.kernel import ConstantDamping
-from bearingdyn.bearing.lubricant import (
-    Lubricant,
-    hamrock_dowson,
-    nijenbanning_venner_moes,
-    wijnant_damping,
-)
+from bearingdyn.bearing.contact_damping import ConstantDamping, resultant_damping, wijnant_damping
+from bearingdyn.bearing.film_thickness import hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.load_distribution import load_distribution
+from bearingdyn.bearing.lubricant import Lubricant
 from bearingdyn.checks import positive, require, vector
 from bearingdyn.magnitude import check_speed_value, plausible
 

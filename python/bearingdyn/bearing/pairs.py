@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.contact_pressure import check_bearing_pressure
 from bearingdyn.bearing.energy_minimum import minimum
+from bearingdyn.bearing.load_and_motion_checks import check_load
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
-from bearingdyn.bearing.pressure import check_bearing_pressure, check_load
 from bearingdyn.checks import nonnegative, positive, require, vector
 from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array

@@ -12,12 +12,12 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import whole
-from bearingdyn.cms.full import FullModel
-from bearingdyn.cms.options import check_f_max, check_moduli, check_rounds
-from bearingdyn.cms.superelement import ComplexModulus
+from bearingdyn.cms.full_model import FullModel
+from bearingdyn.cms.reduction_options import check_f_max, check_moduli, check_rounds
+from bearingdyn.cms.viscoelastic import ComplexModulus
 from bearingdyn.fem import factorise, lowest_modes
 from bearingdyn.material import Maxwell
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
 DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off

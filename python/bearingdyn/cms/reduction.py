@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.cms.basis import Basis, basis_of
-from bearingdyn.cms.damping import modal_damping
-from bearingdyn.cms.full import FullModel, RigidInterface
-from bearingdyn.cms.options import check_held
-from bearingdyn.cms.superelement import Superelement, Viscoelastic
+from bearingdyn.cms.full_model import FullModel, RigidInterface
+from bearingdyn.cms.modal_damping import modal_damping
+from bearingdyn.cms.reduction_options import check_held
+from bearingdyn.cms.superelement import Superelement
+from bearingdyn.cms.viscoelastic import Viscoelastic
 from bearingdyn.fem import rigid_body_residual, rigid_transfer
 
 

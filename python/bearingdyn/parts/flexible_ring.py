@@ -15,11 +15,11 @@ from bearingdyn.cms import Superelement
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
-from bearingdyn.parts.faces import Cylinder, Face, Groove, Line, Where
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.revolved_faces import Cylinder, Face, Groove, Line, Where
 from bearingdyn.parts.round_face import RoundFace
 
 

@@ -17,7 +17,7 @@ from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.parts.solid import RigidSurface, Solid
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
 

@@ -7,7 +7,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
 AZIMUTHS = 48  # around a body of revolution

@@ -11,8 +11,8 @@ import scipy
 from bearingdyn.cms import Basis, FullModel, RigidInterface, Viscoelastic
 from bearingdyn.fem import Harmonic
 from bearingdyn.material import Elastic
-from bearingdyn.parts.faces import MeshFace
 from bearingdyn.parts.regions import Patch, Region
+from bearingdyn.parts.revolved_faces import MeshFace
 from bearingdyn.types import Array
 
 Copies = Sequence[tuple[Sequence[int], Sequence[float]]]  # coordinates and signs of each copy of a family

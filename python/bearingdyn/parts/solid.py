@@ -39,9 +39,10 @@ from bearingdyn.fem import (
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.regions import ViscoelasticSolid, quasi_static
+from bearingdyn.parts.regions import ViscoelasticSolid
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
-from bearingdyn.short import short
+from bearingdyn.parts.static_modulus import quasi_static
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.plot.frame import DASHES, RPM, colour, engineering, finish, halve, new_axes, some, style
-from bearingdyn.plot.motion import continuous_phase, finish_phase
+from bearingdyn.plot.phase_axis import continuous_phase, finish_phase
 
 if TYPE_CHECKING:
     import xarray

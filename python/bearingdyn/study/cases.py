@@ -10,8 +10,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from bearingdyn import inputs
-from bearingdyn.short import short
+from bearingdyn import fingerprint
+from bearingdyn.short_repr import short
 
 Parameters: TypeAlias = Mapping[str, Any]
 
@@ -151,7 +151,7 @@ def label(value: Any) -> float | int | bool | str:
     """A parameter as a table shows it: a number or text itself, else its class and a hash."""
     if _kind(value) != "object":
         return value  # type: ignore[no-any-return]
-    return f"{type(value).__name__} {inputs.fingerprint(value)[:8]}"
+    return f"{type(value).__name__} {fingerprint.fingerprint(value)[:8]}"
 
 
 def _kind(value: Any) -> str:
@@ -167,7 +167,7 @@ def _plain(index: int, name: str, value: Any) -> Any:
         raise ValueError(f"case {index}: parameter {name!r} is {value!r}; it must have a value")
     if _kind(value) == "object":
         try:
-            inputs.describe(value)
+            fingerprint.describe(value)
         except ValueError as error:
             raise ValueError(f"case {index}: parameter {name!r}: {error}") from None
     return value

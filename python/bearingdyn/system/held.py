@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from bearingdyn.application import COMPONENTS, Place
-from bearingdyn.system.arrays import TEST_SPRING, System, natural, static_modulus
+from bearingdyn.system.dense_matrices import natural
+from bearingdyn.system.static_modulus import static_modulus
+from bearingdyn.system.system import TEST_SPRING, System
 from bearingdyn.types import Array
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bearingdyn import inputs
+from bearingdyn import fingerprint
 from bearingdyn.application import Application
-from bearingdyn.system.arrays import System
+from bearingdyn.system.system import System
 
 
 def noted(system: System, app: Application) -> System:
@@ -17,4 +17,4 @@ def noted(system: System, app: Application) -> System:
         for name, value in vars(app.plan).items()
         if name not in ("parts", "reduced") and name[0] != "_"
     }
-    return replace(system, inputs=inputs.text(held))
+    return replace(system, inputs=fingerprint.text(held))

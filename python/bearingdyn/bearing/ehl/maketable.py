@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from bearingdyn.bearing.ehl import harmonic
-from bearingdyn.bearing.ehl.film import Figures, Steady, steady
-from bearingdyn.bearing.ehl.table import OMEGA
+from bearingdyn.bearing.ehl.steady_film import Figures, Steady, steady
+from bearingdyn.bearing.ehl.table_lookup import OMEGA
 
 M = (2.0, 3.7, 7.0, 14.0, 27.0, 52.0, 100.0, 192.0, 370.0, 709.0, 1360.0, 2607.0, 5000.0)
 L = (0.0, 2.5, 5.0, 10.0, 15.0, 20.0)

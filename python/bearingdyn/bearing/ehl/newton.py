@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.bearing.ehl.groups import LOAD
-from bearingdyn.bearing.ehl.linear import Linearised
+from bearingdyn.bearing.ehl.dimensionless_groups import LOAD
+from bearingdyn.bearing.ehl.linearised import Linearised
 from bearingdyn.bearing.ehl.reynolds import Reynolds
 from bearingdyn.types import Array
 

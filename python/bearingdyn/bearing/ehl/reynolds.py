@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 import scipy
 
-from bearingdyn.bearing.ehl.deflection import Deflection, Grid
-from bearingdyn.bearing.ehl.groups import Groups
+from bearingdyn.bearing.ehl.deflection import Deflection
+from bearingdyn.bearing.ehl.dimensionless_groups import Groups
+from bearingdyn.bearing.ehl.grid import Grid
 from bearingdyn.bearing.ehl.oil import Oil
 from bearingdyn.types import Array
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.checks import positive, whole
 from bearingdyn.fem.factors import pivots
 from bearingdyn.fem.matrix_files.units import SI, Units
-from bearingdyn.fem.rigid import rigid_body_residual, rigid_transfer
+from bearingdyn.fem.rigid_motion import rigid_body_residual, rigid_transfer
 from bearingdyn.types import Array, Index
 
 Points = ArrayLike | Mapping[int, ArrayLike]

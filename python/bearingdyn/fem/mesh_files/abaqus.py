@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.fem.abaqus_input import Block, blocks, fields, node, whole
-from bearingdyn.fem.mesh_files.abaqus_places import System, from_polar, moved, system
+from bearingdyn.fem.mesh_files.abaqus_coordinates import System, from_polar, moved, system
 from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
 from bearingdyn.fem.meshes.solid_element import HEX20, HEX27, PYRAMID13, TET10, WEDGE15, shapes
 from bearingdyn.types import Array, Index

@@ -8,7 +8,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.meshes.revolution_mesh import SAME, RevolutionMesh, shape_functions
+from bearingdyn.fem.meshes.quadrilateral_element import shape_functions
+from bearingdyn.fem.meshes.revolution_mesh import SAME, RevolutionMesh
 from bearingdyn.types import Array, Index
 
 # Place of the corners, the middles of the sides 01, 12, 23, 30 and the centre in RevolutionMesh.elements.

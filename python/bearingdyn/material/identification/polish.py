@@ -9,8 +9,8 @@ import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.material.identification.bounds import Limits
-from bearingdyn.material.identification.points import PIN_WEIGHT, Points
-from bearingdyn.material.spectrum import branch_columns, branch_slopes
+from bearingdyn.material.identification.points_in_band import PIN_WEIGHT, Points
+from bearingdyn.material.relaxation_spectrum import branch_columns, branch_slopes
 from bearingdyn.types import Array, Index
 
 

@@ -18,14 +18,14 @@ import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.material.dma import DMAData
-from bearingdyn.material.shift_laws import WLF
-from bearingdyn.material.spectrum import (
+from bearingdyn.material.relaxation_spectrum import (
     Strengths,
     branch_columns,
     branch_slopes,
     dense_times,
     solve_strengths,
 )
+from bearingdyn.material.shift_laws import WLF
 from bearingdyn.types import Array
 
 _SEARCH, _FINE = 5, 12  # times per decade while the prior is chosen, and at the end
