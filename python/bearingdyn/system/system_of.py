@@ -6,7 +6,8 @@ from typing import cast
 
 from bearingdyn.application import Application
 from bearingdyn.checks import require
-from bearingdyn.system import System, assemble
+from bearingdyn.system.assembly import assemble
+from bearingdyn.system.system import System
 
 
 def system_of(field: str, source: object) -> System:

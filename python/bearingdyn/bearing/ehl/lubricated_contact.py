@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.ehl import harmonic
+from bearingdyn.bearing.ehl import harmonic_approach
 from bearingdyn.bearing.ehl.dimensionless_groups import scales
 from bearingdyn.bearing.ehl.oil import Density, Viscosity
 from bearingdyn.bearing.ehl.steady_film import Steady, steady
@@ -111,7 +111,7 @@ class LubricatedContact:
         C0 = level.figures.C0
 
         def inside(Omega: float) -> float:
-            C = 1.5 * harmonic.stiffness(level.equations, level.state, Omega).imag / Omega
+            C = 1.5 * harmonic_approach.stiffness(level.equations, level.state, Omega).imag / Omega
             return _OFF - abs(C / C0 - 1)
 
         low, high = 0.05, 0.1

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bearingdyn.bearing.ehl import harmonic
+from bearingdyn.bearing.ehl import harmonic_approach
 from bearingdyn.bearing.ehl.steady_film import Figures, Steady, steady
 from bearingdyn.bearing.ehl.table_lookup import OMEGA
 
@@ -47,7 +47,7 @@ def point(M: float, L: float, D: float) -> list[float]:
     # the shape is that of the second grid: a ratio hardly depends on the pitch
     level = found.levels[-2]
     K0, C0 = level.figures.K0, level.figures.C0
-    answers = [harmonic.stiffness(level.equations, level.state, x) for x in OMEGA]
+    answers = [harmonic_approach.stiffness(level.equations, level.state, x) for x in OMEGA]
     K = [k.real - K0 for k in answers]
     C = [1.5 * k.imag / x / C0 for k, x in zip(answers, OMEGA, strict=True)]
     return [*found.figures, *found.error, *K, *C, time.process_time() - began]

@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.ehl import harmonic
+from bearingdyn.bearing.ehl import harmonic_approach
 from bearingdyn.bearing.ehl.dimensionless_groups import LOAD, Groups
 from bearingdyn.bearing.ehl.flooding import Flooding
 from bearingdyn.bearing.ehl.grid import Grid, prolonged
@@ -57,7 +57,7 @@ class Level:
     def figures(self) -> Figures:
         """Numbers of this grid."""
         groups, H = self.equations.groups, self.state.H
-        K0, C0 = harmonic.quasi_static(self.equations, self.state)
+        K0, C0 = harmonic_approach.quasi_static(self.equations, self.state)
         return Figures(
             Hc=groups.moes * float(H[0, self.equations.grid.origin]),
             Hmin=groups.moes * _least(H),
@@ -167,7 +167,10 @@ class Steady:
         asked = np.asarray(Omega, dtype=complex)
         require(bool(np.isfinite(asked).all()), "Omega", Omega, "frequencies ωa/um must be finite")
         used = self.levels[-2:] if self.extrapolated else self.levels[-1:]
-        found = [np.array([harmonic.stiffness(v.equations, v.state, x) for x in asked.ravel()]) for v in used]
+        found = [
+            np.array([harmonic_approach.stiffness(v.equations, v.state, x) for x in asked.ravel()])
+            for v in used
+        ]
         best = found[-1] + (found[-1] - found[0]) / 3  # nothing is added where there is one level
         return np.asarray(best.reshape(asked.shape))
 

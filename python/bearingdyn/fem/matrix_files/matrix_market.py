@@ -13,7 +13,8 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.checks import existing
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.matrix_checks import checked_files
 from bearingdyn.fem.matrix_files.text_tables import Form, both_triangles, rows_fit, table, triples
 
 BANNER = b"%%matrixmarket"

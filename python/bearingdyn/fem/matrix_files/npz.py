@@ -19,7 +19,8 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.checks import existing
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.matrix_checks import checked_files
 from bearingdyn.writing import write_whole
 
 # what zipfile and NumPy raise for damage, which depends on where it is

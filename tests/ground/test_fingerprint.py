@@ -41,7 +41,7 @@ def test_equal_parts_have_one_hash_also_in_another_process():
     one, same = (Shaft([Section(0.1, 0.02)], seats={"a": 0.0}) for _ in range(2))
     assert fingerprint.fingerprint(one) == fingerprint.fingerprint(same)
     code = (
-        "from bearingdyn import inputs; from bearingdyn.parts import Section, Shaft\n"
+        "from bearingdyn import fingerprint; from bearingdyn.parts import Section, Shaft\n"
         "print(fingerprint.fingerprint(Shaft([Section(0.1, 0.02)], seats={'a': 0.0})))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
