@@ -30,7 +30,7 @@ LONGEST = 60_000
 
 
 def describe(value: Any, *, strict: bool = True, within: tuple[Any, ...] = ()) -> Any:
-    """A value as JSON's own types, the same for equal values in any process.
+    """A value as JSON's own types, from which its fingerprint is taken: the same for equal values anywhere.
 
     Numbers, texts, dataclasses, arrays (sparse ones too), mappings, sequences, sets, functions, and objects
     by their `told_as` where they have it, else by their attributes.
@@ -89,7 +89,7 @@ def describe(value: Any, *, strict: bool = True, within: tuple[Any, ...] = ()) -
 
 
 def text(value: Any) -> str:
-    """One line of JSON that describes a value, not strict; a hash replaces each long entry of a mapping."""
+    """What a fingerprint is taken from, as one line of JSON, not strict; long entries as their hashes."""
     described = describe(value, strict=False)
     written = json.dumps(described, sort_keys=True)
     if len(written) > LONGEST and isinstance(described, dict):
@@ -102,7 +102,7 @@ def text(value: Any) -> str:
 
 
 def fingerprint(value: Any) -> str:
-    """Hash (32 hexadecimal digits) of a value's whole content."""
+    """Fingerprint (32 hexadecimal digits) of a value's whole content."""
     return _digest(describe(value))
 
 

@@ -20,7 +20,7 @@ DELAY = 1.0  # s, after which a bar that nobody asked for appears
 
 @contextmanager
 def told(progress: Progress | bool | None, unit: str) -> Iterator[Progress | None]:
-    """The function to be told of progress, or None, for as long as the work lasts.
+    """The function to be told of the progress, or None, for as long as the work lasts.
 
     Parameters
     ----------

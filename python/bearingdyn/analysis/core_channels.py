@@ -16,7 +16,7 @@ CoreChannel: TypeAlias = tuple[int, Array | None, int, int]
 
 
 def channel_of(system: System, name: str) -> tuple[CoreChannel, str]:
-    """Kind, row, bearing and index of a channel by name, as core.Model takes it, and its unit.
+    """A channel by its name as the core takes it: kind, row, bearing and index; and its unit.
 
     Raises
     ------

@@ -28,7 +28,7 @@ PIECE = 2000
 
 @dataclass(frozen=True, eq=False)
 class Sink:
-    """Something that loses energy: the power is Σ (rows v)², or the core's own channel of it."""
+    """Something that dissipates energy: the power is Σ (rows v)², or the core's own channel of it."""
 
     name: str
     rows: Array

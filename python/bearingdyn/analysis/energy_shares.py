@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Store:
-    """What one part keeps and loses in each mode, (m,): kinetic, stored, lost."""
+    """What one part keeps and loses of a mode's energy, (m,): kinetic, stored, lost."""
 
     name: str
     kinetic: Array

@@ -25,7 +25,7 @@ PARTED = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A static state, from which every other analysis starts.
+    """The static equilibrium, from which every other analysis starts.
 
     The free spin of shafts about z is left at zero.
 
@@ -130,7 +130,7 @@ def equilibrium(
     after: float | None = None,
     average: int = 1,
 ) -> Equilibrium:
-    """Find the nonlinear static state under the constant loads, with the cages at `angle`.
+    """Find the static equilibrium under the constant loads, with the cages at `angle`.
 
     The energy of the structure and of the balls is convex. Newton steps in a trust region find its one
     minimum from any start, whether clearances are open or closed.
@@ -226,13 +226,13 @@ def equilibrium(
 
 
 def state_of(source: object) -> dict[str, str]:
-    """Attribute of a result that says which state of the layers it started from."""
+    """Attribute of a result that says which state of the layers its equilibrium has."""
     layered = isinstance(source, Equilibrium) and source.system.layers
     return {"layers": source.layers} if isinstance(source, Equilibrium) and layered else {}
 
 
 def warn_at_rest(system: System, time: float) -> None:
-    """Warn of layers whose data do not speak of a time, s, after loading; inf: relaxed (BeyondData)."""
+    """Warn of an equilibrium at a time, s, that a layer's data do not cover; inf: relaxed (BeyondData)."""
     warn_beyond(
         [(layer.part, layer.material) for layer in system.layers],
         time,
@@ -252,5 +252,5 @@ def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, Bear
 
 
 def with_loads(system: System, loads: tuple[LoadTerm, ...]) -> System:
-    """The system under other loads."""
+    """The system of an equilibrium under other loads."""
     return replace(system, loads=loads)

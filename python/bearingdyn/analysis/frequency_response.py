@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def frequencies(frequency: ArrayLike) -> Array:
-    """Frequencies (f,), Hz; ValueError for none, and for one that is negative or not finite."""
+    """Frequencies (f,), Hz, of a frequency response; ValueError for none, a negative or a non-finite one."""
     found = numbers(
         "frequency", frequency, "frequency must be one or more finite values of zero or more, in Hz", 0.0
     )

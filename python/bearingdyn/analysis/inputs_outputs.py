@@ -15,7 +15,7 @@ from bearingdyn.types import Array, Complex
 
 @dataclass(frozen=True, eq=False)
 class Input:
-    """A unit force, or a unit acceleration of the ground along an axis (0, 1, 2).
+    """An input of a harmonic analysis: a unit force, or a unit acceleration of the ground along an axis.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Input:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """A motion row @ x, or a force: the sum of what parts, springs and bearings exert on something.
+    """An output of a harmonic analysis: a motion row @ x, or a force, the sum of all that act on something.
 
     Parameters
     ----------
@@ -251,7 +251,7 @@ def _balance(
 
 
 def requested(outputs: Sequence[Output], n: int) -> Array:
-    """All rows (k, n) that the outputs need, stacked."""
+    """All rows (k, n) that the outputs of a harmonic analysis need, stacked."""
     return np.vstack([np.zeros((0, n)), *(o.rows for o in outputs)])
 
 
@@ -265,7 +265,7 @@ def recovered(
     K: Array,
     C: Array,
 ) -> Complex:
-    """Response (f, o, i) from the motions x (f, k, i) of `requested` rows, per unit of each input.
+    """The outputs (f, o, i) of a harmonic analysis from the motions (f, k, i) of the `requested` rows.
 
     power: 0, 1, 2 for displacement, velocity, acceleration.
     """

@@ -97,7 +97,7 @@ def _freedom(system: System, motion: Array, idle: list[str]) -> str:
 
 
 def linear(source: Equilibrium | Application | System) -> Linear:
-    """The linear system that a harmonic analysis starts from.
+    """The linearised system that a harmonic analysis starts from.
 
     Raises
     ------

@@ -18,7 +18,7 @@ ABSURD = 1e100
 
 
 def system_hash(system: System) -> str:
-    """Fingerprint (32 hexadecimal digits) of what a state's numbers mean: matrices and all terms."""
+    """Fingerprint of the system (32 hexadecimal digits) by which a march knows that a state is its own."""
     return fingerprint.fingerprint(
         {
             "matrices": [system.M, system.C, system.G, system.K, system.N],
@@ -32,7 +32,7 @@ def system_hash(system: System) -> str:
 
 
 def check_state(field: str, state: Array) -> None:
-    """Refuse a state with a number that is not finite, or that no march in SI units reaches: ValueError."""
+    """Refuse a march's state with a number that is not finite, or too large for SI units: ValueError."""
     beyond = np.flatnonzero(~(np.abs(state) < ABSURD))
     if beyond.size:
         raise ValueError(
@@ -42,7 +42,7 @@ def check_state(field: str, state: Array) -> None:
 
 
 def moved(system: System, x: Array, initial: Mapping[str, ArrayLike]) -> Array:
-    """Coordinates nearest to x (n,) that put every place where it is wanted.
+    """The start of a march: coordinates nearest to x (n,) that put every place where it is wanted.
 
     Raises
     ------

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class MovedSurface:
-    """The surface of a part where it stands, and its motion in a mode.
+    """The surface of a part, and its motion in a mode shape.
 
     Parameters
     ----------

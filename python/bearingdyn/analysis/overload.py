@@ -17,7 +17,7 @@ from bearingdyn.types import Array
 def warn_of_overload(
     march: March, model: core.Model, state: Array, record: Sequence[str], rows: Array
 ) -> None:
-    """Warn of every bearing whose contacts went over 4.2 GPa (ISO 76).
+    """Warn of every bearing that a march overloaded: contacts over 4.2 GPa (ISO 76).
 
     Known are its balls' loads in the last state, those recorded, and, of a recorded force F along an axis,
     that one ball of Z bears F/Z or more. The pressures of the first state were checked with the equilibrium.

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 
 def check_room(samples: int, record: Sequence[str]) -> None:
-    """ValueError if the record takes more than half the memory of the machine, where that is known.
+    """ValueError if the record of a march takes more than half the memory of the machine, where it is known.
 
     Twice its size is needed at the end, when its pieces are put together.
 
@@ -28,7 +28,7 @@ def check_room(samples: int, record: Sequence[str]) -> None:
 
 
 def memory() -> int | None:
-    """Of the machine, bytes; None where the system does not say."""
+    """The memory of the machine, bytes; None where the system does not say."""
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):

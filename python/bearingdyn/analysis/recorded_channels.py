@@ -26,5 +26,5 @@ def unit_of(result: xarray.Dataset, channel: str) -> str:
 
 
 def sampling_time(result: xarray.Dataset) -> float:
-    """Time between two samples of a record, s."""
+    """Time between two samples of recorded channels, s."""
     return float(result.attrs["dt"]) * int(result.attrs["decimate"])

@@ -72,6 +72,6 @@ def _turned(times: Array, speeds: Array, t: Array) -> Array:
 
 
 def speed_profile(result: xarray.Dataset) -> tuple[Array, Array]:
-    """Times, s, and speeds of the shaft, rad/s, linear in between; one of each for a steady speed."""
+    """Speed of the shaft of a march: times, s, and speeds, rad/s, linear between; one of each if steady."""
     speeds = np.atleast_1d(np.asarray(result.attrs["speed"], dtype=np.float64))
     return np.atleast_1d(np.asarray(result.attrs.get("speed_time", [0.0]), dtype=np.float64)), speeds

@@ -60,13 +60,13 @@ def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarr
 
 
 def check_window(window: str) -> None:
-    """Refuse an unknown window: ValueError."""
+    """Refuse an unknown window of a spectrum: ValueError."""
     if window not in WINDOWS:
         raise ValueError(f"window is {window!r}; it must be one of {list(WINDOWS)}")
 
 
 def amplitudes(signal: Array, window: str) -> Array:
-    """One-sided amplitudes (..., n//2 + 1), zero-to-peak, of signals (..., n) with their means removed."""
+    """One-sided amplitude spectra (..., n//2 + 1), zero-to-peak, of signals (..., n), their means removed."""
     n = signal.shape[-1]
     weight = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(n) / n) if window == "hann" else np.ones(n)
     centred = signal - signal.mean(axis=-1, keepdims=True)

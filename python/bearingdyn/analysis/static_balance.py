@@ -27,7 +27,7 @@ UNFELT = 1e-9
 
 
 def diagonal_blocks(blocks: Sequence[Array]) -> Array:
-    """Square matrices along the diagonal of one."""
+    """Square matrices along the diagonal of one, in which a static balance is written."""
     n = sum(len(b) for b in blocks)
     out = np.zeros((n, n))
     at = 0
@@ -39,7 +39,7 @@ def diagonal_blocks(blocks: Sequence[Array]) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Statics:
-    """A structure in its modes at rest, x = T q: squares (n,) ω², held (n, n) springs on what is free."""
+    """A structure whose static balance is sought, in its modes: squares (n,) ω², held (n, n) test springs."""
 
     system: System
     T: Array
@@ -125,7 +125,7 @@ class Statics:
 
 
 def lost(system: System, x: Array) -> str:
-    """Which body moved furthest in a motion x (n,), and in which direction."""
+    """Which body moved furthest where a static balance failed, in a motion x (n,), and in which direction."""
     best = ("the structure", 0, 0.0)
     for name, rows in system.outputs.items():
         motion = rows[:3] @ x

@@ -25,7 +25,7 @@ STEP_ERROR_MADE = (
 
 
 def warn_if_coarse(system: System, speed: float, dt: float) -> None:
-    """Warn of everything that a period of at most dt/SHARE drives, at a shaft speed, rad/s."""
+    """Warn of everything whose period is short for the step size: dt is more than SHARE of it."""
     coarse = [r for r in rhythms(system, speed) if not dt <= SHARE * r.period]
     if not coarse:
         return
@@ -52,7 +52,7 @@ def _rounded_down(value: float) -> float:
 
 
 def step_error(model: core.Model, state: Array, stepping: core.Stepping) -> Array:
-    """Error of each channel that the step leaves, (channels,), relative; NaN where a channel stands still.
+    """Error of each channel that the step size leaves, (channels,), relative; NaN where one stands still.
 
     From the state at the end of a march CHECKED steps go on, once with the step and once with half of it. The
     scheme is of second order, so that 4/3 of the difference (rms) is the error of the coarser one

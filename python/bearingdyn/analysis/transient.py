@@ -191,7 +191,7 @@ def transient(
 
 
 def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -> list[xarray.Dataset]:
-    """Many marches at once over threads.
+    """Many transients at once over threads.
 
     The marches share nothing and hold no lock.
 

@@ -24,7 +24,7 @@ from bearingdyn.types import Array
 
 
 class Application:
-    """A machine: parts, joints, bearings and loads, by name.
+    """The application: a machine of parts, joints, bearings and loads, by name.
 
     An interface is named "part.interface", as "shaft.left"; a point that a part offers for output and loads
     is named in the same manner. Every interface must be joined, grounded, given a bearing, or declared free.

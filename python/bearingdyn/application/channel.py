@@ -16,7 +16,7 @@ GROUND = Place("ground", "")
 
 @dataclass(frozen=True)
 class Channel:
-    """One component of a motion or force: "shaft.left.y", "left.force.x", "ground.housing.feet.y".
+    """A channel by name, one component of a motion or force: "shaft.left.y", "left.force.x".
 
     `str` gives the name back, with θx for rx.
 

@@ -33,7 +33,7 @@ OVERRIDE = "correct the dimension, or pass fits=False if they are meant to diffe
 def check_connection(
     places: tuple[Place, Place], faces: tuple[Sequence[RoundFace], Sequence[RoundFace]]
 ) -> None:
-    """Check two parts that are joined rigidly; a part without known faces is taken to fit.
+    """Check that two rigidly joined neighbours fit; a part without known faces is taken to fit.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def check_connection(
 def check_bearing(
     name: str, bearing: BallBearing, ring: Ring, place: Place, faces: Sequence[RoundFace]
 ) -> None:
-    """Check one ring of a bearing against what it is hung on: its seat, or a body that stands for the ring.
+    """Check that one ring of a bearing fits its neighbour: a seat, or a body that stands for the ring.
 
     Raises
     ------

@@ -34,7 +34,7 @@ class CoreLoad(TypedDict):
 
 @dataclass(frozen=True, eq=False)
 class Load(ABC):
-    """What acts at a place, or on all parts together.
+    """A load: what acts at a place, or on all parts together.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ class SampledLoad(DirectedLoad):
 
 @dataclass(frozen=True, eq=False)
 class Unbalance(Load):
-    """A mass off the axis that turns with the shaft: force Ω² u (cos(Ωt + φ), sin(Ωt + φ)) in (x, y).
+    """The load of a mass off the axis that turns with the shaft: Ω² u (cos(Ωt + φ), sin(Ωt + φ)) in (x, y).
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from bearingdyn.cms import Superelement
 
 
 class Part(Protocol):
-    """Anything that becomes a superelement."""
+    """What an application takes as a part: anything that becomes a superelement."""
 
     def superelement(self) -> Superelement:
         """The part's reduced matrices."""

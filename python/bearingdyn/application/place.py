@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """An interface, point, raceway or surface of a part.
+    """A place, "shaft.left": an interface, point, raceway or surface of a part, by name.
 
     `str` gives back the name that `parse` was given. The ground is one place without a name of its own.
 

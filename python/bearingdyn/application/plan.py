@@ -18,7 +18,7 @@ from bearingdyn.types import Array
 
 
 class Plan:
-    """Parts, joints, bearings and loads by name.
+    """The plan of an application: parts, joints, bearings and loads by name.
 
     `Application` writes it and checks what it writes; `bearingdyn.system.assemble` makes matrices of it.
 

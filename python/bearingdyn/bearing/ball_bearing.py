@@ -39,7 +39,7 @@ _MOTION = "(x, y, z, θx, θy, θz) of the inner ring relative to the outer ring
 
 
 class Overrides(NamedTuple):
-    """Values given instead of those the geometry would have; None where the geometry decides."""
+    """Values given to a BallBearing instead of those its geometry has; None where the geometry decides."""
 
     kappa: float | None = None
     cage_ratio: float | None = None

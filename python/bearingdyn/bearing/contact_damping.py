@@ -9,8 +9,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.bearing.film_thickness import film_scales
 from bearingdyn.bearing.hertz import PointContact, resultant_deflection_coefficient
-from bearingdyn.bearing.lubricant import film_scales
 from bearingdyn.checks import nonnegative, number, positive, require, vector
 from bearingdyn.magnitude import plausible
 from bearingdyn.short_repr import short
@@ -18,7 +18,7 @@ from bearingdyn.types import Array
 
 
 def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) -> float:
-    """Damping of one ball from its two contacts, each a pair (κ in N/m^1.5, c in N s/m), N s/m.
+    """Damping of one ball from its two contacts in series, each a pair (κ in N/m^1.5, c in N s/m), N s/m.
 
     Spring and damper pairs in series, c = k²(c_i/k_i² + c_o/k_o²) with k ∝ κ^{2/3} under one force, as long
     as the dampers carry little of it (ω ≪ k/c).
@@ -45,7 +45,7 @@ KernelFields: TypeAlias = tuple[Law, float, Array]
 
 @dataclass(frozen=True)
 class ConstantDamping:
-    """c(δ) = c, N s/m: the paper's harmonic case (30 N s/m). The force jumps where contact is lost.
+    """Constant damping of a contact, c(δ) = c, N s/m. The force jumps where contact is lost.
 
     At the edge of the film, δ + h0 = 0, the law is taken in its set-valued sense: F is any force in
     [0, c dδ/dt] there, and a step of a march that ends in the jump finds the one that balances. A table with
@@ -70,7 +70,7 @@ class ConstantDamping:
 
 @dataclass(frozen=True, eq=False)
 class TabulatedDamping:
-    """c(δ) linear between table points, end values held outside.
+    """Damping of a contact by a table, c(δ) linear between its points, end values held outside.
 
     At an inner table point the slope is that of the interval below it.
 
@@ -113,7 +113,7 @@ class TabulatedDamping:
 
 @dataclass(frozen=True)
 class LoadDamping:
-    """c(δ) = time × linearised stiffness, time·(3/2)κ√(δ + h0): vanishes where contact is lost.
+    """Damping of a contact in step with its stiffness, c(δ) = time·(3/2)κ√(δ + h0); none where it is open.
 
     Values of (0.25–2.5)e-5 s are quoted for lubricated contacts; unverified here.
 
@@ -138,7 +138,7 @@ Damping: TypeAlias = ConstantDamping | TabulatedDamping | LoadDamping
 
 
 def as_damping(damping: object) -> Damping:
-    """The damping law itself, or a plain number of N s/m as ConstantDamping; ValueError otherwise."""
+    """A law of contact damping, or a plain number of N s/m as ConstantDamping; ValueError otherwise."""
     if isinstance(damping, ConstantDamping | TabulatedDamping | LoadDamping):
         return damping
     remedy = (

@@ -16,7 +16,7 @@ STATIC_PRESSURE = MAGNITUDES["pressure"].usual[1]
 
 
 class Contacts(Protocol):
-    """What a pressure is reckoned from."""
+    """What a bearing must tell for its contact pressures to be checked."""
 
     @property
     def inner_contact(self) -> PointContact:
@@ -32,7 +32,7 @@ class Contacts(Protocol):
 
 
 def check_pressure(race: str, p: Array, who: str = "", rating: float | None = None) -> None:
-    """Check the largest pressures (Z,), Pa, of the balls on one race.
+    """Check the largest contact pressures (Z,), Pa, of the balls on one race.
 
     Warns
     -----
@@ -61,7 +61,7 @@ def check_pressure(race: str, p: Array, who: str = "", rating: float | None = No
 
 
 def check_bearing_pressure(bearing: Contacts, loads: Array, who: str = "") -> None:
-    """Check a bearing by the heavier contact of its balls, as `check_pressure`.
+    """Check the contact pressures of a bearing by the heavier contact of its balls.
 
     Parameters
     ----------

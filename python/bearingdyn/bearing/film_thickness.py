@@ -6,7 +6,6 @@ import math
 from typing import NamedTuple
 
 from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.bearing.lubricant import film_scales
 from bearingdyn.checks import positive, require
 
 
@@ -109,3 +108,14 @@ def dimensionless_film(M: float, L: float, D: float) -> float:
     iso = (rigid_iso**1.5 + (elastic_iso**-4 + flooded**-4) ** -0.375) ** (2 * s / 3)
     piezo = (rigid_piezo**-8 + elastic_piezo**-8) ** (-s / 8)
     return float((iso + piezo) ** (1 / s))
+
+
+def film_scales(contact: PointContact) -> tuple[float, float]:
+    """E′ with 2/E′ = Σ(1 − ν²)/E, Pa, and Rx, m, the scales of the film formulas."""
+    require(
+        contact.Rx <= contact.Ry,
+        "contact.Rx",
+        contact.Rx,
+        f"it must not exceed Ry, {contact.Ry!r} m: the formulas hold for rolling across the minor axis",
+    )
+    return 2 * contact.modulus, contact.Rx

@@ -22,7 +22,7 @@ PRELOADED = (
 
 @dataclass(frozen=True)
 class Geometry:
-    """Balls and grooves of a single-row ball bearing.
+    """Internal geometry: balls and grooves of a single-row ball bearing.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ def contact_modulus(first: Elastic, second: Elastic) -> float:
 
 
 def resultant_deflection_coefficient(*kappa: float) -> float:
-    """Contacts in series, κ_res = (Σ κ^{−2/3})^{−3/2}, N/m^1.5 (paper eq. 2).
+    """Hertz contacts in series, κ_res = (Σ κ^{−2/3})^{−3/2}, N/m^1.5 (paper eq. 2).
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def _ellipticity(complement: float) -> float:
 
 @dataclass(frozen=True)
 class PointContact:
-    """Two elastic bodies touching in a point.
+    """Hertz' point contact of two elastic bodies.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ class PointContact:
 def race_contact(
     geometry: Geometry, race: Literal["inner", "outer"], ring: Elastic, ball: Elastic
 ) -> PointContact:
-    """Contact of a ball with one race: Rx = (D/2)(1 ∓ γ) (inner −, outer +), Ry = f D/(2f − 1).
+    """Hertz' contact of a ball with a race: Rx = (D/2)(1 ∓ γ) (inner −, outer +), Ry = f D/(2f − 1).
 
     Parameters
     ----------

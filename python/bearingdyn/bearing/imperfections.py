@@ -25,7 +25,7 @@ BODIES = tuple(core.PIT_KINDS)
 
 @dataclass(frozen=True)
 class Waviness:
-    """One wave, amplitude·cos(order·angle + phase), around a race or a ball.
+    """An imperfection of a race or ball: one wave, amplitude·cos(order·angle + phase), around it.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Waviness:
 
 @dataclass(frozen=True)
 class Pit:
-    """A localised defect: a ball drops into it by min(depth, D/2 − √(D²/4 − (width/2 − |s|)²)).
+    """An imperfection at one place: a ball drops into it by min(depth, D/2 − √(D²/4 − (width/2 − |s|)²)).
 
     s is the arc from its centre. The drop is continuous, and a ball cannot reach the bottom of a narrow pit.
 
@@ -169,7 +169,7 @@ class Imperfections:
 def checked(
     Z: int, waviness: Sequence[Waviness], defects: Sequence[Pit], oversize: Sequence[float]
 ) -> tuple[tuple[Waviness, ...], tuple[Pit, ...], tuple[float, ...]]:
-    """The same as tuples; ValueError for something of the wrong kind or a ball that is not there."""
+    """Imperfections as tuples; ValueError for one of the wrong kind, or on a ball that is not there."""
     for wave in items("waviness", waviness, "give a list of Waviness objects"):
         require(isinstance(wave, Waviness), "waviness", wave, "give Waviness objects")
         wave.rows(Z)

@@ -20,7 +20,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class LoadDistribution:
-    """Balls of a loaded bearing in the order of their azimuth; all arrays (Z,)."""
+    """How a bearing's load is distributed over its balls, in the order of their azimuth; all arrays (Z,)."""
 
     azimuth: Array
     """rad, from x towards y."""
@@ -54,7 +54,7 @@ class LoadDistribution:
 def load_distribution(
     bearing: BallBearing | Running, q: ArrayLike, angle: float = 0.0, *, shoulder: float | None = None
 ) -> LoadDistribution:
-    """Loads, contact angles and pressures of the balls with the inner ring at q (6,), m and rad.
+    """Load, contact angle and pressure of each ball with the inner ring at q (6,), m and rad.
 
     Parameters
     ----------

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent
 from bearingdyn.checks import number, positive, require
 from bearingdyn.magnitude import plausible
@@ -21,7 +20,7 @@ _VG_AT_100 = {10: 2.6, 15: 3.4, 22: 4.3, 32: 5.4, 46: 6.7, 68: 8.6, 100: 11.1, 1
 
 @dataclass(frozen=True)
 class Walther:
-    """Kinematic viscosity over temperature, lg lg(ν + 0.7) = A − B lg T, ν in mm²/s, T in K (ASTM D341).
+    """Kinematic viscosity of a lubricant, lg lg(ν + 0.7) = A − B lg T, ν in mm²/s, T in K (ASTM D341).
 
     Parameters
     ----------
@@ -112,7 +111,7 @@ class Walther:
 
 @dataclass(frozen=True)
 class Lubricant:
-    """An oil, or the base oil of a grease.
+    """A lubricant: an oil, or the base oil of a grease.
 
     Parameters
     ----------
@@ -147,17 +146,6 @@ class Lubricant:
         if law == "barus":
             return barus(eta0, self.alpha, p)
         return roelands(eta0, roelands_exponent(eta0, self.alpha), p)
-
-
-def film_scales(contact: PointContact) -> tuple[float, float]:
-    """E′ with 2/E′ = Σ(1 − ν²)/E, Pa, and Rx, m."""
-    require(
-        contact.Rx <= contact.Ry,
-        "contact.Rx",
-        contact.Rx,
-        f"it must not exceed Ry, {contact.Ry!r} m: the formulas hold for rolling across the minor axis",
-    )
-    return 2 * contact.modulus, contact.Rx
 
 
 def _kelvin(field: str, T: float) -> float:

@@ -22,7 +22,7 @@ FilmLaw = Literal["nijenbanning-venner-moes", "hamrock-dowson"]
 
 @dataclass(frozen=True)
 class Lubrication:
-    """Films of a bearing at one operating point; lengths in m."""
+    """The lubrication of a bearing at one operating point: its films, λ ratios and damping; lengths in m."""
 
     Q: float
     """Contact load at which the films are taken: the mean of the loaded balls, N."""
@@ -64,7 +64,7 @@ def lubricate(
     starvation: float = 1.0,
     roughness: tuple[float, float] | None = None,
 ) -> Lubrication:
-    """Films of both contacts, their λ ratios, and the damping, at an operating point.
+    """The lubrication of a bearing at an operating point: films of both contacts, λ ratios, damping.
 
     Taken at the mean load of the loaded balls of the dry bearing (h ∝ Q^−.07), in pure rolling at the contact
     angle of the most loaded ball; thermal thinning at the inlet is left out.

@@ -25,7 +25,7 @@ _MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
 
 @dataclass(frozen=True)
 class Pair:
-    """Two equal rows on one shaft and in one housing, all four rings rigid.
+    """A pair of equal bearings on one shaft and in one housing, all four rings rigid.
 
     Motions q (6,) and loads (6,) are of both inner rings together relative to both outer rings, reference on
     the axis midway between the rows; q = 0 is the preloaded pair without load.

@@ -11,7 +11,7 @@ _ROELANDS_LOG_VISCOSITY = 9.67  # −ln(6.31e-5 Pa s)
 
 
 def barus(eta0: float, alpha: float, p: float) -> float:
-    """Dynamic viscosity η0 e^{αp}, Pa s; far too high above some 0.1 GPa.
+    """Viscosity under pressure by Barus, η0 e^{αp}, Pa s; far too high above some 0.1 GPa.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def barus(eta0: float, alpha: float, p: float) -> float:
 
 
 def roelands(eta0: float, z: float, p: float) -> float:
-    """Dynamic viscosity η0 exp{(ln η0 + 9.67)[(1 + p/1.96e8)^z − 1]}, Pa s (C. J. A. Roelands 1966).
+    """Viscosity under pressure, η0 exp{(ln η0 + 9.67)[(1 + p/1.96e8)^z − 1]}, Pa s (C. J. A. Roelands 1966).
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from bearingdyn.checks import positive, require
 
 
 def spall(body: Body, angle: float, length: float, depth: float, *, ball: int = 1) -> Pit:
-    """A flaked patch with a flat bottom, `length` along the rolling direction and `depth` deep.
+    """Damage by flaking: a spall with a flat bottom, `length` along the rolling direction, `depth` deep.
 
     A ball drops to the bottom if the spall is long enough, 2√(Dw depth) or more.
 
@@ -30,7 +30,7 @@ def spall(body: Body, angle: float, length: float, depth: float, *, ball: int = 
 
 
 def dent(body: Body, angle: float, width: float, particle: float, *, ball: int = 1) -> Pit:
-    """The dent of a hard round particle of the diameter `particle`, `width` across.
+    """Damage by a hard round particle of the diameter `particle`: a dent, `width` across.
 
     As deep as the cap of that sphere, (particle − √(particle² − width²))/2. The rim around it is left out.
 

@@ -20,7 +20,7 @@ RESIDUAL = 1e-10  # of a solve, over its right-hand side, after one refinement
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """Interfaces moved by q, points loaded by f, at one frequency: p = D q - Aᵀ f and y = A q + Y f.
+    """Dynamic stiffness at one frequency: p = D q − Aᵀ f, y = A q + Y f; q moves interfaces, f loads points.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Transfer:
 
 
 class Dynamics:
-    """The frequency domain of a model: Z(ω) = K + Σ 2 G*(ω) H + iω C - ω² M, its matrices on one pattern.
+    """Dynamic stiffness of a full model, Z(ω) = K + Σ 2 G*(ω) H + iω C − ω² M, matrices on one pattern.
 
     The order of elimination is found once.
 

@@ -17,7 +17,7 @@ from bearingdyn.types import Array, Index
 
 @dataclass(frozen=True, eq=False)
 class RigidInterface:
-    """A set of finite element coordinates that moves as one rigid body with six coordinates q: u[dofs] = T q.
+    """A rigid interface of a full model: coordinates moved by six of one rigid body, u[dofs] = T q.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class RigidInterface:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FullModel:
-    """A part's unreduced equations: M ẍ + (C + Ω G) ẋ + K x + Σ 2 G*(ω) H x = f (paper (14)).
+    """A part's full, unreduced equations: M ẍ + (C + Ω G) ẋ + K x + Σ 2 G*(ω) H x = f (paper (14)).
 
     Parameters
     ----------

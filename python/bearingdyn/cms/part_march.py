@@ -22,7 +22,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class March:
-    """What `march` recorded: time (steps + 1,), s, and motion, name -> (steps + 1, 6 or 3), m and rad."""
+    """The march of a part by itself: time (steps + 1,), s, motion, name -> (steps + 1, 6 or 3), m and rad."""
 
     time: Array
     motion: Mapping[str, Array]
@@ -31,7 +31,7 @@ class March:
 
 
 def branch_weights(dt: float, modulus: float, tau: float) -> tuple[float, float, float]:
-    """Weights (decay, old, now) of a branch: S ← decay S + old ė + now ė⁺, for a rate linear over dt.
+    """Weights of a branch in a part's march: S ← decay S + old ė + now ė⁺, the rate linear over dt.
 
     They are the core's own, read off its answers to three rates. dt and tau in s, modulus in Pa.
 
@@ -55,7 +55,7 @@ def march(
     beta: float = 0.25,
     gamma: float = 0.5,
 ) -> March:
-    """Newmark's scheme from rest, with the core's history update of every branch (paper (14), (9)).
+    """March a part by itself from rest: Newmark's scheme, the core's history of branches (paper (14), (9)).
 
     One sparse factorisation in all; each step costs a solve and a product with each matrix.
 

@@ -17,7 +17,7 @@ F_MAX = 20e3  # Hz, the end of what is heard
 
 
 def check_f_max(f_max: float, *, may_be_zero: bool = True, may_be_infinite: bool = False) -> None:
-    """Raise ValueError unless f_max is a frequency, Hz, of zero (no modes) or more; infinite means all modes.
+    """Check the option f_max: a frequency, Hz, of zero (no modes) or more; infinite means all modes.
 
     A part whose mesh follows from f_max lets it be neither.
     """
@@ -39,26 +39,26 @@ def _ordered(field: str, value: Any, remedy: str) -> float:
 
 
 def check_damping(damping: float, field: str = "damping") -> None:
-    """Raise ValueError unless 0 <= damping < 1."""
+    """Check the option damping of a reduction: 0 <= damping < 1, else ValueError."""
     number(field, damping, f"it must be a damping ratio, 0 <= {field} < 1")
     require(0 <= damping < 1, field, damping, f"it must be a damping ratio, 0 <= {field} < 1")
 
 
 def check_held(held: str | None, interfaces: Iterable[str]) -> None:
-    """Raise ValueError unless held is None or names an interface."""
+    """Check the option held of a reduction: None, or the name of an interface, else ValueError."""
     known = sorted(interfaces)
     require(held is None or held in known, "held", held, f"the interfaces are {known}")
 
 
 def check_rounds(inertia: Any) -> None:
-    """Raise ValueError unless the number of rounds of inertia shapes is 0, 1, 2, ..."""
+    """Check the option rounds of a reduction: 0, 1, 2, … rounds of inertia shapes, else ValueError."""
     number("inertia", inertia, "it must be a number of rounds: 0, 1, 2, ...")
     good = inertia >= 0 and inertia % 1 == 0
     require(good, "inertia", inertia, "it must be a number of rounds: 0, 1, 2, ...")
 
 
 def check_moduli(moduli: Sequence[float]) -> tuple[float, ...]:
-    """The moduli as floats. Raises ValueError unless they are one or more positive shear moduli, Pa."""
+    """Check the option moduli of a reduction: one or more positive shear moduli, Pa, else ValueError."""
     remedy = "it must hold one or more positive shear moduli, Pa"
     values = tuple(numbers("moduli", moduli, remedy).tolist())
     good = bool(values) and all(0 < G < math.inf for G in values)

@@ -16,7 +16,7 @@ from bearingdyn.types import Array, Complex, Index
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Superelement:
-    """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
+    """A superelement, the reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
     Parameters
     ----------

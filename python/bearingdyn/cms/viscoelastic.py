@@ -13,7 +13,7 @@ from bearingdyn.short_repr import short
 
 
 class ComplexModulus(Protocol):
-    """A material whose shear modulus depends on the frequency."""
+    """A viscoelastic material: its shear modulus depends on the frequency."""
 
     def complex_modulus(self, omega: Any) -> Any:
         """G*(ω) in Pa for ω in rad/s."""

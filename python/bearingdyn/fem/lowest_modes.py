@@ -17,7 +17,7 @@ DENSE_LIMIT = 400  # below this size LAPACK's dense eigensolver is quicker than 
 def lowest_modes(
     K: Any, M: Any, f_max: float = math.inf, n_modes: int | None = None, lu: Any = None
 ) -> tuple[Array, Array]:
-    """Rising frequencies (m,), Hz, and shapes (n, m) of unit modal mass of K φ = ω² M φ.
+    """Lowest modes of K φ = ω² M φ: rising frequencies (m,), Hz, and shapes (n, m) of unit modal mass.
 
     Every run gives the same shapes: the start vector is fixed, and the largest entry of a shape is positive.
 

@@ -30,7 +30,7 @@ ALL_COMPONENTS = (0, 1, 2)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Harmonic:
-    """Matrices of one Fourier order (and, in order 0, one of its two uncoupled families).
+    """Matrices of a body of revolution, of one Fourier harmonic (in order 0, of one of two families).
 
     Coordinate c of node k is number len(components)·k + c. The matrices of all regions share one sparsity
     pattern.
@@ -234,7 +234,7 @@ def _kept_on_axis(mesh: RevolutionMesh, order: int, components: tuple[int, ...])
 def assemble_harmonic(
     mesh: RevolutionMesh, order: int, components: tuple[int, ...] = ALL_COMPONENTS
 ) -> Harmonic:
-    """Matrices of Fourier order n = order >= 0 for the components (0: U, 1: V, 2: W).
+    """Matrices of a body of revolution for the Fourier harmonic n >= 0, components (0: U, 1: V, 2: W).
 
     Raises
     ------

@@ -25,7 +25,7 @@ CHUNK = 1024  # elements whose matrices are in memory at a time, 54 MB a matrix 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SolidMatrices:
-    """Unit matrices of a solid; coordinate 3 i + a is the displacement of node i along axis a.
+    """Matrices of a solid of unit moduli; coordinate 3 i + a is the displacement of node i along axis a.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class SolidMatrices:
 def assemble_solid(
     mesh: SolidMesh, elements: ArrayLike | None = None, *, incompressible: bool = False
 ) -> SolidMatrices:
-    """Matrices of a mesh, or of some of its elements, isoparametric.
+    """Matrices of a solid mesh, or of some of its elements, isoparametric.
 
     Integration: 3×3×3 points in bricks, exact for straight-sided ones; order 4 in tetrahedra; in wedges and
     pyramids as `solid_element.points` says.

@@ -11,7 +11,7 @@ from bearingdyn.notice import BeyondData, warn
 
 
 def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, first: str = "") -> None:
-    """Warn of materials whose modulus `after` a time, s (inf: relaxed), is not in their data.
+    """Warn of materials whose data do not reach a time `after`, s (inf: relaxed), at which they are asked.
 
     One warning for each call: it names all layers, and the numbers of the first. `first` is the first remedy.
     """

@@ -22,12 +22,12 @@ _UNIT = "is the unit right (Pa, kPa, MPa, GPa)? Give units={'storage': ..., 'los
 
 
 class UnitError(ValueError):
-    """Moduli no solid has: their unit is wrong."""
+    """A DMA measurement has moduli that no solid has: their unit is wrong."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DMAData:
-    """Storage and loss modulus at frequencies and temperatures, one value of each per point.
+    """A dynamic mechanical analysis (DMA): storage and loss modulus, one value of each per point.
 
     Parameters
     ----------
@@ -263,7 +263,7 @@ class DMAData:
 
 
 def check_range(dma: DMAData) -> None:
-    """Warn of moduli that gels, elastomers and polymers do not have: the unit is likely wrong."""
+    """Warn of a DMA's moduli that gels, elastomers and polymers do not have: the unit is likely wrong."""
     middle = float(np.median(np.abs(dma.storage)))
     if middle > _HARD or 0 < middle < _SOFT:
         warn(

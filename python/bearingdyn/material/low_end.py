@@ -14,7 +14,7 @@ SLACK = 2.0  # times the reach: a third of a decade, as a band may go beyond the
 
 @dataclass(frozen=True)
 class LowEnd:
-    """What the points of a fit say of the modulus at long times, and how long these are.
+    """The low end of a fit: what its points say of the modulus at long times, and how long these are.
 
     A point at ω speaks of the relaxation modulus at t = 1/ω. Beyond the longest time the modulus cannot rise,
     and of the relaxed modulus the data alone give no lower bound unless they show a plateau: a branch that

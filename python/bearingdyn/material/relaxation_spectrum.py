@@ -18,7 +18,7 @@ from bearingdyn.types import Array
 
 
 def branch_columns(omega: Array, tau: Array) -> tuple[Array, Array]:
-    """Storage and loss modulus at ω, rad/s, (p,), of branches of unit strength, τ, s, (n,): (p, n) each
+    """Columns of a spectrum: storage and loss modulus at ω (p,) of branches of unit strength, τ (n,): (p, n).
     (18, 19)."""
     x = omega[:, None] * tau
     loss = x / (1 + x * x)
@@ -33,7 +33,7 @@ def branch_slopes(omega: Array, tau: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class Strengths:
-    """Non-negative least-squares solution of A x ≈ b.
+    """Strengths of a relaxation spectrum: the non-negative least-squares solution of A x ≈ b.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Strengths:
 
 
 def solve_strengths(A: Array, b: Array, lower: Array | None = None, upper: Array | None = None) -> Strengths:
-    """Solve min ‖A x − b‖, lower ≤ x ≤ upper (0 and ∞ unless given); columns are scaled to unit length first.
+    """Strengths of a spectrum: min ‖A x − b‖, lower ≤ x ≤ upper (0 and ∞ unless given), columns scaled.
 
     A (m, n), b (m,), bounds (n,), lower ≥ 0; where they are equal the strength is fixed.
     """

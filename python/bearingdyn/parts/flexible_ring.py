@@ -25,7 +25,7 @@ from bearingdyn.parts.round_face import RoundFace
 
 @dataclass(frozen=True)
 class FlexibleRing:
-    """An elastic outer ring, not turning, whose "raceway" carries the balls of one bearing.
+    """A flexible outer ring, not turning, whose "raceway" carries the balls of one bearing.
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
     Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with

@@ -27,7 +27,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class Imported:
-    """An elastic body of another program's matrices, reduced like any other part.
+    """An imported body: another program's matrices, reduced like any other part.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ from bearingdyn.types import Array, Complex
 
 @dataclass(frozen=True)
 class Layer:
-    """A rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
+    """A layer: a rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
 
     Parameters
     ----------

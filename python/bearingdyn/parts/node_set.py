@@ -15,7 +15,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class NodeSet:
-    """Nodes that move as one rigid body.
+    """A set of nodes of an imported body that move as one rigid body.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class NodeSet:
 def at_radius(
     radius: float, axial: tuple[float, float] = (-math.inf, math.inf), tolerance: float = 1e-6
 ) -> Callable[[Array], NDArray[np.bool_]]:
-    """Choice of the nodes on a cylinder about z, for NodeSet.
+    """A choice of nodes for a NodeSet: those on a cylinder about z.
 
     Parameters
     ----------

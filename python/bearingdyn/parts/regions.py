@@ -12,7 +12,7 @@ from bearingdyn.material import Elastic
 
 
 class ViscoelasticSolid(Protocol):
-    """A material elastic in volume and viscoelastic in shear, such as Maxwell."""
+    """What a viscoelastic region is made of: elastic in volume and viscoelastic in shear, such as Maxwell."""
 
     @property
     def K(self) -> float:
@@ -33,7 +33,7 @@ def _check_material(material: object) -> None:
 
 @dataclass(frozen=True)
 class Region:
-    """A ring of rectangular section and one material.
+    """A region of a body of revolution: a ring of rectangular section and one material.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Region:
 
 @dataclass(frozen=True)
 class Patch:
-    """The elements of a given mesh whose `region` is this patch's place in the list of regions."""
+    """A region by the elements of a mesh whose `region` is this patch's place in the list of regions."""
 
     material: Elastic | ViscoelasticSolid
 

@@ -27,7 +27,7 @@ RIGID_SHAPES: dict[tuple[int, Components], tuple[tuple[tuple[int, ...], tuple[fl
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Track:
-    """A groove on a mesh: nodes (k,), weights (2, k, 2) of U and W, its series, arm and plane z, m."""
+    """A grooved boundary on a mesh: nodes (k,), weights (2, k, 2) of U and W, series, arm and plane z, m."""
 
     nodes: Index
     weights: Array
@@ -39,8 +39,11 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class Boundaries:
-    """Rigid faces and grooves by name. Their coordinates come in this order: six for each face, then the
-    raceway coefficients of each groove, in the order of its series."""
+    """Boundaries of a revolved body, rigid faces and grooves, by name.
+
+    Their coordinates come in this order: six for each face, then the raceway coefficients of each groove, in
+    the order of its series.
+    """
 
     faces: Mapping[str, MeshFace]
     tracks: Mapping[str, Track]
@@ -128,7 +131,7 @@ class Boundaries:
 def find_boundaries(
     mesh: RevolutionMesh, interfaces: Mapping[str, Face], grooves: Mapping[str, Groove]
 ) -> Boundaries:
-    """Faces and grooves on a mesh. Raises ValueError, naming it, where the body has no such face."""
+    """Boundaries on a revolved mesh: faces and grooves. Raises ValueError, by name, for a missing face."""
     faces = {name: find_face(mesh, f"interfaces[{name!r}]", s) for name, s in interfaces.items()}
     tracks = {}
     for name, groove in grooves.items():

@@ -18,7 +18,7 @@ HIGHEST = 64  # Fourier order of a raceway: far more than any number of balls as
 
 @dataclass(frozen=True)
 class Cylinder:
-    """Cylindrical face of radius r, m, over z = (from, to); None: all of the body at that radius.
+    """Cylindrical face of a revolved body, of radius r, m, over z = (from, to); None: all at that radius.
 
     A body without such a face raises ValueError and names the interface.
     """
@@ -29,7 +29,7 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class EndFace:
-    """Flat face at z, m, over r = (from, to); None: all of the body at that z.
+    """Flat face of a revolved body at z, m, over r = (from, to); None: all of the body at that z.
 
     A body without such a face raises ValueError and names the interface.
     """
@@ -40,7 +40,7 @@ class EndFace:
 
 @dataclass(frozen=True)
 class Line:
-    """Conical face: the straight line of the section between two points (r, z), m.
+    """Conical face of a revolved body: the straight line of its section between two points (r, z), m.
 
     Raises
     ------
@@ -58,14 +58,14 @@ class Line:
 
 @dataclass(frozen=True)
 class Where:
-    """Face of the nodes on the section's outline where inside(r, z) is true; r, z (n,) arrays, m."""
+    """Face of a revolved body where inside(r, z) is true on its outline; r, z (n,) arrays, m."""
 
     inside: Callable[[Array, Array], Any]
 
 
 @dataclass(frozen=True)
 class MeshNodes:
-    """Face of the nodes with these numbers, counted from 0 among the points of the given mesh."""
+    """Face of a revolved body by numbers of nodes, counted from 0 among the points of the given mesh."""
 
     nodes: tuple[int, ...]
 
@@ -78,7 +78,7 @@ Face: TypeAlias = Cylinder | EndFace | Line | Where | MeshNodes
 
 @dataclass(frozen=True)
 class Groove:
-    """A raceway: the displacement of its groove centre, radial and axial, by Fourier orders in the azimuth.
+    """Grooved face of a revolved body, a raceway: the motion of its groove centre by Fourier orders.
 
     At each azimuth a rigid motion is fitted to that of the face's section by least squares, and evaluated at
     radius `arm` and place `z`, as that of a rigid ring would be. A load of balls acts as the transpose:
@@ -114,7 +114,7 @@ class Groove:
 
 @dataclass(frozen=True)
 class MeshFace:
-    """An interface on a mesh: its nodes, sides (s, 3) and z of its reference point on the axis, m."""
+    """A face on a revolved mesh: its nodes, sides (s, 3) and z of its reference point on the axis, m."""
 
     nodes: Index
     sides: Index
@@ -122,7 +122,7 @@ class MeshFace:
 
 
 def find_face(mesh: RevolutionMesh, name: str, surface: Face) -> MeshFace:
-    """The nodes and sides of a surface, its reference in the middle of its reach along z.
+    """The nodes and sides of a face of a revolved body, its reference in the middle of its reach along z.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def _with_middles(mesh: RevolutionMesh, nodes: Index) -> Index:
 
 
 def groove_weights(mesh: RevolutionMesh, face: MeshFace, arm: float, z: float) -> tuple[Index, Array]:
-    """Nodes (k,) and weights (2, k, 2): radial and axial motion of the groove centre from U and W there.
+    """Nodes (k,), weights (2, k, 2) of a grooved face: motion of the groove centre from U and W there.
 
     The least-squares rigid motion of the section, u_r = a + φ (z − z_m), u_z = b − φ (r − r_m), taken at
     (arm, z): exact for a rigid ring. V, along the track, does not enter: balls roll.

@@ -20,7 +20,7 @@ ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ShapeMaker:
-    """What the shapes depend on besides the moduli.
+    """Maker of the shapes of a body of revolution: what they depend on besides the moduli.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from bearingdyn.parts.regions import Patch, Region
 
 
 def shape_moduli(regions: Sequence[Region | Patch], moduli: Sequence[float] | None) -> list[list[float]]:
-    """Real shear moduli, Pa, at which shapes are taken: a list over the regions per level."""
+    """Shear moduli, Pa, at which shapes of a revolved body are taken: a list over the regions per level."""
     soft = [i for i, q in enumerate(regions) if not isinstance(q.material, Elastic)]
     shear = [q.material.G if isinstance(q.material, Elastic) else 0.0 for q in regions]
     materials = [q.material for q in regions if not isinstance(q.material, Elastic)]

@@ -10,7 +10,7 @@ from bearingdyn.material import Elastic, warn_beyond
 
 
 def quasi_static(material: Any, omega: float, after: float | None) -> complex:
-    """G*(ω), Pa, or G(t) after a time, s, of a part by itself; warns where data do not speak of it."""
+    """Static modulus of a part by itself, G*(ω), Pa, or G(t) after a time, s; warns beyond the data."""
     if isinstance(material, Elastic):
         return complex(material.G)
     if after is not None:

@@ -10,17 +10,17 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis import BearingState
 from bearingdyn.plot.frame import (
     COLOURS,
+    GREY,
     new_axes,
     style,
 )
-from bearingdyn.plot.frequency_response import GREY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
 def ball_loads(loads: BearingState | ArrayLike, ax: Axes | None = None, *, angle: float = 0.0) -> Axes:
-    """Load of each ball, N, around the bearing: azimuth from x (right) towards y (up).
+    """Draw the recorded load of each ball, N, around the bearing: azimuth from x (right) towards y (up).
 
     Parameters
     ----------

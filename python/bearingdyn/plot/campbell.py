@@ -22,7 +22,7 @@ NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, point
 
 
 def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes | None = None) -> Axes:
-    """Natural frequencies by bd.campbell over the speed, in rpm; the modes told apart by their motion.
+    """Campbell diagram of a result of `bd.campbell` over the speed, in rpm; modes told apart by their motion.
 
     Lateral modes that whirl are forward or backward, the others lateral; there are axial and torsional
     ones too.

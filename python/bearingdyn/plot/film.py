@@ -26,7 +26,7 @@ def film(
     roughness: tuple[float, float] | None = None,
     starvation: float = 1.0,
 ) -> Axes:
-    """Central films of both races against speed, rpm, a colour for each temperature in °C; with roughness, λ.
+    """Draw central films of both races against speed, rpm, coloured by temperature in °C; with roughness, λ.
 
     With a roughness the axes are halved, and λ, the film over the composite roughness, stands below.
 

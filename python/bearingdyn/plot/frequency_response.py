@@ -16,6 +16,7 @@ from bearingdyn.plot.frame import (
     finish,
     halve,
     is_result,
+    kind_of,
     new_axes,
     some,
     style,
@@ -26,9 +27,6 @@ from bearingdyn.types import Array
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
-
-
-GREY = "0.35"
 
 
 def frequency_response(
@@ -176,15 +174,6 @@ def _span(ax: Axes, *grids: Array) -> None:
         ax.set_xscale("log")
     if high > low:
         ax.set_xlim(low, high)
-
-
-def kind_of(data: xarray.Dataset) -> str:
-    """What a result is, with the band of an envelope."""
-    kind = str(data.attrs.get("analysis", "spectrum"))
-    if "band" in data.attrs:
-        low, high = (float(f) for f in data.attrs["band"])
-        kind += f" ({low:g} to {high:g} Hz)"
-    return kind
 
 
 def _one_quantity(datasets: Mapping[str, xarray.Dataset]) -> str:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def isotherms(dma: DMAData, ax: Axes | None = None) -> Axes:
-    """Storage modulus, and loss factor below it, of each isotherm against frequency, coloured by temperature.
+    """Draw isotherms: storage modulus, and loss factor below it, against frequency, coloured by temperature.
 
 
     Parameters
@@ -60,7 +60,7 @@ def isotherms(dma: DMAData, ax: Axes | None = None) -> Axes:
 
 
 def master(curve: MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None) -> Axes:
-    """Storage modulus, and loss factor below it, against reduced frequency, with a Maxwell model.
+    """Draw isotherms as a master curve: storage modulus and loss factor against reduced frequency.
 
     Points are coloured by the temperature they were measured at. The band of the fit is shaded. Outside it
     the model is an extrapolation, and dashed. A curve measured in tension is compared with
@@ -146,7 +146,7 @@ def _draw_model(ax: Axes, lower: Axes, curve: MasterCurve, maxwell: Maxwell) -> 
 
 
 def shifts(curve: MasterCurve, ax: Axes | None = None) -> Axes:
-    """Free shifts log10 a_T of the isotherms, two standard errors each way, with the law fitted to them.
+    """Draw the shifts of isotherms, log10 a_T, two standard errors each way, with the law fitted to them.
 
     Parameters
     ----------
@@ -187,5 +187,5 @@ def shifts(curve: MasterCurve, ax: Axes | None = None) -> Axes:
 
 
 def letter_of(mode: str) -> str:
-    """G in shear, E in tension."""
+    """Letter of the modulus that a figure of isotherms shows: G in shear, E in tension."""
     return "G" if mode == "shear" else "E"

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def load_distribution(distributions: Mapping[str, LoadDistribution], ax: Axes | None = None) -> Axes:
-    """Loads of the inner contacts, N, around the bearing, several states by label: azimuth from x towards y.
+    """Draw how load is distributed over the inner contacts, N, around the bearing, several states by label.
 
     Parameters
     ----------

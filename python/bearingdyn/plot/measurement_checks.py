@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
-    """Local Kramers–Kronig ratio G″/((π/2) dG′/d ln ω) against frequency, coloured by temperature.
+    """Check a measurement's causality: local Kramers–Kronig ratio G″/((π/2) dG′/d ln ω) against frequency.
 
     The ratio of a causal material with a broad spectrum is near one. Points that no passive material could
     give are crossed. The dotted line is the limit for the median over the isotherms.
@@ -62,7 +62,7 @@ def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
 
 
 def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None) -> Axes:
-    """Loss against storage modulus, both logarithmic, coloured by temperature, with a Maxwell model.
+    """Check a measurement by Cole and Cole: loss against storage modulus, both logarithmic, with a model.
 
     Shifts along the frequency do not move it: isotherms that do not form one curve do not superpose.
 
@@ -98,7 +98,7 @@ def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: A
 def van_gurp_palmen(
     data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None
 ) -> Axes:
-    """Phase angle against the magnitude of the modulus, coloured by temperature, with a Maxwell model.
+    """Check a measurement by van Gurp and Palmen: phase angle against magnitude of the modulus.
 
     Like Cole–Cole it is free of frequency, so that no shift can hide scatter.
 

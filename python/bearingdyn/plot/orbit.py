@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
-    """Orbits by bd.orbit, several by label, in µm, each about its own mean, both axes to one scale.
+    """Draw orbits by bd.orbit, several by label, in µm, each about its own mean, both axes to one scale.
 
     The mean of the record is what bd.orbit subtracts and keeps as mean_x and mean_y. The paper subtracts the
     static deflection; from that the mean differs by what speed adds to it.

@@ -22,13 +22,13 @@ SMALL_PHASE = 15.0  # °; the axes of a phase show at least that much
 
 
 def continuous_phase(response: Complex) -> Array:
-    """Unwrapped phase, °, its first value in the turn below PHASE_END: no curve begins at that angle."""
+    """Unwrapped phase, °, for its axis: the first value is in the turn below PHASE_END."""
     degrees = np.degrees(np.unwrap(np.angle(response)))
     return np.asarray(degrees - 360.0 * np.ceil((degrees[0] - PHASE_END) / 360.0))
 
 
 def finish_phase(ax: Axes) -> None:
-    """Label, ticks and frame of the axes of a phase, °: right angles where it turns as far, 5° at least."""
+    """Finish the axis of a phase, °: label, frame, ticks at right angles where it turns that far."""
     from matplotlib.ticker import MultipleLocator
 
     ax.set_ylabel("phase, °")

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.plot.frame import (
+    GREY,
     colour,
     finish,
+    kind_of,
     new_axes,
     some,
     style,
 )
-from bearingdyn.plot.frequency_response import GREY, kind_of
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ BRIGHTEST = 0.9  # of its range: the end would not show on white
 
 
 def temperature_scale(temperature: Array) -> Normalize:
-    """Scale of the colours over these temperatures, °C."""
+    """Scale of the temperature colours over these temperatures, °C."""
     from matplotlib.colors import Normalize
 
     return Normalize(float(temperature.min()), float(temperature.max()))
@@ -30,6 +30,7 @@ def temperature_colour(scale: Normalize, temperature: float) -> tuple[float, ...
 
 
 def temperature_colours() -> Colormap:
+    """Colours of temperatures, the coldest first."""
     import matplotlib
     from matplotlib.colors import ListedColormap
 

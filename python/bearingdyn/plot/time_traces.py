@@ -39,7 +39,7 @@ def time(
     span: tuple[float, float] | None = None,
     about_mean: bool = False,
 ) -> Axes:
-    """Recorded channels of marches by bd.transient over time, several marches by label, sample by sample.
+    """Draw traces over time of recorded channels by bd.transient, several marches by label, every sample.
 
     Channels in one unit share axes; each further unit has its own below, in the order of the channels. A
     trace beyond 20 000 samples is drawn by the smallest and largest of each stretch: no peak is lost.

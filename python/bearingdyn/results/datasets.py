@@ -23,7 +23,7 @@ def dataset(
     attrs: Mapping[str, Any],
     coords: Mapping[str, tuple[Any, str]] | None = None,
 ) -> xarray.Dataset:
-    """A Dataset whose variables carry units and meaning, and which says what made it, and when (UTC).
+    """A result as a Dataset whose variables carry units and meaning, and what made it, and when (UTC).
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def march_dataset(
     report: Report,
     attrs: Mapping[str, Any] | None = None,
 ) -> xarray.Dataset:
-    """Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
+    """The Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
 
     Parameters
     ----------

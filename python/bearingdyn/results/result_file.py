@@ -26,7 +26,7 @@ PARTS = "part"
 
 
 def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
-    """Write one Dataset, or several by name (as groups), to one netCDF-4 file.
+    """Save a Dataset, or several by name (as groups), to one result file (netCDF-4).
 
     The file is made in memory, written under another name beside its place, and moved there when it is on the
     disk: whatever fails, the file that was there before is intact. This takes as much memory again as the
@@ -84,7 +84,7 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
 
 
 def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
-    """Read a Dataset written by `save`, or what a run file holds so far, wholly into memory.
+    """Open a result file written by `save`, or what a run file holds so far, wholly into memory.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ class _Function:
 
 
 def write_uff(data: xarray.Dataset, path: str | os.PathLike[str]) -> list[str]:
-    """Write every function of a frequency response or a transient as one ASCII dataset 58; SI units.
+    """Write a Universal File: each function of a frequency response or transient as ASCII dataset 58, in SI.
 
     Ordinates keep twelve digits. The abscissa keeps six, as the format has it. An evenly spaced one is its
     first value and its increment, so six digits scale it by 5e-6 at most and no two points coincide; the

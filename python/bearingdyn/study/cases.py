@@ -31,7 +31,7 @@ class Case:
 
 
 def grid(**axes: Iterable[Any]) -> list[dict[str, Any]]:
-    """Every combination of the values of the axes, the last axis running fastest.
+    """Cases for every combination of the values of the axes, the last axis running fastest.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def grid(**axes: Iterable[Any]) -> list[dict[str, Any]]:
 
 
 def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, float]]:
-    """n cases that fill the box of the ranges evenly: a scrambled Sobol sequence, the same for the same seed.
+    """n cases that fill the box of the ranges evenly: a scrambled Sobol sequence, the same for one seed.
 
     Powers of two fill the box best. A longer study with the same seed begins with the cases of a shorter one.
 
@@ -121,7 +121,7 @@ def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, f
 
 
 def checked(cases: Iterable[Parameters]) -> list[dict[str, Any]]:
-    """The cases as dicts in one order of names.
+    """The cases of a study as dicts in one order of names.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def checked(cases: Iterable[Parameters]) -> list[dict[str, Any]]:
 
 
 def label(value: Any) -> float | int | bool | str:
-    """A parameter as a table shows it: a number or text itself, else its class and a hash."""
+    """A parameter of a case as a table shows it: a number or text itself, else its class and a hash."""
     if _kind(value) != "object":
         return value  # type: ignore[no-any-return]
     return f"{type(value).__name__} {fingerprint.fingerprint(value)[:8]}"

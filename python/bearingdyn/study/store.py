@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 
 
 def name_of(function: Callable[..., Any]) -> str:
-    """Module and name of a function, or of a callable object's class; a script goes by its file."""
+    """Name by which a study is stored: module and name of a function or class; a script goes by its file."""
     inner = function.func if isinstance(function, functools.partial) else function
     named = inner if hasattr(inner, "__qualname__") else type(inner)
     module = str(getattr(named, "__module__", ""))
@@ -31,7 +31,7 @@ def name_of(function: Callable[..., Any]) -> str:
 
 @dataclass(frozen=True)
 class Store:
-    """The cases of functions, by hash of what the function is, the version and the parameters.
+    """The store of finished cases, by hash of what the function is, the version and the parameters.
 
     Raises
     ------

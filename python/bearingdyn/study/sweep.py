@@ -46,7 +46,7 @@ def sweep(
     *,
     retry: bool = False,
 ) -> list[Case]:
-    """Call a function on every case and gather what it returns, in the order of the cases.
+    """Sweep a function over all cases and gather what it returns, in the order of the cases.
 
     Parameters
     ----------

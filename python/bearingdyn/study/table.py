@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def table(cases: Sequence[Case], units: Mapping[str, str] | None = None) -> xarray.Dataset:
-    """A study as a Dataset over "case": parameters as coordinates, values and "error" as variables.
+    """The table of a study over "case": parameters as coordinates, values and "error" as variables.
 
     The error of a case that did not fail is "". Values of failed cases are NaN. A parameter that is an object
     is shown as its class and a hash. ``.to_dataframe()`` makes it a table of pandas.

@@ -1,7 +1,8 @@
 """An application as plain arrays: what the C core and the analyses take."""
 
 from bearingdyn.system.assembly import assemble
-from bearingdyn.system.dense_matrices import factor, natural
+from bearingdyn.system.matrix_factor import factor
+from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.static_modulus import Modulus
 from bearingdyn.system.system import System
 from bearingdyn.system.system_of import system_of

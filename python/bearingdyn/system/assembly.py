@@ -9,8 +9,8 @@ import numpy as np
 
 from bearingdyn.application import GRAVITY, GROUND, Application, Load, LooseJoint, Place, Plan
 from bearingdyn.bearing import RIGID
-from bearingdyn.system.dense_matrices import factor
 from bearingdyn.system.held import check_held
+from bearingdyn.system.matrix_factor import factor
 from bearingdyn.system.origin import noted
 from bearingdyn.system.system import System
 from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
@@ -19,7 +19,7 @@ from bearingdyn.types import Array, Index
 
 
 def assemble(app: Application) -> System:
-    """Make the arrays of an application.
+    """Assemble the system of an application: its arrays.
 
     Raises
     ------

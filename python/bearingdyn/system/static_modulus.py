@@ -13,7 +13,7 @@ Modulus: TypeAlias = str | float | Sequence[float]
 
 
 def static_modulus(layer: LayerTerm, modulus: Modulus) -> float:
-    """The "relaxed" or "instantaneous" shear modulus of a layer, or G(t), Pa; ValueError for another word."""
+    """Static shear modulus of a layer, "relaxed", "instantaneous" or G(t), Pa; ValueError otherwise."""
     if not isinstance(layer.material, Maxwell):
         raise ValueError(
             f"layer {layer.part!r} has the material {type(layer.material).__name__}; statics and the time "

@@ -19,7 +19,8 @@ from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import meant
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.magnitude import check_speed_value, plausible
-from bearingdyn.system.dense_matrices import check_matrix, natural
+from bearingdyn.system.matrix_check import check_matrix
+from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.static_modulus import Modulus, static_modulus
 from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
 from bearingdyn.types import Array, Index
@@ -30,7 +31,7 @@ TEST_SPRING = 1e8
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class System:
-    """Matrices (n, n), terms, and rows (3 or 6, n) of every interface and output by name.
+    """The system: matrices (n, n), terms, and rows (3 or 6, n) of every interface and output by name.
 
     All fields are given by name; M, C, G, K, N is the order wherever the matrices are listed.
 

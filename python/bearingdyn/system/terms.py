@@ -15,7 +15,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class LayerTerm:
-    """One viscoelastic material of one part: its deviatoric stiffness is 2 G*(ω) L Lᵀ, L (n, rank)."""
+    """A layer's term in the system: its deviatoric stiffness is 2 G*(ω) L Lᵀ, L (n, rank)."""
 
     part: str
     material: Any
@@ -26,7 +26,7 @@ class LayerTerm:
 
 @dataclass(frozen=True, eq=False)
 class BearingTerm:
-    """One bearing or loose fit.
+    """A term of the system: one bearing or loose fit.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class BearingTerm:
 
 @dataclass(frozen=True, eq=False)
 class PartTerm:
-    """One part of the system.
+    """A term of the system: one part.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class PartTerm:
 
 @dataclass(frozen=True, eq=False)
 class SpringTerm:
-    """Springs and dampers of one joint.
+    """A term of the system: springs and dampers of one joint.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class SpringTerm:
 
 @dataclass(frozen=True, eq=False)
 class LoadTerm:
-    """One load: kind one of bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one.
+    """A load's term: kind one of bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one.
 
     part: the part it acts on, if one; own_cos, own_sin: the columns in the part's coordinates.
     """

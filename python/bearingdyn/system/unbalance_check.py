@@ -7,7 +7,7 @@ from bearingdyn.magnitude import plausible
 
 
 def check_unbalance(plan: Plan) -> None:
-    """Compare each unbalance with the mass that moves with its place: eccentricities are micrometres.
+    """Check each unbalance against the mass that moves with its place: eccentricities are micrometres.
 
     Raises
     ------

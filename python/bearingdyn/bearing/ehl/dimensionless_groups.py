@@ -26,7 +26,7 @@ def _quadrature() -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class Groups:
-    """Coefficients of the equations in Hertz' units for one (M, L, D)."""
+    """Dimensionless coefficients of the lubricated contact's equations, in Hertz' units for one (M, L, D)."""
 
     M: float
     L: float
@@ -113,7 +113,7 @@ class Groups:
 def scales(
     contact: PointContact, F: float, us: float, eta0: float, alpha: float
 ) -> tuple[float, float, float]:
-    """M, L and D of a contact under F, N, with u1 + u2 = us, m/s, viscosity eta0, Pa s, and alpha, 1/Pa."""
+    """Dimensionless groups M, L, D of a contact under F, N, u1 + u2 = us, m/s, eta0, Pa s, alpha, 1/Pa."""
     E, Rx = 2 * contact.modulus, contact.Rx
     speed = eta0 * us / (E * Rx)
     return F / (E * Rx**2) * speed**-0.75, alpha * E * speed**0.25, Rx / contact.Ry

@@ -17,7 +17,7 @@ _FLATTEST = 4.0  # pitch across over pitch along, in a long ellipse
 
 @dataclass(frozen=True)
 class Flooding:
-    """Extent of the oil: X from −inlet to outlet, |Y| to side."""
+    """Extent of the oil that floods the contact: X from −inlet to outlet, |Y| to side."""
 
     inlet: float
     outlet: float

@@ -13,7 +13,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True)
 class Grid:
-    """Nodes of one half of the contact, Y ≥ 0 (it is symmetric); arrays (ny, nx), rows across the rolling.
+    """The grid: nodes of one half of the contact, Y ≥ 0 (it is symmetric); arrays (ny, nx), rows across it.
 
     The pressure is held at zero on the two first columns, the last column and the last row.
     """
@@ -60,7 +60,7 @@ class Grid:
 
 
 def prolonged(P: Array) -> Array:
-    """Values on the grid of half the pitch, linear between."""
+    """Values on the grid of half the pitch, linear between those of a coarser grid."""
     ny, nx = P.shape
     fine = np.empty((2 * ny - 1, 2 * nx - 1))
     fine[::2, ::2] = P

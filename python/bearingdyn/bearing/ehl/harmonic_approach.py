@@ -13,7 +13,7 @@ _TOLERANCE = 1e-9
 
 
 def quasi_static(equations: Reynolds, state: State) -> tuple[float, float]:
-    """K0 over Hertz' stiffness and C0 of c = C0 (F/δ_dry)(a/um): the first terms in iΩ of `stiffness`."""
+    """Answer to a slow harmonic approach: K0 over Hertz' stiffness, and C0 of c = C0 (F/δ_dry)(a/um)."""
     grid, oil, H = equations.grid, equations.oil, state.H
     system = Linearised(equations, state.P, H, state.free)
     weights = grid.weights[state.free]
@@ -29,7 +29,7 @@ def quasi_static(equations: Reynolds, state: State) -> tuple[float, float]:
 
 
 def stiffness(equations: Reynolds, state: State, Omega: complex) -> complex:
-    """F̂/δ̂ over Hertz' stiffness of an approach δ̂ e^{iΩT}."""
+    """F̂/δ̂ over Hertz' stiffness of a harmonic approach δ̂ e^{iΩT}."""
     system = Linearised(equations, state.P, state.H, state.free, 1j * complex(Omega))
     p = system.solve(-system.by_approach, _TOLERANCE)
     hertz = 1.5 * LOAD / equations.groups.approach

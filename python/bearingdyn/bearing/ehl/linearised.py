@@ -13,7 +13,7 @@ from bearingdyn.types import Array
 
 
 class Linearised:
-    """J p = ∂f/∂P p + ∂f/∂H K p on the nodes that are free, p zero elsewhere.
+    """The linearised film equations, J p = ∂f/∂P p + ∂f/∂H K p on the nodes that are free, p zero elsewhere.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Linearised:
 def gmres(
     multiply: Any, precondition: Any, right: NDArray[Any], tolerance: float, limit: int = 200
 ) -> tuple[NDArray[Any], int]:
-    """Solution by GMRES (Y. Saad, M. H. Schultz 1986), preconditioned from the right, and its iterations.
+    """Solution of the linearised equations by GMRES (Y. Saad, M. H. Schultz 1986), and its iterations.
 
     Raises ArithmeticError if `limit` iterations do not reach |residual| ≤ tolerance |right|.
     """
@@ -112,7 +112,7 @@ def gmres(
 
 
 def factor(matrix: Any) -> Any:
-    """LU of a sparse matrix."""
+    """LU of a sparse matrix, the preconditioner of the linearised equations."""
     return scipy.sparse.linalg.splu(
         scipy.sparse.csc_array(matrix),
         permc_spec="MMD_AT_PLUS_A",

@@ -25,7 +25,7 @@ _OFF = 0.1  # where a viscous damping no longer describes the contact
 
 @dataclass(frozen=True)
 class LubricatedContact:
-    """A contact under load with its film, as `solve` returns it; lengths in m."""
+    """A lubricated contact under load with its film, as `solve` returns it, in SI units."""
 
     contact: PointContact
     F: float
@@ -155,7 +155,7 @@ def solve(
     inlet: float | None = None,
     accuracy: float = 0.01,
 ) -> LubricatedContact:
-    """Film of a lubricated contact under a load, and its answer to a small harmonic approach.
+    """Film of a lubricated contact in SI units under a load, and its answer to a small harmonic approach.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ COLUMNS = (
 
 
 def point(M: float, L: float, D: float) -> list[float]:
-    """One line of the table after its M, L, D; NaN where no grid of a bearable size resolves the film."""
+    """One line of the table of lubricated contacts after its M, L, D; NaN where no grid resolves the film."""
     began = time.process_time()
     found: Steady | None = None
     for accuracy in ACCURACY:
@@ -54,7 +54,7 @@ def point(M: float, L: float, D: float) -> list[float]:
 
 
 def main(arguments: list[str]) -> int:
-    """Solve the points that are missing."""
+    """Make the table of lubricated contacts: solve the points that are missing."""
     part, parts = (int(x) for x in arguments[0].split("/")) if len(arguments) == 2 else (1, 1)
     path = Path(arguments[-1])
     if not path.exists():

@@ -17,7 +17,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, repr=False)
 class March:
-    """A motion in time T = t um/a; arrays (steps + 1,), the start included."""
+    """A march of the lubricated contact in time T = t um/a; arrays (steps + 1,), the start included."""
 
     T: Array
     approach: Array
@@ -44,7 +44,7 @@ def march(
     load: Callable[[float], float] | float = 1.0,
     velocity: float = 0.0,
 ) -> March:
-    """Follow the film from a steady state, on its finest grid.
+    """March the film in time from a steady state, on its finest grid.
 
     Both are of second order: the backward formula (BDF2) for the film, which forgets, and the average
     acceleration for the ball, which takes no energy from it.

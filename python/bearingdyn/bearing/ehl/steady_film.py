@@ -32,7 +32,7 @@ _EXTRAPOLATED = 1 / (2**1.7 - 1) - 1 / 3
 
 
 class Figures(NamedTuple):
-    """Numbers of a steady state, or their estimated relative errors."""
+    """Figures of a steady film, or their estimated relative errors."""
 
     Hc: float
     """Film at the centre, h/Rx √(E′Rx/(η0us))."""
@@ -48,7 +48,7 @@ class Figures(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Level:
-    """The solution on one grid."""
+    """The steady film on one grid."""
 
     equations: Reynolds
     state: State
@@ -69,7 +69,7 @@ class Level:
 
 @dataclass(frozen=True, repr=False)
 class Steady:
-    """Steady isothermal film of a fully flooded point contact; scales of H. Moes."""
+    """Steady film of a fully flooded point contact, isothermal; scales of H. Moes."""
 
     M: float
     L: float

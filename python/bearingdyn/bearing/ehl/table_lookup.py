@@ -28,7 +28,7 @@ OMEGA = (0.25, 0.5, 1.0, 2.0, 4.0)
 
 @dataclass(frozen=True)
 class Lookup:
-    """Figures of a contact by the table, and its answer over frequency."""
+    """Figures of a contact looked up in the table, and its answer over frequency."""
 
     figures: Figures
     K: tuple[float, ...]

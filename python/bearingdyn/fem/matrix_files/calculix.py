@@ -29,7 +29,7 @@ def read_calculix(
     points: Points | None = None,
     **check: Any,
 ) -> FEMatrices:
-    """Read what CalculiX stores: name.sti, name.mas and name.dof.
+    """Read the matrices that CalculiX stores: name.sti, name.mas and name.dof.
 
     CalculiX leaves out the coordinates that it removed (*BOUNDARY, dependent ones of *EQUATION and *RIGID
     BODY). A body with points must be free: store its model without these keywords.

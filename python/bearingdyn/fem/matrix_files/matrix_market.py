@@ -28,7 +28,7 @@ LONGEST_LINE = 1024  # of the format
 
 
 def is_matrix_market(path: Path) -> bool:
-    """Whether a file begins as MatrixMarket does."""
+    """Whether a file is in MatrixMarket's format, by its beginning."""
     with path.open("rb") as stream:
         return stream.read(len(BANNER)).lower() == BANNER
 

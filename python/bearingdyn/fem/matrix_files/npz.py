@@ -134,7 +134,7 @@ def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FE
 
 
 def write_npz(path: str | Path, model: FEMatrices) -> None:
-    """Write a model as read_npz reads it, in compressed sparse rows and SI units."""
+    """Write a finite element model to a NumPy archive (.npz), in compressed sparse rows and SI units."""
     arrays: dict[str, Any] = {}
     for name, A in (("K", model.K), ("M", model.M)):
         arrays |= {

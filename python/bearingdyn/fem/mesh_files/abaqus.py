@@ -33,7 +33,7 @@ REFUSED = {
 
 
 def read_inp(path: Path) -> RawMesh:
-    """The mesh of an input file, flat or an assembly of parts.
+    """The mesh of an input file of Abaqus or CalculiX (.inp), flat or an assembly of parts.
 
     Followed: *NODE (SYSTEM= too), *SYSTEM, *ELEMENT, *NSET, *ELSET, *SURFACE, *SOLID SECTION, *INCLUDE, and
     *PART, *ASSEMBLY and *INSTANCE with their shift and turn. *TRANSFORM and *ORIENTATION turn directions

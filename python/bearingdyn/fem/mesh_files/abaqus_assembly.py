@@ -28,7 +28,7 @@ SIDES = {
 
 @dataclass
 class NumberSet:
-    """Numbers of nodes or elements, alone and from first to last; and other sets (instance or None, name)."""
+    """A set of an Abaqus assembly: numbers, alone and from first to last; other sets (instance, name)."""
 
     numbers: list[int] = field(default_factory=list)
     ranges: dict[range, None] = field(default_factory=dict)
@@ -41,7 +41,7 @@ class NumberSet:
 
 @dataclass
 class Scope:
-    """A part, an instance or the file itself; names in capitals, for the format does not tell cases apart."""
+    """A scope of an Abaqus assembly: a part, an instance or the file itself; names in capitals."""
 
     nodes: dict[int, tuple[float, float, float]] = field(default_factory=dict)
     elements: dict[int, list[int]] = field(default_factory=dict)  # solid ones
@@ -71,7 +71,7 @@ class Scope:
 
 
 class Assembled:
-    """The instances, or the flat file, in one numbering; the file itself is the scope ""."""
+    """An Abaqus assembly, its instances in one numbering; the file itself is the scope ""."""
 
     def __init__(
         self, spelling: dict[str, str], root: Scope, instances: dict[str, Scope], limit: int

@@ -12,7 +12,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Local axes as rows of `axes` (3, 3), and their origin (3,)."""
+    """A coordinate system of Abaqus: local axes as rows of `axes` (3, 3), and their origin (3,)."""
 
     origin: Array
     axes: Array
@@ -40,7 +40,7 @@ def _unit(v: Array, block: Block, what: str) -> Array:
 
 
 def system(block: Block) -> System | None:
-    """The system of *SYSTEM: origin a, b on the x axis, and c in the xy plane; None without data.
+    """The coordinates of *SYSTEM: origin a, b on the x axis, and c in the xy plane; None without data.
 
     With a alone the axes stay, and without c the z axis does (Abaqus Keywords Reference Guide, *SYSTEM).
     """

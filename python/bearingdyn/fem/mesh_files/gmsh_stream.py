@@ -17,7 +17,7 @@ ENTITIES = 100_000  # of a drawing, of one dimension; a large assembly has some 
 
 @dataclass
 class Source:
-    """A .msh file as a stream of numbers, text or binary, that knows where it is."""
+    """A .msh file of gmsh as a stream of numbers, text or binary, that knows where it is."""
 
     file: IO[bytes]
     size: int
@@ -139,4 +139,5 @@ class Source:
 
 
 def shown(word: bytes) -> str:
+    """The first bytes of a word of gmsh's stream as a message shows them."""
     return repr(word[:40].decode("utf-8", "replace"))

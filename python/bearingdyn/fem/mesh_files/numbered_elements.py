@@ -12,7 +12,7 @@ from bearingdyn.types import Index
 
 @dataclass
 class Numbered:
-    """What has been read so far.
+    """Nodes and elements by their numbers, as far as a mesh file has been read.
 
     Parameters
     ----------

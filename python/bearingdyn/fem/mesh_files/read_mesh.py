@@ -30,7 +30,7 @@ def read_mesh(
     drop_unconnected: bool = False,
     largest: float = LARGEST_BODY,
 ) -> SolidMesh:
-    """Read a mesh of second-order bricks, wedges, pyramids or tetrahedra; the suffix says the kind of file.
+    """Read a mesh of solids from a file, of second-order elements; the suffix says the kind of file.
 
     .msh: gmsh 2.2, 4.0 and 4.1, text and binary; physical volumes are regions, physical surfaces are surfaces
     (with region_data="gmsh:geometrical" the entities of the drawing, by number).

@@ -13,7 +13,7 @@ SIDES = ("x-", "x+", "y-", "y+", "z-", "z+")
 
 
 def box_mesh(x: ArrayLike, y: ArrayLike, z: ArrayLike, element: str = "hex20") -> SolidMesh:
-    """Bricks between grid lines x, y, z; surfaces "x-", "x+", "y-", "y+", "z-", "z+".
+    """A box of bricks between grid lines x, y, z; surfaces "x-", "x+", "y-", "y+", "z-", "z+".
 
     Parameters
     ----------

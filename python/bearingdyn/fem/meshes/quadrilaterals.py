@@ -18,7 +18,7 @@ TURNED = np.array([0, 3, 2, 1, 7, 6, 5, 4, 8])  # the same element numbered the 
 
 
 def quadrilaterals(points: ArrayLike, cells: ArrayLike, region: ArrayLike | None = None) -> RevolutionMesh:
-    """Mesh of a section from arrays, such as meshio's ``mesh.points`` and ``mesh.cells_dict["quad9"]``.
+    """Mesh of a section from arrays of quadrilaterals, such as meshio's ``mesh.cells_dict["quad9"]``.
 
     Parameters
     ----------

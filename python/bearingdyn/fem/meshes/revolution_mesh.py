@@ -21,7 +21,7 @@ SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
 
 @dataclass(frozen=True)
 class Rectangle:
-    """Section of a ring: r and z are (from, to), m, with 0 <= r[0] < r[1] and z[0] < z[1].
+    """A rectangle of a revolution mesh: r and z are (from, to), m, with 0 <= r[0] < r[1] and z[0] < z[1].
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ SIDES = np.array([[0, 3, 6], [6, 7, 8], [8, 5, 2], [2, 1, 0]])
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RevolutionMesh:
-    """9-node quadrilaterals in (r, z), straight or curved.
+    """Mesh of a body of revolution: 9-node quadrilaterals in (r, z), straight or curved.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def revolution_mesh(
     z_cuts: Iterable[float] = (),
     z_near: Iterable[float] = (),
 ) -> RevolutionMesh:
-    """Mesh a union of rectangles with grid lines along all their sides.
+    """Mesh a body of revolution, a union of rectangles, with grid lines along all their sides.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ def ring_mesh(
     regions: Sequence[str] = (),
     element: str = "hex27",
 ) -> SolidMesh:
-    """A ring about z, or a segment of it, of concentric layers, each layer a region.
+    """Mesh of a ring about z, or a segment of it, of concentric layers, each layer a region.
 
     Lines crowd towards the ends of the width, and towards both faces of each layer. Surfaces: "inner",
     "outer", "z-", "z+"; of a segment also "start" and "end".

@@ -51,7 +51,7 @@ def fit_maxwell(
     bootstrap: int = 0,
     pin: float | Sequence[float] | None = None,
 ) -> Maxwell:
-    """Fit spring, n branches and dashpot to the points of a master curve inside a band.
+    """Fit a Maxwell model to the points of a master curve inside a band: spring, n branches and dashpot.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ def fit_relaxation(
     fixed: Mapping[str, float] | None,
     tolerance: float,
 ) -> Maxwell:
-    """Spring and n branches by which (Σ ln²(model/measured)) of G(t) is least, to first order.
+    """Fit a Maxwell model to a measured relaxation modulus: Σ ln²(model/measured) is least, to first order.
 
     Times before 1/(2π·highest) and after 1/(2π·lowest frequency of `band` are left out. The report's storage
     errors are those of G(t); its errors of tan δ are NaN, no loss having been measured.

@@ -18,7 +18,7 @@ _HALVINGS = 10  # of the search for an end of the interval
 
 
 def low_end(points: Points, G0: float, deviation: Array, measured: float) -> LowEnd:
-    """Of points and a fit's G0, Pa, deviation of its ln G′ (p,), and the curve's lowest frequency, Hz."""
+    """What a fit's points say of its low end: G0, Pa, deviation of ln G′ (p,), the lowest frequency, Hz."""
     scatter = float(np.sqrt(np.mean(deviation**2)))
     lowest = float(points.omega.min())
     near = points.omega <= 10 * lowest

@@ -18,7 +18,7 @@ MARGIN = math.log(10.0)  # a relaxation time may lie a decade outside the band
 
 @dataclass(frozen=True)
 class Points:
-    """Points inside the band: ω rad/s, shear moduli Pa, number of the isotherm; the band, Hz.
+    """Points of a master curve in a band, Hz: ω rad/s, shear moduli Pa, number of the isotherm.
 
     `pin` is a time, s, and the relaxation modulus, Pa, that a fit is held to there.
     """

@@ -38,7 +38,7 @@ def read_dma(
     drop_invalid: bool = False,
     step: Step | None = None,
 ) -> DMAData:
-    """Read isothermal frequency sweeps from a table with a header.
+    """Read a DMA measurement, isothermal frequency sweeps, from a table with a header.
 
     The reader understands plain tables (comma, semicolon, tab or blanks; decimal point or comma; UTF-8,
     UTF-16 or Latin-1; # opens a comment), exports of TA TRIOS (CSV and LIMS text) and Anton Paar

@@ -39,7 +39,7 @@ _STRONG, _WEAKER, _RUNGS, _FLAT = 10.0, 1.6, 12, 2e-3
 
 @dataclass(frozen=True)
 class Superposed:
-    """What :class:`Superposition` finds: decades (k,), (k,), (n,); rms relative misfit of G′ and G″."""
+    """Free shifts that superpose: decades (k,), (k,), (n,); rms relative misfit of G′ and G″."""
 
     shifts: Array
     errors: Array
@@ -49,7 +49,7 @@ class Superposed:
 
 
 class Superposition:
-    """Least squares of the relative deviations of G′ and G″ over the shifts of the isotherms.
+    """Least squares of the relative deviations of G′ and G″ over the free shifts of the isotherms.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def _curvature(T: Array) -> Array:
 
 
 def first_shifts(dma: DMAData) -> Array:
-    """First guess of the shifts, decades, (k,), the coldest at zero.
+    """First guess of the free shifts, decades, (k,), the coldest at zero.
 
     From the overlap of neighbours; by the best of a grid of WLF laws where neighbours barely overlap.
     """

@@ -33,7 +33,7 @@ _FAR = 100.0  # K; a T_ref further outside the data is taken for kelvin
 
 @dataclass(frozen=True, eq=False)
 class MasterCurve:
-    """Moduli against reduced frequency at one reference temperature.
+    """A master curve: moduli against reduced frequency at one reference temperature.
 
     Attributes
     ----------

@@ -11,7 +11,7 @@ from bearingdyn.notice import LeftOut, warn
 
 
 def one_curve(data: MasterCurve | DMAData) -> MasterCurve:
-    """The master curve itself, or the one isotherm of a measurement as one, without a shift law.
+    """A single sweep as a master curve without a shift law; a master curve as it is.
 
     Points with a modulus that is not positive are left out with a warning.
 
