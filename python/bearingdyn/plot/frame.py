@@ -13,6 +13,7 @@ import numpy as np
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.ticker import Formatter
