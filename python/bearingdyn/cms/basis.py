@@ -134,7 +134,7 @@ def craig_bampton(
     f_max: float | None = None,
     n_modes: int | None = None,
 ) -> Basis:
-    """Constraint modes of an interface and the fixed-interface modes, for dense or sparse symmetric M and K.
+    """A basis by Craig and Bampton: constraint and fixed-interface modes, for dense or sparse M and K.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def orthogonalise(shapes: Array, K: Any, M: Any) -> tuple[Array, Array]:
 
 
 def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Array, inner: Index, rounds: int) -> list[Array]:
-    """Static answers (n, m) of the held model to the inertia of shapes (n, m), then to that of the answers.
+    """Shapes of a basis: static answers (n, m) to the inertia of shapes (n, m), then to that of the answers.
 
     Parameters
     ----------

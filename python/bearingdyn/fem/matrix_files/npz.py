@@ -20,7 +20,7 @@ import scipy.sparse
 
 from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
-from bearingdyn.fem.matrix_files.matrix_checks import checked_files
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 from bearingdyn.writing import write_whole
 
 # what zipfile and NumPy raise for damage, which depends on where it is
