@@ -26,6 +26,20 @@ from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.pressure import STATIC_PRESSURE, check_bearing_pressure
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
+from bearingdyn.bearing.rating import (
+    LoadCases,
+    Ratings,
+    equivalent_life,
+    equivalent_load,
+    equivalent_static_load,
+    iso_ratings,
+    life_factor,
+    life_of_loads,
+    load_cases,
+    modified_life,
+    rating_life,
+    ratings_of,
+)
 from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
 from bearingdyn.bearing.surface_generation import WavinessSpectrum, dent, diameter_scatter, spall
 from bearingdyn.notice import BearingWarning
@@ -45,6 +59,7 @@ __all__ = [
     "Frequencies",
     "Geometry",
     "Imperfections",
+    "LoadCases",
     "LoadDamping",
     "LoadDistribution",
     "LooseFit",
@@ -57,6 +72,7 @@ __all__ = [
     "Pit",
     "PointContact",
     "RacewaySeries",
+    "Ratings",
     "Running",
     "Seat",
     "TabulatedDamping",
@@ -68,13 +84,23 @@ __all__ = [
     "contact_modulus",
     "dent",
     "diameter_scatter",
+    "equivalent_life",
+    "equivalent_load",
+    "equivalent_static_load",
     "fault_lines",
     "hamrock_dowson",
+    "iso_ratings",
+    "life_factor",
+    "life_of_loads",
+    "load_cases",
     "load_distribution",
     "lubricate",
     "minimum",
+    "modified_life",
     "nijenbanning_venner_moes",
     "passage",
+    "rating_life",
+    "ratings_of",
     "resultant_damping",
     "resultant_deflection_coefficient",
     "runs_off",
