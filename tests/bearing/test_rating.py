@@ -81,7 +81,7 @@ def entry_bearing(name: str) -> BallBearing:
 
 class TestEquivalentLoads:
     def test_a_6309_of_a_makers_program(self):
-        """SKF's calculator: 4 kN radial and .5 kN axial are P = 4 kN, and 24 500 h at 1800 rpm with 55.3 kN."""
+        """SKF's calculator, C = 55.3 kN: 4 kN radial, .5 kN axial are P = 4 kN, 24 500 h at 1800 rpm."""
         P = equivalent_load(4000.0, 500.0, 31500.0, f0=13.0)
         assert P == 4000.0
         assert in_hours((55300.0 / P) ** 3, 1800 * RPM) == pytest.approx(24500, rel=2e-3)
@@ -302,5 +302,5 @@ class TestDutyCycles:
 
     @pytest.mark.parametrize("bad", [[], [Phase(0.0, 1.0, 1.0)], [Phase(1.0, 1.0, math.nan)]])
     def test_bad_phases_are_named(self, bad):
-        with pytest.raises(ValueError, match="^phases"):
+        with pytest.raises(ValueError, match=r"^phases"):
             equivalent_life(bad)

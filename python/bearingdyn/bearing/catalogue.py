@@ -52,7 +52,7 @@ class Deviation(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """Boundary dimensions (standard) and internal geometry, m; contact angle in rad or None."""
+    """An entry of the catalogue: boundary dimensions (standard) and internal geometry, m and rad."""
 
     bore: float
     outside: float
@@ -106,8 +106,8 @@ def estimate(
     Pitch diameter midway. Balls: the largest in steps of 1/64 inch up to 0.3 of the section (outside − bore);
     in narrow bearings, up to 0.7 of the width. Deep groove: as many as can be filled in over 196°; angular
     contact: as many as stand 1.1 diameters apart. Groove radii .52 and .53 (ISO 76), .52 and .525 with a
-    contact angle. The rule is our own: of the bearings of CATALOGUE whose balls the makers' ratings name, it has the
-    diameter within 7 % in 83 of 100, the number within one in 91 of 100; thin series miss by more.
+    contact angle. The rule is our own: of the bearings of CATALOGUE whose balls the makers' ratings name, it
+    has the diameter within 7 % in 83 of 100, the number within one in 91 of 100; thin series miss by more.
 
     Parameters
     ----------
@@ -152,8 +152,8 @@ _SOURCES = {
     "dynamics": "typical 6202 of the dynamics literature; NSK's C and C0 name the same balls",
     "cwru": "Case Western Reserve University, {end} end bearing; groove radii as in ISO 76; NSK's C and C0 "
     "name the same balls",
-    "jis": "races of 40.1 and 63.9 mm, the JIS 6306 of varying-compliance studies; groove radii as in ISO 76; "
-    "NSK's C and C0 name the same balls",
+    "jis": "races of 40.1 and 63.9 mm, the JIS 6306 of varying-compliance studies; groove radii as in ISO "
+    "76; NSK's C and C0 name the same balls",
 }
 # Z Dw² alone leaves two; f0, which is told by Dw/Dpw, decides
 _SECOND = {
@@ -331,7 +331,7 @@ def bearing(
 
 
 def from_entry(entry: Entry, *, clearance: float | None = None, **keywords: Any) -> BallBearing:
-    """BallBearing of an Entry, such as one by `estimate`.
+    """BallBearing of an Entry of the catalogue, or of one by `estimate`.
 
     Parameters
     ----------

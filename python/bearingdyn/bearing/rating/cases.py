@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY
-from bearingdyn.bearing.rating.life import Arm, race_capacities, ratings_of
-from bearingdyn.checks import instance, number, one_of, real
+from bearingdyn.bearing.rating.life import Arm, race_capacities, ratings_of, with_arm
+from bearingdyn.checks import instance, number, real
 from bearingdyn.types import Array
 
 
@@ -88,14 +88,13 @@ def load_cases(
     from bearingdyn import core  # late: the compiled kernel is needed only here
 
     instance("bearing", bearing, BallBearing, "give a BallBearing")
-    one_of("arm", arm, ("mean", "groove"))
     try:
         f = real(loads)
     except (TypeError, ValueError):
         f = np.zeros(0)
     if f.ndim != 2 or f.shape[1] != 6 or not np.isfinite(f).all():
         raise ValueError(f"loads has the shape {f.shape}; it must be (m, 6), finite, in N and N m")
-    held = replace(bearing, arm=bearing.Dpw / 2) if arm == "mean" else bearing
+    held = with_arm(bearing, arm)
     turn = number("angle", angle, "it must be a finite angle in rad")
     R = held.arm
     target = np.column_stack([f[:, 0], f[:, 1], f[:, 2], -f[:, 4] / R, f[:, 3] / R])

@@ -1,7 +1,7 @@
-"""Basic reference rating life from the load of every ball (ISO/TS 16281), of radial and angular contact bearings.
+"""Basic reference rating life from the load of every ball (ISO/TS 16281): ball bearings with radial ratings.
 
-A race is worn by the loads that pass over it: where it turns against the load every spot meets every load, where
-it stands the most heavily loaded spot decides. The two races fail independently.
+A race is worn by the loads that pass over it: where it turns against the load every spot meets every load,
+where it stands the most heavily loaded spot decides. The two races fail independently.
 """
 
 from __future__ import annotations
@@ -66,8 +66,8 @@ def race_capacities(bearing: BallBearing, C: float) -> Races:
 def equivalent_ball_loads(bearing: BallBearing, inner: ArrayLike, outer: ArrayLike) -> Races:
     """Dynamic equivalent ball load of each race, N, from the loads of the balls.
 
-    (Σ Q³/Z)^{1/3} of a race that turns against the load, (Σ Q^{10/3}/Z)^{3/10} of one that stands; the load is
-    taken to stand in space, and which ring turns is said by the bearing's `turning`.
+    (Σ Q³/Z)^{1/3} of a race that turns against the load, (Σ Q^{10/3}/Z)^{3/10} of one that stands; the load
+    is taken to stand in space, and which ring turns is said by the bearing's `turning`.
 
     Parameters
     ----------
@@ -169,6 +169,20 @@ def rating_life(
     return life_of_loads(bearing, loads_under(bearing, load, arm=arm, angle=angle), C=C)
 
 
+def with_arm(bearing: BallBearing, arm: Arm) -> BallBearing:
+    """The bearing with the arm of its tilts and moments as the standard has it, or as it is.
+
+    Parameters
+    ----------
+    bearing, arm
+        As in `rating_life`.
+    """
+    one_of("arm", arm, ("mean", "groove"))
+    if arm == "groove":
+        return bearing
+    return replace(bearing, overrides=bearing.overrides._replace(arm=bearing.Dpw / 2))
+
+
 def loads_under(bearing: BallBearing, load: ArrayLike, *, arm: Arm = "mean", angle: float = 0.0) -> Array:
     """Loads of the balls (Z,), N, in the equilibrium under a load (6,), N and N m.
 
@@ -178,6 +192,5 @@ def loads_under(bearing: BallBearing, load: ArrayLike, *, arm: Arm = "mean", ang
         As in `rating_life`.
     """
     instance("bearing", bearing, BallBearing, "give a BallBearing")
-    one_of("arm", arm, ("mean", "groove"))
-    held = replace(bearing, arm=bearing.Dpw / 2) if arm == "mean" else bearing
+    held = with_arm(bearing, arm)
     return np.asarray(held.ball_loads(held.displacement(load, angle), angle))

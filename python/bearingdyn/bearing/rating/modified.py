@@ -1,6 +1,6 @@
 """Life in a given oil: viscosity ratio, contamination and reliability (ISO 281:2007), in hours.
 
-The factor a_ISO is that of radial ball bearings; it ends at 50. Fatigue limits are the standard's simple ones.
+The factor a_ISO is that of radial ball bearings; it ends at 50. Fatigue limits are by the simple rule.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def fatigue_limit(C0: float, Dpw: float) -> float:
     Dpw
         Pitch diameter, m.
     """
-    return positive("C0", C0) / 22 * min(1.0, (0.1 / positive("Dpw", Dpw)) ** 0.5)
+    return positive("C0", C0) / 22 * min(1.0, math.sqrt(0.1 / positive("Dpw", Dpw)))
 
 
 def contamination_factor(contamination: float | str, Dpw: float) -> float:
