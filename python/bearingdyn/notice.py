@@ -72,6 +72,17 @@ class BearingWarning(Notice):
     """
 
 
+class PassedOver(Notice):
+    """A designation says something that the model of a bearing does not know.
+
+    When: `catalogue.bearing` reads a maker's name, seals, shields, a cage, a tolerance class, or a clearance
+    class beside a given clearance. The text says how the rest was read.
+
+    Remedy: none where that is what was meant; write the bare number, as "6205" or "6205 C3", to have no
+    warning.
+    """
+
+
 class UnloadedBearing(Notice):
     """Warning: a linear analysis stands on a bearing that carries nothing, and so has no stiffness.
 
