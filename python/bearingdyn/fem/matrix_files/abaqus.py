@@ -39,7 +39,7 @@ GEOMETRY = ("SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "IMPERFECTION")
 def read_abaqus(
     stiffness: str | Path, mass: str | Path, points: Points | None = None, **check: Any
 ) -> FEMatrices:
-    """Read the two files (.mtx) that *MATRIX OUTPUT, STIFFNESS, MASS writes, in either of its text formats.
+    """Read Abaqus' matrices: the two files (.mtx) of *MATRIX OUTPUT, STIFFNESS, MASS, either text format.
 
     Abaqus has no units: pass units=MM_TONNE for mm, t, s.
 

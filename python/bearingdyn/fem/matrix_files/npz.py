@@ -100,7 +100,7 @@ def _from_arrays(arrays: Mapping[str, Any], name: str, path: Path) -> Any:
 
 
 def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FEMatrices:
-    """Read a NumPy archive with K and M, and perhaps points, labels and internal.
+    """Read a NumPy archive (.npz) with K and M, and perhaps points, labels and internal.
 
     K and M are each dense, or in compressed sparse rows: four arrays K_data, K_indices, K_indptr, K_shape.
     Pickled objects are not read.

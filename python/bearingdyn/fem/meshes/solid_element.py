@@ -178,7 +178,7 @@ def face_shapes(nodes: int, X: Array) -> tuple[Array, Array]:
 
 
 def gauss(n: int, dimensions: int) -> tuple[Array, Array]:
-    """Gauss points (n^d, d) and weights of the unit square or cube, n a direction."""
+    """Gauss points (n^d, d) and weights of a solid element's unit square or cube, n a direction."""
     x, w = np.polynomial.legendre.leggauss(n)
     grid = np.meshgrid(*[0.5 * (x + 1.0)] * dimensions, indexing="ij")
     weights = np.meshgrid(*[0.5 * w] * dimensions, indexing="ij")
@@ -186,7 +186,7 @@ def gauss(n: int, dimensions: int) -> tuple[Array, Array]:
 
 
 def simplex_points(dimensions: int) -> tuple[Array, Array]:
-    """Points (q, d) and weights of the unit triangle or tetrahedron, exact to order 4 (scikit-fem's)."""
+    """Points (q, d), weights of a solid element's unit triangle or tetrahedron, exact to order 4."""
     import skfem
     from skfem.quadrature import get_quadrature
 
