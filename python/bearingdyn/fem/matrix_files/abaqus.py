@@ -108,16 +108,26 @@ def _entries(path: Path) -> tuple[Index | None, Index, Array]:
 
 
 def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
-    """Node number -> position of all *NODE blocks of an input file of Abaqus or CalculiX (.inp), in its unit.
+    """Read the positions in all *NODE blocks of an input file of Abaqus or CalculiX (.inp).
 
     *INCLUDE is followed.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+
+    Returns
+    -------
+    dict
+        Number of the node -> position (x, y, z), in the unit of the file.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        For a file without nodes, or with a line that is no node.
+        For a file without nodes, or with a line that cannot be a node.
     """
     p = existing(path)
     nodes: dict[int, tuple[float, float, float]] = {}
