@@ -234,7 +234,20 @@ def _kept_on_axis(mesh: RevolutionMesh, order: int, components: tuple[int, ...])
 def assemble_harmonic(
     mesh: RevolutionMesh, order: int, components: tuple[int, ...] = ALL_COMPONENTS
 ) -> Harmonic:
-    """Matrices of a body of revolution for the Fourier harmonic n >= 0, components (0: U, 1: V, 2: W).
+    """Matrices of a body of revolution for one Fourier harmonic.
+
+    Parameters
+    ----------
+    mesh
+        The section in (r, z).
+    order
+        Of the harmonic in the azimuth, 0, 1, 2, …
+    components
+        The motions that are left free, 0: radial U, 1: tangential V, 2: axial W.
+
+    Returns
+    -------
+    Harmonic
 
     Raises
     ------

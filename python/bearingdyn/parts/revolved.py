@@ -50,7 +50,7 @@ from bearingdyn.types import Array, Complex, Index
 
 @dataclass(frozen=True, eq=False)
 class RevolvedModes:
-    """Undamped modes of a body of revolution, of one Fourier order.
+    """Undamped modes of a revolved body, of one Fourier order.
 
     Parameters
     ----------
