@@ -1,0 +1,218 @@
+"""Static balance of a body that rigid surfaces squeeze: Newton's method in steps, with contact that may open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from bearingdyn.fem.factors import factorise
+from bearingdyn.types import Array, Index
+
+TOLERANCE = 1e-11  # out-of-balance force over the largest nodal force: what round-off leaves is some 1e-13
+ITERATIONS = 25
+SMALLEST = 1 / 64  # step, over the whole squeeze, below which the search is given up
+LEAST_VOLUME = 0.05  # ratio of areas or volumes at a point below which a trial step is shortened
+
+
+class State(Protocol):
+    """A deformed body."""
+
+    @property
+    def volume_ratio(self) -> float:
+        """Positive where no element is turned inside out."""
+
+    @property
+    def force(self) -> Array:
+        """Nodal forces (n,) that hold it, N."""
+
+    @property
+    def pressures(self) -> Array:
+        """The pressures of the elements, Pa."""
+
+    def pressures_after(self, du: Array) -> Array:
+        """Those that a further displacement (n,) leads to, linearised."""
+
+    def tangent(self, pressures: Array | None = None) -> Any:
+        """Sparse (n, n), N/m, its geometric part at given pressures."""
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """A rigid surface without friction that coordinates cannot pass: sign·u <= gap + sign·travel·s.
+
+    Parameters
+    ----------
+    at
+        (k,) coordinates.
+    sign
+        +1 if the wall stands at the coordinates' greater side, −1 if at the lesser.
+    gap
+        (k,) distance of each from the wall at s = 0, m.
+    travel
+        Motion of the wall along the coordinates, m, at s = 1.
+    """
+
+    at: Index
+    sign: float
+    gap: Array
+    travel: float
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """A static state.
+
+    Parameters
+    ----------
+    u
+        (n,) displacement, m.
+    state
+        The body there.
+    touching
+        Of each wall, (k,) whether a coordinate stands at it.
+    """
+
+    u: Array
+    state: Any
+    touching: tuple[Any, ...]
+
+
+class NoBalance(ArithmeticError):
+    """No static state was found beyond a share of the squeeze.
+
+    Parameters
+    ----------
+    share
+        Of the squeeze asked for that was reached.
+    reason
+        What stopped it.
+    """
+
+    def __init__(self, share: float, reason: str) -> None:
+        super().__init__(reason)
+        self.share = share
+        self.reason = reason
+
+
+def balance(
+    state: Callable[[Array], State],
+    n: int,
+    free: Index,
+    held: Index,
+    travel: Array,
+    walls: Sequence[Wall] = (),
+    check: Callable[[State], str | None] = lambda state: None,
+) -> Balance:
+    """The state after the held coordinates and the walls have travelled.
+
+    Parameters
+    ----------
+    state
+        The body under a displacement (n,).
+    free
+        Coordinates that exist; the others stay at zero.
+    held, travel
+        Coordinates that are moved, and how far, m.
+    check
+        Why a converged state is refused; None if it is not.
+
+    Raises
+    ------
+    NoBalance
+        With the share of the travel that was reached, where steps of 1/64 of it fail.
+    """
+    u = np.zeros(n)
+    touching = tuple(wall.gap <= 1e-9 * max(abs(wall.travel), float(np.ptp(wall.gap))) for wall in walls)
+    reached, step, reason = 0.0, 1.0, ""
+    here = Balance(u, state(u), touching)
+    if not np.any(travel) and not any(wall.travel for wall in walls):
+        return here  # nothing moves, and there are no forces to measure a balance by
+    while reached < 1.0:
+        target = min(1.0, reached + step)
+        try:
+            here = _newton(state, n, free, held, travel, walls, here, target)
+            refused = check(here.state)
+            if refused:
+                raise _Failed(refused)
+        except _Failed as failure:
+            reason, step = str(failure), 0.5 * step
+            here = Balance(u, state(u), touching)
+            if step < SMALLEST:
+                raise NoBalance(reached, reason) from None
+            continue
+        u, touching, reached = here.u, here.touching, target
+        step = min(2.0 * step, 1.0)
+    return here
+
+
+class _Failed(Exception):
+    """A step of the squeeze that does not work."""
+
+
+def _newton(
+    state: Callable[[Array], State],
+    n: int,
+    free: Index,
+    held: Index,
+    travel: Array,
+    walls: Sequence[Wall],
+    start: Balance,
+    target: float,
+) -> Balance:
+    """One step, from a balanced state.
+
+    Pressures are iterated beside the displacements (the mixed form of Newton's method): those of a trial
+    displacement are the bulk modulus times what it gets wrong of the volume, and would spoil the next tangent.
+    """
+    p = start.state.pressures
+    u, now, touching = start.u, start.state, [t.copy() for t in start.touching]
+    worst = np.inf
+    for iteration in range(ITERATIONS):
+        goal = np.full(n, np.nan)
+        goal[held] = target * travel
+        for wall, touch in zip(walls, touching, strict=True):
+            goal[wall.at[touch]] = (wall.sign * wall.gap + wall.travel * target)[touch]
+        given = np.flatnonzero(~np.isnan(goal))
+        open_ = np.setdiff1d(free, given)
+        f, K = now.force, now.tangent(p)
+        jump = goal[given] - u[given]
+        du = np.zeros(n)
+        du[given] = jump
+        load = -f[open_] - K[open_][:, given] @ jump
+        try:
+            du[open_] = factorise(K[open_][:, open_]).solve(load)
+        except RuntimeError:
+            raise _Failed("the tangent of the body is singular") from None
+        share = 1.0
+        while True:
+            trial = state(u + share * du)
+            if trial.volume_ratio > LEAST_VOLUME:
+                break
+            share *= 0.5
+            if share < 1e-2:
+                raise _Failed("elements turn inside out")
+        p = p + share * (now.pressures_after(du) - p)
+        u, now = u + share * du, trial
+        changed = share < 1.0
+        f = now.force
+        scale = float(np.abs(f).max())
+        for wall, touch in zip(walls, touching, strict=True):
+            length = max(abs(wall.travel), 1e-300)
+            beyond = wall.sign * u[wall.at] - wall.gap - wall.sign * wall.travel * target
+            through = ~touch & (beyond > 1e-10 * length)
+            pulled = touch & (wall.sign * f[wall.at] > 1e-9 * scale)
+            if iteration < ITERATIONS - 8:
+                touch[through], touch[pulled] = True, False
+            changed |= bool(through.any() or pulled.any())
+        residual = float(np.abs(f[open_]).max(initial=0.0))
+        if not np.isfinite(residual):
+            raise _Failed("the forces are not finite")
+        if not changed and residual <= TOLERANCE * scale:
+            return Balance(u, now, tuple(touching))
+        if not changed and residual >= 0.5 * worst and residual <= 1e-9 * scale:
+            return Balance(u, now, tuple(touching))  # as balanced as round-off lets it be
+        worst = min(worst, residual)
+    raise _Failed(f"the search for balance does not settle in {ITERATIONS} iterations")
