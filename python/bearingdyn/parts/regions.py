@@ -15,6 +15,8 @@ from bearingdyn.fem import Rectangle
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, warn_beyond
 
+LOCKING = 0.45  # Poisson's ratio from which an elastic region counts as rubber, lest its elements lock
+
 
 class ViscoelasticSolid(Protocol):
     """A material elastic in volume and viscoelastic in shear, such as Maxwell."""
@@ -62,6 +64,11 @@ def quasi_static(material: Any, omega: float, after: float | None) -> complex:
             "in shear to solve with; give a material with G0 > 0, or omega > 0"
         )
     return G
+
+
+def is_rubber(material: Any) -> bool:
+    """Whether a material is nearly incompressible: viscoelastic, or elastic with ν of LOCKING or more."""
+    return not isinstance(material, Elastic) or material.nu >= LOCKING
 
 
 @dataclass(frozen=True)

@@ -39,15 +39,13 @@ from bearingdyn.fem import (
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.regions import ViscoelasticSolid, quasi_static
+from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber, quasi_static
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
 from bearingdyn.short import short
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
 Material = Elastic | ViscoelasticSolid
-
-LOCKING = 0.45  # Poisson's ratio from which an elastic region is assembled as incompressible, lest it lock
 
 
 @dataclass(frozen=True)
@@ -258,8 +256,7 @@ class Solid:
         rubbers: list[tuple[ViscoelasticSolid, Any]] = []
         for name, elements in self.mesh.regions.items():
             material = self._materials[name]
-            soft = not isinstance(material, Elastic) or material.nu >= LOCKING
-            unit = assemble_solid(self.mesh, elements, incompressible=soft)
+            unit = assemble_solid(self.mesh, elements, incompressible=is_rubber(material))
             M = M + material.density * unit.mass
             if isinstance(material, Elastic):
                 E = E + unit.stiffness(material)

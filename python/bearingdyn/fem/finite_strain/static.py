@@ -185,7 +185,7 @@ def _newton(
         try:
             du[open_] = factorise(K[open_][:, open_]).solve(load)
         except RuntimeError:
-            raise _Failed("the tangent of the body is singular") from None
+            raise _Failed("the tangent of the body is singular: it buckles, or is free to move") from None
         share = 1.0
         while True:
             trial = state(u + share * du)
@@ -193,7 +193,7 @@ def _newton(
                 break
             share *= 0.5
             if share < 1e-2:
-                raise _Failed("elements turn inside out")
+                raise _Failed("elements turn inside out; squeeze less, recess the free ends, or let the surfaces slip")
         p = p + share * (now.pressures_after(du) - p)
         u, now = u + share * du, trial
         changed = share < 1.0
@@ -215,4 +215,4 @@ def _newton(
         if not changed and residual >= 0.5 * worst and residual <= 1e-9 * scale:
             return Balance(u, now, tuple(touching))  # as balanced as round-off lets it be
         worst = min(worst, residual)
-    raise _Failed(f"the search for balance does not settle in {ITERATIONS} iterations")
+    raise _Failed("the search for balance does not settle: a free surface folds over the edge of a bond, or the body buckles; recess the free ends, let the surfaces slip, or squeeze less")
