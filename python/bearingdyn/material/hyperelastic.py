@@ -1,8 +1,9 @@
 """Strain energies of rubber at finite strain: neo-Hookean, Mooney–Rivlin and Yeoh.
 
-Each is W(Ī1, Ī2) of the invariants of the isochoric left Cauchy–Green tensor b̄ = J^(−2/3) F Fᵀ, per unit of its
-own initial shear modulus: what a part is made of (its relaxed modulus and K) stays in the material, and the law
-says only how the stress goes on from there. The energy of volume, ½K(J − 1)², is the same for all.
+Each is W(Ī1, Ī2) of the invariants of the isochoric left Cauchy–Green tensor b̄ = J^(−2/3) F Fᵀ, per unit
+of its own initial shear modulus: what a part is made of (its relaxed modulus and K) stays in the material,
+and the law says only how the stress goes on from there. The energy of volume, ½K(J − 1)², is the same for
+all.
 """
 
 from __future__ import annotations
@@ -80,8 +81,8 @@ class Yeoh:
     Parameters
     ----------
     C10, C20, C30
-        In any unit, such as Pa from a test: only their ratios count, for 2·C10 is the shear modulus, which the
-        material gives. Filled rubber has C20 < 0 < C30.
+        In any unit, such as Pa from a test: only their ratios count, for 2·C10 is the shear modulus, which
+        the material gives. Filled rubber has C20 < 0 < C30.
 
     Raises
     ------

@@ -7,6 +7,7 @@ from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.housing import Feet, Housing
 from bearingdyn.parts.imported import Imported, NodeSet, at_radius
 from bearingdyn.parts.layer import Layer
+from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
@@ -15,6 +16,7 @@ from bearingdyn.parts.ring import Ring, damping_sample
 from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Disc, Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.parts.squeezed import Squeezed
 
 __all__ = [
     "Cylinder",
@@ -31,6 +33,7 @@ __all__ = [
     "Line",
     "MeshNodes",
     "NodeSet",
+    "ORing",
     "Outline",
     "Outlined",
     "Patch",
@@ -44,6 +47,7 @@ __all__ = [
     "Section",
     "Shaft",
     "Solid",
+    "Squeezed",
     "ViscoelasticSolid",
     "Where",
     "at_radius",

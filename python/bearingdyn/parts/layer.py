@@ -15,8 +15,7 @@ from bearingdyn.cms import Superelement, check_moduli
 from bearingdyn.fem import revolution_mesh
 from bearingdyn.fem.finite_strain import NoBalance
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import Elastic
-from bearingdyn.material.hyperelastic import Hyperelastic
+from bearingdyn.material import Elastic, Hyperelastic
 from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
@@ -138,8 +137,8 @@ class Layer:
         interference
             by how much its outer diameter exceeds the bore, m. Give one of the two.
         inside, outside
-            "bonded" from the start, or "slip" without friction while the layer is pressed in. Flat ends bonded
-            from the start fold over the edge of the bond beyond some 3 % of squeeze: give them a recess, or
+            "bonded" from the start, or "slip" without friction while it is pressed in. Flat ends bonded from
+            the start fold over the edge of the bond beyond some 3 % of squeeze: give them a recess, or
             let both surfaces slip.
         law
             Strain energy: NeoHooke(), the default, MooneyRivlin or Yeoh, scaled to the static modulus.

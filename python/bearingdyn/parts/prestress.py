@@ -1,4 +1,4 @@
-"""A body of revolution squeezed between its rigid faces: what they do, and the static state that they leave."""
+"""A body of revolution squeezed between its rigid faces: what they do, and the static state they leave."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from bearingdyn.fem.finite_strain import (
     Wall,
     balance,
 )
-from bearingdyn.material.hyperelastic import NEO_HOOKE, Hyperelastic
+from bearingdyn.material import NEO_HOOKE, Hyperelastic
 from bearingdyn.parts.faces import MeshFace
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.short import short
@@ -126,8 +126,8 @@ class Prestress:
         """What the state tells of a part, of which a face was pressed."""
         push, pressure = {}, {}
         for name in self.faces:
-            _, p, area = self.pressures(name)
-            push[name] = float(p @ area)
+            _, normal, area = self._seat(name)
+            push[name] = -float(np.sum(self._force[self.faces[name].nodes] * normal))
             pressure[name] = push[name] / float(area.sum())
         elements = self.state.elements
         stretches = elements.stretches
@@ -146,23 +146,28 @@ class Prestress:
             stability=float(elements.stability.min()),
         )
 
-    def pressures(self, name: str) -> tuple[Index, Array, Array]:
-        """Nodes of a face, the pressure at each, Pa, and the area it stands for, m²."""
+    def pressures(self, name: str) -> tuple[Index, Array]:
+        """Nodes of a face and the pressure at each, Pa: its force over the area it stands for."""
+        nodes, normal, area = self._seat(name)
+        push = -np.sum(self._force[nodes] * normal, axis=1)
+        return nodes[area > 0.0], push[area > 0.0] / area[area > 0.0]
+
+    def _seat(self, name: str) -> tuple[Index, Array, Array]:
+        """Nodes of a face, their outward normals (k, 2), and the area each stands for, m²."""
         face = self.faces[name]
         normal, share = np.zeros((len(self.state.u), 2)), np.zeros(len(self.state.u))
         r, z = self.state.r[face.sides], self.state.z[face.sides]
         along = np.stack([r[:, 2] - r[:, 0], z[:, 2] - z[:, 0]], axis=1)
-        # ∫N r ds of a straight side, by Simpson's rule for each node: exact for r linear
+        # ∫N r ds of a straight side, by Simpson's rule for each node
         part = 2.0 * np.pi * r * np.array([1.0, 4.0, 1.0]) / 6.0
         np.add.at(share, face.sides, part * np.linalg.norm(along, axis=1)[:, None])
         outward = _outward(self.state.mesh, face.sides, along)
         for k in range(3):
-            np.add.at(normal, face.sides[:, k], part[:, k, None] * outward)
-        n = normal[face.nodes] / np.linalg.norm(normal[face.nodes], axis=1)[:, None]
-        area = share[face.nodes]
-        push = -np.sum(self._force[face.nodes] * n, axis=1)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return face.nodes, np.where(area > 0, push / area, 0.0), area
+            np.add.at(normal, face.sides[:, k], outward)
+        length = np.linalg.norm(normal[face.nodes], axis=1)[:, None]
+        # a node that touches beside the last whole side: as the face is on the mean
+        whole = np.where(length > 0.0, normal[face.nodes], outward.sum(axis=0))
+        return face.nodes, whole / np.linalg.norm(whole, axis=1)[:, None], share[face.nodes]
 
     @property
     def bulge(self) -> float:
@@ -220,11 +225,13 @@ class _Side:
 
 
 def _side(mesh: RevolutionMesh, name: str, face: MeshFace) -> _Side:
-    along = np.stack([np.diff(mesh.r[face.sides[:, ::2]]), np.diff(mesh.z[face.sides[:, ::2]])], axis=-1)[:, 0]
+    along = np.stack([np.diff(mesh.r[face.sides[:, ::2]]), np.diff(mesh.z[face.sides[:, ::2]])], axis=-1)[
+        :, 0
+    ]
     on_surface = np.isin(face.sides[:, 1], mesh.outline_sides[:, 1])
     if not on_surface.all():
         raise ValueError(
-            f"press[{name!r}] names a face inside the body; give its motion along r and z as a pair (dr, dz), m"
+            f"press[{name!r}] names a face inside the body; give its motion as a pair (dr, dz), m"
         )
     normal = _outward(mesh, face.sides, along).sum(axis=0)
     axis = int(np.argmax(np.abs(normal)))
@@ -262,10 +269,11 @@ def squeeze(
     NoBalance
         Where no balance is found: it has the share of the squeeze that was reached, and what stopped it.
     """
-    slip = tuple(slip)
+    slip = list(slip)
     for field, names in (("press", press), ("slip", slip)):
         for name in names:
             require(name in faces, field, name, meant(str(name), list(faces)))
+    slip = [name for name in faces if name in slip]
     travel, sides = {}, {}
     for name, face in faces.items():
         given = press.get(name, 0.0)
@@ -274,7 +282,7 @@ def squeeze(
             move = np.array([number(f"press[{name!r}]", v, "it must be (dr, dz), m") for v in given])
             if name in slip:
                 raise ValueError(
-                    f"press[{name!r}] is {given}; a face that slips is moved along its normal: give one length, m"
+                    f"press[{name!r}] is {given}; a face that slips moves along its normal: give a length, m"
                 )
         else:
             depth = number(f"press[{name!r}]", given, "it must be a length into the body, m, or (dr, dz)")
@@ -283,9 +291,15 @@ def squeeze(
                 sides[name] = _side(mesh, name, face)
                 move[sides[name].axis] = -sides[name].sign * depth
             if name in slip and not depth >= 0:
-                raise ValueError(f"press[{name!r}] is {given}; a face that slips cannot be pulled: 0 or more, m")
+                raise ValueError(
+                    f"press[{name!r}] is {given}; a face that slips cannot be pulled: 0 or more, m"
+                )
         travel[name] = move
-        if name not in slip and name not in sides and np.isin(face.sides[:, 1], mesh.outline_sides[:, 1]).all():
+        if (
+            name not in slip
+            and name not in sides
+            and np.isin(face.sides[:, 1], mesh.outline_sides[:, 1]).all()
+        ):
             sides[name] = _side(mesh, name, face)
 
     body = RevolvedElements(mesh, laws, shear, bulk)
@@ -304,9 +318,7 @@ def squeeze(
         gap = side.sign * (side.place - (mesh.r, mesh.z)[side.axis][candidates])
         at = 2 * candidates + side.axis
         kept = (gap >= -SAME * mesh.size) & np.isin(at, free)
-        walls.append(
-            Wall(at[kept], side.sign, np.maximum(gap[kept], 0.0), float(travel[name][side.axis]))
-        )
+        walls.append(Wall(at[kept], side.sign, np.maximum(gap[kept], 0.0), float(travel[name][side.axis])))
     sliding_on = [sides[name].axis for name in slip]
     if not held and 1 not in sliding_on:
         middle = int(np.argmin(np.abs(mesh.z - 0.5 * (mesh.z.min() + mesh.z.max()))))
@@ -335,14 +347,13 @@ def squeeze(
     state: RevolvedState = found.state
     touched = {}
     for name, touch, wall in zip(slip, found.touching, walls, strict=True):
-        nodes = wall.at[touch] // 2
-        side = mesh.outline_sides[np.isin(mesh.outline_sides, nodes).all(axis=1)]
-        touched[name] = side
+        nodes = np.unique(wall.at[touch] // 2)
+        touched[name] = nodes, mesh.outline_sides[np.isin(mesh.outline_sides, nodes).all(axis=1)]
     now = {}
     for name, face in faces.items():
         reference = face.reference + float(travel[name][1])
-        side = touched.get(name, face.sides)
+        nodes, side = touched.get(name, (face.nodes, face.sides))
         if not len(side):
-            raise ValueError(f"press leaves {name!r} without contact; press it further")
-        now[name] = MeshFace(np.unique(side) if name in touched else face.nodes, side, reference)
+            raise ValueError(f"press leaves {name!r} with less than one side of contact; press it further")
+        now[name] = MeshFace(nodes, side, reference)
     return Prestress(state, now, {name: faces[name] for name in slip}, branches)

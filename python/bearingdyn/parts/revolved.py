@@ -36,8 +36,7 @@ from bearingdyn.fem import (
 )
 from bearingdyn.fem.finite_strain import NoBalance
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import Elastic
-from bearingdyn.material.hyperelastic import NEO_HOOKE, Hyperelastic
+from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
 from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
 from bearingdyn.parts.faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.outline import Outline, azimuths, revolved
@@ -107,8 +106,8 @@ class Revolved:
         How many rounds of cms.inertia_shapes follow the static shapes of each modulus. One round serves a
         layer or a sample better than many fixed-interface modes.
     prestress
-        The static state of a body that `assembled` has squeezed; its mesh is then where the state is. None: at
-        rest, without stress.
+        The static state of a body that `assembled` has squeezed; its mesh is then where the state is. None:
+        at rest, without stress.
 
     Raises
     ------
@@ -288,19 +287,20 @@ class Revolved:
         Parameters
         ----------
         press
-            interface -> how far it moves into the body along its normal, r or z, m; or its motion (dr, dz), m.
-            All others stay where they are.
+            interface -> how far it moves into the body along its normal, r or z, m; or its motion (dr, dz),
+            m. All others stay where they are.
         slip
-            Interfaces without friction while they are pressed on. The body may part from them, and more of its
-            free surface come to touch them: of an O-ring they are the lines of first contact, and the rigid
-            surfaces the cylinders, or planes, that touch the body there. All others are bonded from the start.
+            Interfaces without friction while they are pressed on. The body may part from them, and more of
+            its free surface come to touch them: of an O-ring they are the lines of first contact, and the
+            rigid surfaces the cylinders, or planes, that touch the body there. All others are bonded from
+            the start.
         law
             Strain energy of the viscoelastic regions, and of elastic ones with ν of 0.45 or more: NeoHooke(),
             the default, MooneyRivlin or Yeoh, scaled to the modulus of each. Other regions are neo-Hookean.
         branches
             What of the stiffness depends on the frequency. "current": the branches have relaxed, and start
-            anew about the static state, as the linear law in its deformed place. "separable": the static law's
-            moduli times a function of time (Simo, Morman). They differ by 1 % at 10 % of squeeze.
+            anew about the static state, as the linear law in its deformed place. "separable": the static
+            law's moduli times a function of time (Simo, Morman). They differ by 1 % at 10 % of squeeze.
         after
             Take the static modulus G(t) after this time, s, instead of the relaxed one.
 

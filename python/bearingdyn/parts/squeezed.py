@@ -1,4 +1,4 @@
-"""What a squeezed part tells: forces, pressures, stretch, bulge, contact; and the stiffness that it then has."""
+"""What a squeezed part tells: forces, pressures, stretch, bulge, contact, and the stiffness it then has."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Nearly incompressible elements in a deformed state: forces, tangents, and what depends on the frequency.
 
-The pressure is p = K Π(J − 1), Π the projection on the functions `modes` of each element (linear in its place before
-deformation), the mixed element Q2/P1 of the linear theory; undeformed, all matrices are those of the linear theory.
+The pressure is p = K Π(J − 1), Π the projection on the functions `modes` of each element (linear in its
+place before deformation), the mixed element Q2/P1 of the linear theory; undeformed, all matrices are those
+of the linear theory.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from bearingdyn.fem.finite_strain.point import ONE, SYMMETRIC, DEVIATORIC, Point
-from bearingdyn.material.hyperelastic import Hyperelastic
+from bearingdyn.fem.finite_strain.point import DEVIATORIC, ONE, SYMMETRIC, Point
+from bearingdyn.material import Hyperelastic
 from bearingdyn.types import Array, Index
 
 CURRENT, SEPARABLE = "current", "separable"
@@ -86,7 +87,7 @@ class Deformed:
         return np.asarray((self.modes @ self.pressures)[:, :, 0])
 
     def pressures_after(self, B: Array, du: Array) -> Array:
-        """The pressures that a further motion du (m, c) of the coordinates leads to, linearised, (m, k, 1)."""
+        """The pressures that a further motion du (m, c) leads to, linearised, (m, k, 1)."""
         return np.asarray(
             self.bulk[:, None, None]
             * (self._swelling + np.linalg.solve(self._gram, self._swelling_rows(B) @ du[:, :, None]))
@@ -132,7 +133,7 @@ class Deformed:
         return self._gathered("stability")
 
     def force(self, B: Array) -> Array:
-        """Forces (m, c) on the element's coordinates, with the rows B (m, q, 9, c) of spatial gradients, N."""
+        """Forces (m, c) on the elements' coordinates, N, with rows B (m, q, 9, c) of spatial gradients."""
         return np.asarray(np.einsum("mqi,mqic->mc", self.weights[..., None] * self.stress, B, optimize=True))
 
     def stiffness(self, B: Array, pressures: Array | None = None) -> Array:

@@ -1,12 +1,13 @@
 """Stress and moduli of nearly incompressible rubber at a point, in the deformed state.
 
 With the gradient F of the deformation, J = det F and b̄ = J^(−2/3) F Fᵀ, the energy per reference volume is
-G·W(Ī1, Ī2) + p(J − 1) − p²/2K, the pressure p an unknown of each element. All here is Kirchhoff's (per reference
-volume): stress τ, moduli c of its Lie derivative, and A = c + the geometric part, so that the second variation of
-the energy at fixed p is ∫ l:A:l dV0 for a further displacement of spatial gradient l (Simo & Hughes, Computational
-Inelasticity, 1998, §9.2; Holzapfel, Nonlinear Solid Mechanics, 2000, §6.6).
+G·W(Ī1, Ī2) + p(J − 1) − p²/2K, the pressure p an unknown of each element. All here is Kirchhoff's (per
+reference volume): stress τ, moduli c of its Lie derivative, and A = c + the geometric part, so that the
+second variation of the energy at fixed p is ∫ l:A:l dV0 for a further displacement of spatial gradient l
+(Simo & Hughes, Computational Inelasticity, 1998, §9.2; Holzapfel, Nonlinear Solid Mechanics, 2000, §6.6).
 
-Second-order tensors are (..., 3, 3), fourth-order ones (..., 9, 9) over pairs ij in the order 11, 12, ..., 33.
+Second-order tensors are (..., 3, 3), fourth-order ones (..., 9, 9) over pairs ij in the order 11, 12, ...,
+33.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bearingdyn.material.hyperelastic import Hyperelastic
+from bearingdyn.material import Hyperelastic
 from bearingdyn.types import Array
 
 ONE = np.eye(3).ravel()

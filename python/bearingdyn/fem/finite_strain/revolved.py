@@ -1,7 +1,8 @@
-"""Bodies of revolution in a deformed state: axisymmetric statics, and Fourier harmonics of a small motion about it.
+"""Bodies of revolution in a deformed state: axisymmetric statics, and harmonics of a small motion about it.
 
-The frame is (r, θ, z). Order n moves by u_r = U cos nφ, u_θ = V sin nφ, u_z = W cos nφ as in fem.revolution; the
-harmonics of one order see a state that does not depend on φ and is not twisted, so they stay apart.
+The frame is (r, θ, z). Order n moves by u_r = U cos nφ, u_θ = V sin nφ, u_z = W cos nφ as in
+fem.revolution; the harmonics of one order see a state that does not depend on φ and is not twisted, so they
+stay apart.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import scipy
 from bearingdyn.fem.finite_strain.deformed import CURRENT, Deformed
 from bearingdyn.fem.meshes.revolution_mesh import RevolutionMesh, shape_functions
 from bearingdyn.fem.revolution import AXIAL, Harmonic, Pattern, gathered_harmonic, pattern
-from bearingdyn.material.hyperelastic import Hyperelastic
+from bearingdyn.material import Hyperelastic
 from bearingdyn.types import Array, Index
 
 
@@ -200,7 +201,7 @@ class RevolvedState:
         return self.elements.pressures_after(self._axial_rows, own)
 
     def tangent(self, pressures: Array | None = None) -> Any:
-        """∂force/∂u, sparse (2 nodes, 2 nodes), N/m; its geometric part at given pressures, if there are any."""
+        """∂force/∂u, sparse (2 nodes, 2 nodes), N/m; its geometric part at given pressures, if any."""
         where, _ = self.body.axial
         K = self.elements.stiffness(self._axial_rows, pressures)
         data = where.add(K, self.body.mesh.region).sum(axis=0)

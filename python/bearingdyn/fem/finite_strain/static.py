@@ -1,4 +1,4 @@
-"""Static balance of a body that rigid surfaces squeeze: Newton's method in steps, with contact that may open."""
+"""Static balance of a body that rigid surfaces squeeze: Newton's method, with contact that may open."""
 
 from __future__ import annotations
 
@@ -14,6 +14,10 @@ from bearingdyn.types import Array, Index
 TOLERANCE = 1e-11  # out-of-balance force over the largest nodal force: what round-off leaves is some 1e-13
 ITERATIONS = 25
 SMALLEST = 1 / 64  # step, over the whole squeeze, below which the search is given up
+SETTLED = 1e-3  # out-of-balance force, over the largest, from which contact may change
+PATIENCE, HOPELESS = 10, 0.01  # iterations after which an out-of-balance force so large is given up
+CHANGES = 20  # further iterations for each wall
+GENTLE = 4  # changes of contact after which one coordinate changes at a time
 LEAST_VOLUME = 0.05  # ratio of areas or volumes at a point below which a trial step is shortened
 
 
@@ -126,7 +130,8 @@ def balance(
     """
     u = np.zeros(n)
     touching = tuple(wall.gap <= 1e-9 * max(abs(wall.travel), float(np.ptp(wall.gap))) for wall in walls)
-    reached, step, reason = 0.0, 1.0, ""
+    reached, step = 0.0, 1.0
+    reasons: list[str] = []  # since the last step that worked
     here = Balance(u, state(u), touching)
     if not np.any(travel) and not any(wall.travel for wall in walls):
         return here  # nothing moves, and there are no forces to measure a balance by
@@ -136,14 +141,17 @@ def balance(
             here = _newton(state, n, free, held, travel, walls, here, target)
             refused = check(here.state)
             if refused:
+                reasons.insert(0, refused)  # what is known of a state tells more than a search that failed
                 raise _Failed(refused)
         except _Failed as failure:
-            reason, step = str(failure), 0.5 * step
+            reasons.append(str(failure))
+            step *= 0.5
             here = Balance(u, state(u), touching)
             if step < SMALLEST:
-                raise NoBalance(reached, reason) from None
+                raise NoBalance(reached, reasons[0]) from None
             continue
         u, touching, reached = here.u, here.touching, target
+        reasons.clear()
         step = min(2.0 * step, 1.0)
     return here
 
@@ -165,12 +173,13 @@ def _newton(
     """One step, from a balanced state.
 
     Pressures are iterated beside the displacements (the mixed form of Newton's method): those of a trial
-    displacement are the bulk modulus times what it gets wrong of the volume, and would spoil the next tangent.
+    displacement are the bulk modulus times what it gets wrong of the volume, and would spoil the next
+    tangent.
     """
     p = start.state.pressures
     u, now, touching = start.u, start.state, [t.copy() for t in start.touching]
-    worst = np.inf
-    for iteration in range(ITERATIONS):
+    worst, changes = np.inf, 0
+    for iteration in range(ITERATIONS + sum(wall.at.size > 0 for wall in walls) * CHANGES):
         goal = np.full(n, np.nan)
         goal[held] = target * travel
         for wall, touch in zip(walls, touching, strict=True):
@@ -193,26 +202,68 @@ def _newton(
                 break
             share *= 0.5
             if share < 1e-2:
-                raise _Failed("elements turn inside out; squeeze less, recess the free ends, or let the surfaces slip")
+                raise _Failed(
+                    "elements turn inside out; squeeze less, recess the free ends, or let the surfaces slip"
+                )
         p = p + share * (now.pressures_after(du) - p)
         u, now = u + share * du, trial
-        changed = share < 1.0
         f = now.force
         scale = float(np.abs(f).max())
-        for wall, touch in zip(walls, touching, strict=True):
-            length = max(abs(wall.travel), 1e-300)
-            beyond = wall.sign * u[wall.at] - wall.gap - wall.sign * wall.travel * target
-            through = ~touch & (beyond > 1e-10 * length)
-            pulled = touch & (wall.sign * f[wall.at] > 1e-9 * scale)
-            if iteration < ITERATIONS - 8:
-                touch[through], touch[pulled] = True, False
-            changed |= bool(through.any() or pulled.any())
         residual = float(np.abs(f[open_]).max(initial=0.0))
         if not np.isfinite(residual):
             raise _Failed("the forces are not finite")
-        if not changed and residual <= TOLERANCE * scale:
+        near = share == 1.0 and residual <= SETTLED * scale
+        if near and _contact_changes(walls, touching, u, f, target, scale, gently=changes > GENTLE):
+            changes, worst = changes + 1, np.inf
+            continue
+        # balanced, or as balanced as round-off lets it be
+        if near and residual <= (TOLERANCE if residual < 0.5 * worst else 1e-9) * scale:
             return Balance(u, now, tuple(touching))
-        if not changed and residual >= 0.5 * worst and residual <= 1e-9 * scale:
-            return Balance(u, now, tuple(touching))  # as balanced as round-off lets it be
         worst = min(worst, residual)
-    raise _Failed("the search for balance does not settle: a free surface folds over the edge of a bond, or the body buckles; recess the free ends, let the surfaces slip, or squeeze less")
+        if worst > HOPELESS * scale and iteration >= PATIENCE:
+            break
+    raise _Failed(
+        "the search for balance does not settle: a free surface folds over the edge of a bond, or the body "
+        "buckles; recess the free ends, let the surfaces slip, or squeeze less"
+    )
+
+
+def _contact_changes(
+    walls: Sequence[Wall],
+    touching: list[Any],
+    u: Array,
+    f: Array,
+    target: float,
+    scale: float,
+    gently: bool,
+) -> bool:
+    """Let coordinates come to touch that are past a wall; if there are none, let go of those that are pulled.
+
+    `gently` changes one coordinate of each wall at a time: all at once may come back to where it was.
+    """
+    past = [wall.sign * u[wall.at] - wall.gap - wall.sign * wall.travel * target for wall in walls]
+    for sign, excess in (
+        (
+            True,
+            [
+                np.where(t, -1.0, p - 1e-9 * abs(w.travel))
+                for w, t, p in zip(walls, touching, past, strict=True)
+            ],
+        ),
+        (
+            False,
+            [
+                np.where(t, w.sign * f[w.at] - 1e-9 * scale, -1.0)
+                for w, t in zip(walls, touching, strict=True)
+            ],
+        ),
+    ):
+        if not any((x > 0.0).any() for x in excess):
+            continue
+        for touch, x in zip(touching, excess, strict=True):
+            if gently and (x > 0.0).any():
+                touch[np.argmax(x)] = sign
+            else:
+                touch[x > 0.0] = sign
+        return True
+    return False

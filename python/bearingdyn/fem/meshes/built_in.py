@@ -189,21 +189,8 @@ def o_ring_mesh(
         )
     whole("across", across, 2)
     start, end = _angles(angle, around)
-    a, half, core = 0.5 * cord, math.asin(band / cord), 0.45
-    # the section: a rectangle in the middle and four patches about it; lines crowd to the ends of the bands
-    sides = [crowded(-half, half, across), crowded(half, math.pi - half, across)]
-    sides += [arc + math.pi for arc in sides]
-    corner = core * a * np.exp(1j * np.array([-half, half, math.pi - half, math.pi + half, -half]))
-    t = np.linspace(0.0, 1.0, max(2, across // 2) + 1)[:, None]
-    share = crowded(0.0, 1.0, across)
-    patches = []
-    for k, arc in enumerate(sides):
-        inside = corner[k] + share * (corner[k + 1] - corner[k])
-        place = inside + t * (a * np.exp(1j * arc) - inside)
-        patches.append(_patch(place.real, place.imag))
-    x, y = np.meshgrid((2 * share[::-1] - 1) * corner[1].real, (2 * share - 1) * corner[1].imag)
-    patches.append(_patch(x, y))  # all clockwise, for (r, φ, z) is right-handed
-    plane, quads = _joined(patches, 1e-9 * cord)
+    a, half = 0.5 * cord, math.asin(band / cord)
+    plane, quads = disc_section(a, half, crowded(0.0, 1.0, across), max(2, across // 2))
     p, elements, ends = second_order(*_extruded(plane, quads, np.linspace(start, end, around + 1)))
     skin = np.hypot(p[:, 0], p[:, 1]) > a * (1 - 1e-9)
     middle = len(p) - len(ends) + np.flatnonzero(skin[ends].all(axis=1))
@@ -218,6 +205,35 @@ def o_ring_mesh(
     }
     flat = SolidMesh(np.stack([radius + p[:, 0], p[:, 2], p[:, 1]], axis=1), elements, {}, surfaces)
     return _revolved(_with_kind(flat, element), closed=angle is None)
+
+
+def disc_section(radius: float, half: float, share: Array, layers: int) -> tuple[Array, Index]:
+    """Points (k, 2) and quadrilaterals (m, 4), clockwise, of a disc: a rectangle and four patches about it.
+
+    Parameters
+    ----------
+    radius
+        m.
+    half
+        Half the angle of the two patches at either end of the first axis, rad.
+    share
+        Grid lines over the arc of each patch, from 0 to 1.
+    layers
+        Elements from the rectangle to the circle.
+    """
+    core = 0.45
+    sides = [-half + 2.0 * half * share, half + (math.pi - 2.0 * half) * share]
+    sides += [arc + math.pi for arc in sides]
+    corner = core * radius * np.exp(1j * np.array([-half, half, math.pi - half, math.pi + half, -half]))
+    t = np.linspace(0.0, 1.0, layers + 1)[:, None]
+    patches = []
+    for k, arc in enumerate(sides):
+        inside = corner[k] + share * (corner[k + 1] - corner[k])
+        place = inside + t * (radius * np.exp(1j * arc) - inside)
+        patches.append(_patch(place.real, place.imag))
+    x, y = np.meshgrid((2 * share[::-1] - 1) * corner[1].real, (2 * share - 1) * corner[1].imag)
+    patches.append(_patch(x, y))  # all clockwise, for (r, φ, z) is right-handed
+    return _joined(patches, 1e-9 * 2.0 * radius)
 
 
 def _angles(angle: tuple[float, float] | None, around: int) -> tuple[float, float]:
