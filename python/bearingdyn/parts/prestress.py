@@ -352,8 +352,8 @@ def squeeze(
     now = {}
     for name, face in faces.items():
         reference = face.reference + float(travel[name][1])
-        nodes, side = touched.get(name, (face.nodes, face.sides))
-        if not len(side):
+        nodes, touching = touched.get(name, (face.nodes, face.sides))
+        if not len(touching):
             raise ValueError(f"press leaves {name!r} with less than one side of contact; press it further")
-        now[name] = MeshFace(nodes, side, reference)
+        now[name] = MeshFace(nodes, touching, reference)
     return Prestress(state, now, {name: faces[name] for name in slip}, branches)

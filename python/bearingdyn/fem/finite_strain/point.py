@@ -118,7 +118,7 @@ class Point:
                 + np.einsum("...il,...jk->...ijkl", self.b, self.b)
             ).reshape(c.shape)
             c -= 4.0 * W2[..., None, None] * (DEVIATORIC @ box @ DEVIATORIC)
-        return c
+        return np.asarray(c)
 
     def tangent(self, pressure: Array) -> Array:
         """A (..., 9, 9), Pa: l:A:l is the second variation of the energy at fixed pressure (...,), Pa."""
@@ -140,7 +140,7 @@ class Point:
     @property
     def stretches(self) -> Array:
         """Principal stretches (..., 3), rising."""
-        return np.linalg.svd(self.F, compute_uv=False)[..., ::-1]
+        return np.asarray(np.linalg.svd(self.F, compute_uv=False)[..., ::-1], dtype=np.float64)
 
 
 def _geometric(stress: Array) -> Array:

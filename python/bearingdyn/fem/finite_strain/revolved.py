@@ -188,7 +188,7 @@ class RevolvedState:
         total = [
             np.bincount(self.body.mesh.elements.ravel(), f[..., i].ravel(), len(self.u)) for i in range(2)
         ]
-        return np.stack(total, axis=1).ravel()
+        return np.asarray(np.stack(total, axis=1).ravel(), dtype=np.float64)
 
     @property
     def pressures(self) -> Array:

@@ -108,7 +108,7 @@ def balance(
     held: Index,
     travel: Array,
     walls: Sequence[Wall] = (),
-    check: Callable[[State], str | None] = lambda state: None,
+    check: Callable[[Any], str | None] = lambda state: None,
 ) -> Balance:
     """The state after the held coordinates and the walls have travelled.
 
