@@ -16,10 +16,10 @@ from bearingdyn.fem import revolution_mesh
 from bearingdyn.fem.finite_strain import NoBalance
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic
-from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.types import Array, Complex
@@ -27,7 +27,7 @@ from bearingdyn.types import Array, Complex
 
 @dataclass(frozen=True)
 class Layer:
-    """A rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
+    """A layer: a rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
 
     Parameters
     ----------

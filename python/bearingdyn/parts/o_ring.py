@@ -13,9 +13,9 @@ from bearingdyn.fem import RevolutionMesh, disc_section, quadrilaterals
 from bearingdyn.fem.finite_strain import NoBalance
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic
-from bearingdyn.parts.faces import MeshNodes
 from bearingdyn.parts.regions import Patch, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.revolved_faces import MeshNodes
 from bearingdyn.parts.squeezed import Squeezed
 
 HALF = math.pi / 4  # half of the angle, rad, of the evenly divided arcs on which it comes to touch

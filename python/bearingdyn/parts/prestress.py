@@ -20,9 +20,9 @@ from bearingdyn.fem.finite_strain import (
     balance,
 )
 from bearingdyn.material import NEO_HOOKE, Hyperelastic
-from bearingdyn.parts.faces import MeshFace
+from bearingdyn.parts.revolved_faces import MeshFace
 from bearingdyn.parts.squeezed import Squeezed
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
 Travel = float | tuple[float, float]
@@ -183,13 +183,8 @@ class Prestress:
 
     def moved(self, point: tuple[float, float, float]) -> tuple[float, float, float]:
         """Where a point (r, z, φ) of the undeformed body is now."""
-        from bearingdyn.fem.meshes.revolution_mesh import shape_functions
-
-        mesh = self.state.body.mesh
-        e, xi, eta = mesh.locate(*point[:2])
-        N = shape_functions(np.array([xi]), np.array([eta]))[0][0]
-        u = N @ self.state.u[mesh.elements[e]]
-        return point[0] + float(u[0]), point[1] + float(u[1]), point[2]
+        r, z = self.state.place(point[0], point[1])
+        return r, z, point[2]
 
 
 def _lengths(state: RevolvedState, sides: Index) -> Array:

@@ -9,7 +9,7 @@ from typing import Protocol
 from bearingdyn.cms import Superelement
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.round_face import RoundFace
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Complex
 
 

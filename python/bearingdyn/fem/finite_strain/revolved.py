@@ -16,8 +16,9 @@ import numpy as np
 import scipy
 
 from bearingdyn.fem.finite_strain.deformed import CURRENT, Deformed
-from bearingdyn.fem.meshes.revolution_mesh import RevolutionMesh, shape_functions
-from bearingdyn.fem.revolution import AXIAL, Harmonic, Pattern, gathered_harmonic, pattern
+from bearingdyn.fem.meshes.quadrilateral_element import shape_functions
+from bearingdyn.fem.meshes.revolution_mesh import RevolutionMesh
+from bearingdyn.fem.revolution_harmonics import AXIAL, Harmonic, Pattern, gathered_harmonic, pattern
 from bearingdyn.material import Hyperelastic
 from bearingdyn.types import Array, Index
 
@@ -212,6 +213,14 @@ class RevolvedState:
     def mesh(self) -> RevolutionMesh:
         """The mesh in its deformed place."""
         return replace(self.body.mesh, r=self.r, z=self.z)
+
+    def place(self, r: float, z: float) -> tuple[float, float]:
+        """Where a point of the undeformed section is now, m; ValueError for one outside it."""
+        mesh = self.body.mesh
+        e, xi, eta = mesh.locate(r, z)
+        N = shape_functions(np.array([xi]), np.array([eta]))[0][0]
+        shift = N @ self.u[mesh.elements[e]]
+        return r + float(shift[0]), z + float(shift[1])
 
     def harmonic(self, order: int, components: tuple[int, ...], branches: str = CURRENT) -> Harmonic:
         """Matrices of a small motion of one Fourier order about this state.
