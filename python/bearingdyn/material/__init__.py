@@ -1,5 +1,6 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
+from bearingdyn.material.amplitude import Payne, PayneFit, StrainSweep, fit_payne, read_strain_sweep
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData, group_isotherms
 from bearingdyn.material.elastic import STEEL, Elastic
@@ -15,6 +16,11 @@ from bearingdyn.material.superposition import LIMIT as KK_LIMIT
 from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, master_curve, suspects
 
 __all__ = [
+    "read_strain_sweep",
+    "fit_payne",
+    "StrainSweep",
+    "PayneFit",
+    "Payne",
     "KK_LIMIT",
     "STEEL",
     "WLF",
