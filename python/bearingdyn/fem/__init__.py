@@ -36,7 +36,14 @@ from bearingdyn.fem.meshes import (
     revolution_mesh,
     ring_mesh,
 )
-from bearingdyn.fem.revolution import ALL_COMPONENTS, AXIAL, TORSION, Harmonic, assemble_harmonic
+from bearingdyn.fem.revolution import (
+    ALL_COMPONENTS,
+    AXIAL,
+    TORSION,
+    Harmonic,
+    assemble_harmonic,
+    deviatoric_strains,
+)
 from bearingdyn.fem.rigid import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
 from bearingdyn.fem.solid import SolidMatrices, assemble_solid
 
@@ -65,6 +72,7 @@ __all__ = [
     "by_size",
     "check_matrices",
     "crowded",
+    "deviatoric_strains",
     "face_shapes",
     "factorise",
     "lowest_modes",

@@ -19,7 +19,7 @@ from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Channel, Part
 from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, LooseFit, RacewaySeries
 from bearingdyn.checks import meant
-from bearingdyn.cms import Superelement, coupled_blocks
+from bearingdyn.cms import Superelement, Viscoelastic, coupled_blocks
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import Maxwell
 from bearingdyn.short import short
@@ -43,11 +43,16 @@ TEST_SPRING = 1e8
 
 @dataclass(frozen=True, eq=False)
 class LayerTerm:
-    """One viscoelastic material of one part: its deviatoric stiffness is 2 G*(ω) L Lᵀ, L (n, rank)."""
+    """One viscoelastic material of one part: its deviatoric stiffness is 2 G*(ω) L Lᵀ, L (n, rank).
+
+    strain: (rank,), γ² = Σ strain |Lᵀx|² is the square of the shear strain amplitude that counts for a law of
+    softening; None where the material has none.
+    """
 
     part: str
     material: Any
     L: Array
+    strain: Array | None = None
 
     __repr__ = short
 
@@ -438,6 +443,33 @@ def factor(A: Array) -> Array:
     values, vectors = np.linalg.eigh(A / np.outer(scale, scale))
     keep = values > RANK * values[-1]
     return np.asarray(scale[:, None] * vectors[:, keep] * np.sqrt(values[keep]))
+
+
+def softening_factor(term: Viscoelastic, part: str) -> tuple[Array, Array | None]:
+    """L (n, rank) of a part's rubber, and the weights (rank,) of its coordinates Lᵀx in γ²; None without law.
+
+    The strain that counts has the squares Σ (χ_i x_i …): with the concentration χ of each coordinate,
+    γ² = 2 (χx)ᵀ H (χx)/V. L is turned so that both forms are diagonal.
+
+    Raises
+    ------
+    ValueError
+        For a law of softening on rubber whose volume is not known.
+    """
+    L = factor(term.H)
+    if getattr(term.material, "payne", None) is None:
+        return L, None
+    if term.volume is None:
+        raise ValueError(
+            f"part {part!r} has a law of softening (payne), and the volume of its rubber is not known: give "
+            f"Viscoelastic(material, H, volume=...), or the material without: material.with_payne(None)"
+        )
+    if term.concentration is None:
+        return L, np.full(L.shape[1], 2.0 / term.volume)
+    # rigid motion stays rigid when scaled, so that χL = L Qᵀ
+    Q = (np.linalg.pinv(L) @ (term.concentration[:, None] * L)).T
+    weights, turn = np.linalg.eigh(Q.T @ Q)
+    return L @ turn, 2.0 / term.volume * np.maximum(weights, 0.0)
 
 
 def static_modulus(layer: LayerTerm, modulus: Modulus) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import positive
 from bearingdyn.material.amplitude.law import Payne
 from bearingdyn.material.amplitude.sweep import StrainSweep, in_shear, read_strain_sweep
 from bearingdyn.short import short
@@ -206,7 +206,7 @@ def _loss(gamma: Array, loss: Array, p: float) -> _Loss:
     def parts(q: float) -> tuple[Array, Array]:
         v = np.exp(p * (x - q))
         A = np.stack([v / (1 + v), np.ones_like(v)], axis=1) / loss[:, None]
-        return A, np.linalg.lstsq(A, np.ones(x.size))[0]
+        return A, np.asarray(np.linalg.lstsq(A, np.ones(x.size))[0], dtype=np.float64)
 
     def cost(q: float) -> float:
         A, s = parts(q)

@@ -1,9 +1,9 @@
 """What a Maxwell model keeps beside the law of softening, for the time domain.
 
-In time the law is a spring E and a Maxwell branch of strength 2 L whose rate is the running frequency Ω. The rest,
-G_lin(ω) − F(γr) − i L(γr), has to be a Maxwell model itself; as its loss is less than its storage's slope would
-have it (Kramers and Kronig), it is rendered within a percent or so. What it misses at Ω the law's spring and
-branch make good.
+In time the law is a spring E and a Maxwell branch of strength 2 L whose rate is the running frequency Ω. The
+rest, G_lin(ω) − F(γr) − i L(γr), has to be a Maxwell model itself; as its loss is less than its storage's
+slope would have it (Kramers and Kronig), it is rendered within a percent or so. What it misses at Ω the law's
+spring and branch make good.
 """
 
 from __future__ import annotations

@@ -191,8 +191,8 @@ def read_strain_sweep(
         If the table has no strain, several frequencies, or moduli that `read_dma` would refuse.
     """
     wanted, given = dict(columns or {}), dict(units or {})
-    own = {q: wanted.pop(q) for q in ("strain", "force") if q in wanted}
-    own_units = {q: given.pop(q) for q in ("strain", "force") if q in given}
+    own: dict[str, str | int] = {q: wanted.pop(q) for q in ("strain", "force") if q in wanted}
+    own_units: dict[str, str] = {q: given.pop(q) for q in ("strain", "force") if q in given}
     request = Request(mode, wanted, given, temperature)
     source = (read_source(Path(data)) if isinstance(data, str | Path) else [source_of(data)])[0]
     reader = _SweepReader(source, request)
