@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core, inputs, runfile
-from bearingdyn.analysis.channels import channel_of
+from bearingdyn.analysis.channels import CoreChannel, channel_of
 from bearingdyn.analysis.coarseness import warn_if_coarse
 from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, system_of
+from bearingdyn.analysis.softening import softening_layers
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import number, numbers, positive, require, whole
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
 # words of a state: steps since its clock began, and their size (csrc/state.c)
 STEPS, STEP = 1, 2
+MEMORY = 5.0  # periods of the slowest motion: its own ripple then moves the amplitude by 0.01 %
 NEVER = 2**62  # a decimation that keeps nothing
 # steps between two chunks on the disk: a tenth of a second or so, which a kill may cost
 CHUNK_STEPS = 50_000
@@ -54,6 +56,8 @@ class March:
         Steps before the record, steps of the record, and every how many a sample is kept.
     filter
         Whether what is kept is low-passed.
+    memory
+        Time, s, over which layers that soften remember their amplitude; None where none does.
     """
 
     system: System
@@ -65,6 +69,7 @@ class March:
     steps: int
     decimate: int
     filter: bool = False
+    memory: float | None = None
 
     @classmethod
     def of(
@@ -79,6 +84,7 @@ class March:
         filter: bool = False,
         audit: bool = False,
         scheme: core.Scheme | None = None,
+        memory: float | None = None,
         least_steps: int = 0,
     ) -> March:
         """Prepare a march from an equilibrium, an application (its equilibrium is found) or a system at zero.
@@ -120,7 +126,20 @@ class March:
         warn_if_coarse(system, fastest, dt)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
-        return cls(system=system, modal=modal, T=T, x=x, stepping=stepping, filter=bool(filter), **counts)
+        return cls(
+            system=system,
+            modal=modal,
+            T=T,
+            x=x,
+            stepping=stepping,
+            filter=bool(filter),
+            memory=memory_of(system, drive, memory),
+            **counts,
+        )
+
+    def model(self, channels: list[CoreChannel]) -> core.Model:
+        """The core's model, with these channels."""
+        return self.modal.model(channels, memory=self.memory)
 
     @property
     def total(self) -> int:
@@ -216,7 +235,12 @@ class March:
         Every field of the stepping and of its scheme is in it.
         """
         return inputs.fingerprint(
-            {"system": system_hash(self.modal), "stepping": self.stepping, "state": state}
+            {
+                "system": system_hash(self.modal),
+                "stepping": self.stepping,
+                "state": state,
+                **({} if self.memory is None else {"memory": self.memory}),
+            }
         )
 
     def pieces(
@@ -446,7 +470,15 @@ def system_hash(system: System) -> str:
         {
             "matrices": [system.M, system.C, system.G, system.K, system.N],
             "layers": [
-                (t.L, t.material.G0, t.material.G, t.material.tau, t.material.eta0) for t in system.layers
+                (
+                    t.L,
+                    t.material.G0,
+                    t.material.G,
+                    t.material.tau,
+                    t.material.eta0,
+                    *(() if t.strain is None else (t.strain, t.material.payne)),
+                )
+                for t in system.layers
             ],
             "bearings": [(t.kernel().packed(), t.B) for t in system.bearings],
             "loads": system.loads,
@@ -478,6 +510,34 @@ def drive_of(speed: float | tuple[ArrayLike, ArrayLike]) -> float | tuple[Array,
     if not (np.isfinite(times).all() and np.isfinite(speeds).all() and (np.diff(times) > 0).all()):
         raise ValueError("speed: times must increase and all numbers be finite, in s and rad/s")
     return times, speeds
+
+
+def memory_of(system: System, drive: float | tuple[Array, Array], memory: float | None) -> float | None:
+    """Time, s, over which layers that soften remember their amplitude; None where none does.
+
+    Unless given, it is five periods of the slowest thing that moves the system: the shaft at its slowest
+    speed, and harmonic loads.
+
+    Raises
+    ------
+    ValueError
+        For a memory that is not positive, and where nothing tells it.
+    """
+    if not softening_layers(system):
+        return None
+    if memory is not None:
+        return positive("memory", memory, "it must be a positive time, s")
+    speeds = np.abs(drive[1]) if isinstance(drive, tuple) else np.array([abs(drive)])
+    slowest = [float(w) for w in speeds if w > 0]
+    slowest += [load.omega for load in system.loads if load.kind == "harmonic" and load.omega > 0]
+    require(
+        bool(slowest),
+        "memory",
+        memory,
+        "a layer softens with its amplitude, and neither a speed nor a harmonic load tells over which time "
+        "that is; give five periods of the slowest motion, s",
+    )
+    return MEMORY * 2 * np.pi / min(slowest)
 
 
 def check_state(field: str, state: Array) -> None:

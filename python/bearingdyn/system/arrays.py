@@ -340,13 +340,16 @@ class System:
     def modal(self) -> tuple[System, Array]:
         """The system in modes of its relaxed stiffness and mass, block by block, and T with x = T q.
 
+        Layers that soften have there what their law leaves (`Maxwell.rest`).
+
         M is then exactly the identity and the relaxed stiffness exactly diagonal, as a long march needs.
         """
-        squares, T = self.basis()
+        moduli = self.marched_moduli()
+        squares, T = self.basis(moduli)
         modal = self.transformed(T)
         relaxed = np.zeros((self.n, self.n))
-        for layer in modal.layers:
-            relaxed += 2.0 * static_modulus(layer, "relaxed") * (layer.L @ layer.L.T)
+        for G, layer in zip(moduli, modal.layers, strict=True):
+            relaxed += 2.0 * G * (layer.L @ layer.L.T)
         # K + relaxed, formed again in `stiffness`, is diagonal to the last bit
         return replace(modal, M=np.eye(self.n), K=np.diag(squares) - relaxed), T
 
@@ -356,7 +359,19 @@ class System:
         squares, shapes = natural(K, self.M)
         return np.asarray(shapes[:, squares <= 0.0])
 
-    def model(self, channels: list[tuple[int, Array | None, int, int]], relaxed: bool = True) -> core.Model:
+    def marched_moduli(self) -> list[float]:
+        """Shear modulus, Pa, of each layer in a march: relaxed, or what a law of softening leaves."""
+        return [
+            static_modulus(layer, "relaxed") if layer.strain is None else layer.material.rest.G0
+            for layer in self.layers
+        ]
+
+    def model(
+        self,
+        channels: list[tuple[int, Array | None, int, int]],
+        relaxed: bool = True,
+        memory: float | None = None,
+    ) -> core.Model:
         """The core's model.
 
         Parameters
@@ -366,14 +381,18 @@ class System:
         relaxed
             True, for a march: K holds the layers at their G0, and branches do the rest. False, for a
             harmonic response: the whole deviatoric stiffness is left to a modulus given per frequency.
+        memory
+            Time, s, over which layers that soften remember their amplitude; needed for their march.
+
+        Raises
+        ------
+        ValueError
+            Without a memory that is needed.
         """
         C = self.viscous() if relaxed else self.C
-        K = self.stiffness("relaxed") if relaxed else self.K
+        K = self.stiffness(self.marched_moduli()) if relaxed else self.K
         empty = np.zeros(0)
-        layers = [
-            (t.L, np.asarray(t.material.G), np.asarray(t.material.tau)) if relaxed else (t.L, empty, empty)
-            for t in self.layers
-        ]
+        layers = [_marched(t, memory) if relaxed else (t.L, empty, empty) for t in self.layers]
         return core.Model(
             M=self.M,
             C=C,
@@ -385,6 +404,32 @@ class System:
             loads=[(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels=channels,
         )
+
+
+def _marched(layer: LayerTerm, memory: float | None) -> tuple[Any, ...]:
+    """A layer as a march takes it: L, strengths and times of its branches, and how it softens."""
+    if layer.strain is None:
+        return layer.L, np.asarray(layer.material.G), np.asarray(layer.material.tau)
+    if memory is None:
+        raise ValueError(
+            f"layer {layer.part!r} softens with its amplitude, and memory is None; give the time, s, over "
+            f"which it remembers it: five periods of the slowest motion"
+        )
+    law, rest = layer.material.payne, layer.material.rest
+    softening = (
+        law.D,
+        law.gamma_c,
+        law.m,
+        law.Lm,
+        law.gamma_l,
+        law.p,
+        float(memory),
+        layer.material.G0 - rest.G0,
+        np.asarray(layer.strain),
+        *rest.omega,
+        np.stack([rest.misses.real, rest.misses.imag]),
+    )
+    return layer.L, rest.G, rest.tau, softening
 
 
 def check_matrix(name: str, A: Array, n: int, sign: int) -> None:

@@ -20,6 +20,7 @@ from bearingdyn.types import Array, Complex
 
 _POINTS = 160  # of the fit, evenly in ln ω
 _LOSS = 10.0  # weight of the loss against the storage: damping cannot be made good where L is small
+_TRIES, _TOO_MUCH = 8, 1e-5  # of loss too much, over G′
 TABLE = 33  # frequencies of the correction, evenly in ln ω
 _DECADE = 10.0  # of a model without a band: so far beyond its times
 
@@ -81,8 +82,15 @@ def rest_of(material: Any) -> Rest:
     fixed = 1j * omega * material.eta0
     A = np.vstack([shapes.real * weight[:, None], _LOSS * shapes.imag * weight[:, None]])
     target = wanted - fixed
-    b = np.concatenate([target.real * weight, _LOSS * target.imag * weight])
-    found = scipy.optimize.nnls(A, b)[0]
+    # of loss the rest must not have too much: the law's branch can add some, and take none away
+    spare, found = 0.0, np.zeros(A.shape[1])
+    for _ in range(_TRIES):
+        b = np.concatenate([target.real * weight, _LOSS * (target.imag - spare) * weight])
+        found = scipy.optimize.nnls(A, b)[0]
+        more = float(np.max(shapes.imag @ found - target.imag))
+        if more <= _TOO_MUCH * float(np.median(linear.real)):
+            break
+        spare += more
     made = Rest(float(found[0]), found[1:], material.tau, material.eta0, band, np.zeros(0, complex))
     at = np.geomspace(*band, TABLE)
     misses = made.complex_modulus(at) - (_modulus(material, at) - F - 1j * L)
