@@ -19,20 +19,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn import core
+from bearingdyn.checks import positive, require
 from bearingdyn.notice import BeyondSweep, warn
 from bearingdyn.system import LayerTerm, System
 from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
-    from bearingdyn.analysis.harmonic import Linear
+    from bearingdyn.analysis.linearised import Linear
 
 # below this strain the law is at its limit of small ones to 1e-12
 NO_STRAIN = 1e-10
-# of ln γ, at the end: G* then holds to 1e-11 of D
-CLOSE = 1e-11
+# of ln γ, before the last step is judged; motions then hold to some 1e-10
+CLOSE = 1e-9
 # Newton converges in some five steps; a step in ln γ is cut to this, so that it cannot leap over a bend
 STEPS, LEAP = 80, 0.7
 SLOPE = 1e-4  # of ln γ, over which the law's slope is taken
+# periods of the slowest motion that a march remembers: its ripple then moves the amplitude by 0.01 %
+MEMORY = 5.0
 SLACK = 1.02  # of the highest strain of a sweep, before a warning
 
 
@@ -233,3 +236,31 @@ def layer_names(system: System) -> list[str]:
         name if parts.count(name) == 1 else f"{name} {parts[: k + 1].count(name)}"
         for k, name in enumerate(parts)
     ]
+
+
+def memory_of(system: System, drive: float | tuple[Array, Array], memory: float | None) -> float | None:
+    """Time, s, over which layers that soften remember their amplitude in a march; None where none does.
+
+    Unless given, it is five periods of the slowest thing that moves the system: the shaft at its slowest
+    speed, and harmonic loads.
+
+    Raises
+    ------
+    ValueError
+        For a memory that is not positive, and where nothing tells it.
+    """
+    if not softening_layers(system):
+        return None
+    if memory is not None:
+        return positive("memory", memory, "it must be a positive time, s")
+    speeds = np.abs(drive[1]) if isinstance(drive, tuple) else np.array([abs(drive)])
+    slowest = [float(w) for w in speeds if w > 0]
+    slowest += [load.omega for load in system.loads if load.kind == "harmonic" and load.omega > 0]
+    require(
+        bool(slowest),
+        "memory",
+        memory,
+        "a layer softens with its amplitude, and neither a speed nor a harmonic load tells over which time "
+        "that is; give five periods of the slowest motion, s",
+    )
+    return MEMORY * 2 * np.pi / min(slowest)

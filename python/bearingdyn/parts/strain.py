@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 

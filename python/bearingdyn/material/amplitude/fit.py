@@ -12,7 +12,7 @@ import scipy
 from bearingdyn.checks import positive
 from bearingdyn.material.amplitude.law import Payne
 from bearingdyn.material.amplitude.sweep import StrainSweep, in_shear, read_strain_sweep
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 _RISE = 0.01  # of G′ from a smaller strain to a larger one: noise of an instrument, and no more

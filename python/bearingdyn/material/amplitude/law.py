@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import number, positive, require
 from bearingdyn.magnitude import plausible
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 _POINTS = 160  # of the fit, evenly in ln ω

@@ -19,7 +19,7 @@ from bearingdyn.material.reading.request import Request
 from bearingdyn.material.reading.source import Row, read_source, source_of
 from bearingdyn.material.reading.table import TableReader
 from bearingdyn.notice import TensionAsShear, warn
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 _LARGEST = 1.0  # strain; dynamic tests stay far below
