@@ -105,6 +105,16 @@ class BeyondData(Notice):
     """
 
 
+class BeyondSweep(Notice):
+    """A rubber vibrates with more strain than its law of softening was found from.
+
+    When: a response or a march with a law of softening (`payne`) reaches a strain above the highest of the
+    strain sweep.
+
+    Remedy: measure the strain sweep further; or take the answer as an extrapolation of the law.
+    """
+
+
 class OutsideIsotherms(Notice):
     """Notice: a shift law is used at a temperature at which nothing was measured.
 
