@@ -27,7 +27,8 @@ void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *r
         lane_mask touching = LANES_POSITIVE(s);
         s = LANES_WHERE(touching, s);
         lanes_sqrt(&s, &root);
-        lanes firm = 1.5 * kappa * root, soft = (lanes){0} + 1.0; /* dF_e/ds, and what the give leaves of it */
+        lanes firm = 1.5 * kappa * root,
+              soft = (lanes){0} + 1.0; /* dF_e/ds, and what the give leaves of it */
         if (cubic != 0.0) {
             for (int k = 0; k < BD_GIVE_STEPS; k++)
                 root -= (root * root * (1.0 + cubic * root) - s) /
@@ -43,7 +44,8 @@ void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *r
             break;
         case BD_DAMPING_LOAD:
             c = contact->c * firm;
-            slope = LANES_WHERE(touching, (contact->c * 0.75 * kappa) * (soft * soft * soft) / root);
+            slope =
+                LANES_WHERE(touching, (contact->c * 0.75 * kappa) * (soft * soft * soft) / root);
             break;
         case BD_DAMPING_TABLE:
             for (int j = 0; j < BD_WIDTH; j++) {

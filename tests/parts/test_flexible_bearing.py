@@ -123,7 +123,8 @@ def test_a_flexible_ring_is_softer_and_spreads_the_load(capsys: pytest.CaptureFi
     """Direction of change.
 
     In a rigid bore the race lies on a wall 3.5 mm below it, where Hertz's half-space goes on: the contact is
-    stiffer, the inner ring moves less and the heaviest ball takes more. With rubber around it the ring bends: it
+    stiffer, the inner ring moves less and the heaviest ball takes more. With rubber around it the ring
+    bends: it
     flattens under the loaded zone and follows the inner race, so the peak falls far and the zone widens.
     """
     load = (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)

@@ -1,9 +1,11 @@
 """The half-space order by order: what Hertz's contact has already of the give of a race along its azimuth.
 
-A load that varies as cos ky along a half-space, and across it by a profile q(x) of unit integral, sinks it, on
-the average weighted by q, by C(k) = (1 − ν²)/(πE) ∫ |q̂(κ)|²/√(κ² + k²) dκ for a unit load per length (the
-surface flexibility 2(1 − ν²)/E|k| of Boussinesq in wave numbers). A ball's load on a race of radius R is the sum of
-all k. Order n has those of k R in n − ½ … n + ½: their sum is the half-space, and at high n each is that of the race.
+A load that varies as cos ky along a half-space, and across it by a profile q(x) of unit integral, sinks it,
+on the average weighted by q, by C(k) = (1 − ν²)/(πE) ∫ |q̂(κ)|²/√(κ² + k²) dκ for a unit load per length (the
+surface flexibility 2(1 − ν²)/E|k| of Boussinesq in wave numbers). A ball's load on a race of radius R is the
+sum of
+all k. Order n has those of k R in n − ½ … n + ½: their sum is the half-space, and at high n each is that of
+the race.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ class _State(NamedTuple):
 
 @dataclass(frozen=True)
 class FlexibleBearing:
-    """A bearing whose outer ring is elastic, in a rigid housing at rest; rubber at its relaxed modulus.
+    """A bearing with a flexible outer ring, in a rigid housing at rest; rubber at its relaxed modulus.
 
     As BallBearing: q (6,) is the motion of the inner ring, m and rad, here against the housing.
 
@@ -49,8 +49,8 @@ class FlexibleBearing:
         if own is None or own.Z != self.bearing.Z:
             told = "None" if own is None else f"one of {own.Z} balls"
             raise ValueError(
-                f"ring.bearing is {told}; what a ring gives beyond Hertz depends on its {self.bearing.Z} balls: "
-                f"make it with bearing="
+                f"ring.bearing is {told}; what a ring gives beyond Hertz depends on its {self.bearing.Z} "
+                f"balls: make it with bearing="
             )
         assert self.ring.arm is not None
         if not math.isclose(self.bearing.arm, self.ring.arm, rel_tol=1e-9):

@@ -17,17 +17,18 @@ from bearingdyn.cms import Superelement
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
-from bearingdyn.parts.faces import HIGHEST, Cylinder, Face, Footprint, Groove, Line, Where
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.revolved_faces import HIGHEST, Cylinder, Face, Footprint, Groove, Line, Where
 from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.types import Array
 
 F_HEARD = 6e3  # Hz, up to which a ring's receptances are right unless f_max says otherwise
-SHOULDER = 0.2  # of the ball's diameter, the height of shoulders of deep groove bearings, and of angular contact ones
+# of the ball's diameter, the height of shoulders of deep groove bearings, and of angular contact ones
+SHOULDER = 0.2
 SHOULDER_ANGULAR = 0.3
 STIFF = 100e3  # Hz, the least natural frequency of what follows at once
 NEGLIGIBLE = 1e-9  # of the largest folded compliance
@@ -36,7 +37,7 @@ UNDER = (0.15, 0.45)  # of the ring's height: lines of the mesh under the balls
 
 @dataclass(frozen=True)
 class FlexibleRing:
-    """An elastic outer ring, not turning, whose "raceway" carries the balls of one bearing.
+    """A flexible outer ring, not turning, whose "raceway" carries the balls of one bearing.
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
     Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with
@@ -50,9 +51,11 @@ class FlexibleRing:
     r_outer, width
         m. The plane of the balls is at mid-width.
     arm
-        Radius, m, at which tilts become axial motion, of a ring by itself; with a bearing it is the bearing's.
+        Radius, m, at which tilts become axial motion, of a ring by itself; with a bearing it is the
+        bearing's.
     order
-        Highest Fourier order in the azimuth; None: one more than the number of balls, or 10 without a bearing.
+        Highest Fourier order in the azimuth; None: one more than the number of balls, or 10 without a
+        bearing.
         What the orders beyond do at the balls, beyond Hertz, is folded onto those that are carried, so that
         loads and displacements at rest do not depend on it; see `compliance`, which tells how much that is.
     groove
@@ -69,22 +72,23 @@ class FlexibleRing:
     refinement
         Mesh density.
     f_max
-        Receptances of the raceway, and what the interfaces feel, are right to 1 % up to this frequency, Hz; 0: at
-        rest only. `error` is the estimate.
+        Receptances of the raceway, and what the interfaces feel, are right to 1 % up to this frequency, Hz;
+        0: at rest only. `error` is the estimate.
     bearing
-        The bearing that runs in the ring. What Hertz's contact has already of the give of the race is then taken
-        out of it; without it a ring serves by itself, and carries no balls.
+        The bearing that runs in the ring. What Hertz's contact has already of the give of the race is then
+        taken out of it; without it a ring serves by itself, and carries no balls.
     load
-        Load of a ball, N, whose contact ellipse is the footprint on the race; None: of the heaviest ball under a
-        quarter of the bearing's static rating. Eight times the load, twice the ellipse, change the give by a few
-        per cent.
+        Load of a ball, N, whose contact ellipse is the footprint on the race; None: of the heaviest ball
+        under a
+        quarter of the bearing's static rating. Eight times the load, twice the ellipse, change the give by a
+        few per cent.
 
     Raises
     ------
     ValueError
-        For dimensions out of order, a groove that does not fit, a layer that does not touch, an order below the
-        number of balls, a ring thinner than the contact ellipse is long, or waves of f_max that the mesh does not
-        hold.
+        For dimensions out of order, a groove that does not fit, a layer that does not touch, an order below
+        the number of balls, a ring thinner than the contact ellipse is long, or waves of f_max that the mesh
+        does not hold.
     """
 
     r_inner: float
@@ -156,8 +160,8 @@ class FlexibleRing:
             whole("order", order, 1, HIGHEST)
             if not order >= Z:
                 raise ValueError(
-                    f"order is {order}; the bearing has {Z} balls, whose loads bend the ring by cos {Z}ψ: give "
-                    f"{Z + 1}, or leave it out"
+                    f"order is {order}; the bearing has {Z} balls, whose loads bend the ring by cos {Z}ψ: "
+                    f"give {Z + 1}, or leave it out"
                 )
             if self.load is not None:
                 positive("load", self.load, "it must be the positive load of a ball in N")
@@ -171,23 +175,25 @@ class FlexibleRing:
         length, wall = 2.0 * self.footprint.half_length, self.wall
         if not length < 2.0 * wall:
             raise ValueError(
-                f"r_outer is {self.r_outer}; the ring is {1e3 * wall:.3g} mm thick under a contact {1e3 * length:.3g} mm "
-                f"long, and Hertz's law is of thick bodies: make r_outer at least "
+                f"r_outer is {self.r_outer}; the ring is {1e3 * wall:.3g} mm thick under a contact "
+                f"{1e3 * length:.3g} mm long, and Hertz's law is of thick bodies: make r_outer at least "
                 f"{self.r_outer + 0.5 * length - wall:.6g} m, or state a smaller load"
             )
         if not length < self.track:
             raise ValueError(
-                f"groove is {self.track:g} m wide; the contact is {length:.3g} m long: widen the groove, or state a "
-                f"smaller load"
+                f"groove is {self.track:g} m wide; the contact is {length:.3g} m long: widen the groove, "
+                f"or state a smaller load"
             )
 
     @classmethod
     def of(cls, bearing: BallBearing, **keywords: Any) -> FlexibleRing:
-        """The outer ring of a bearing with its groove, from its boundary dimensions; keywords as in FlexibleRing.
+        """The outer ring of a bearing with its groove, from its boundary dimensions; keywords as in
+        FlexibleRing.
 
-        The groove's bottom touches the balls of the centred bearing but for half the radial play; the shoulders
-        stand SHOULDER of the ball's diameter above it (of an angular contact bearing both, so that its open side is
-        drawn too heavy).
+        The groove's bottom touches the balls of the centred bearing but for half the radial play; the
+        shoulders
+        stand SHOULDER of the ball's diameter above it (of an angular contact bearing both, so that its open
+        side is drawn too heavy).
 
         Raises
         ------
@@ -203,7 +209,9 @@ class FlexibleRing:
         """
         instance("bearing", bearing, BallBearing, "it must be a bd.BallBearing(…)")
         if bearing.boundary is None:
-            raise ValueError("bearing.boundary is None; give it (bore, outside, width) in m, or make the ring by hand")
+            raise ValueError(
+                "bearing.boundary is None; give it (bore, outside, width) in m, or make the ring by hand"
+            )
         _, outside, width = bearing.boundary
         rho, angle = bearing.fo * bearing.Dw, bearing.contact_angle or 0.0
         depth = (SHOULDER if angle == 0.0 else SHOULDER_ANGULAR) * bearing.Dw
@@ -249,7 +257,9 @@ class FlexibleRing:
             For a ring without a bearing.
         """
         if self.bearing is None or self.footprint is None:
-            raise ValueError("bearing is None; what a ring gives beyond Hertz depends on its balls: give bearing=")
+            raise ValueError(
+                "bearing is None; what a ring gives beyond Hertz depends on its balls: give bearing="
+            )
         assert self.order is not None
         normal, held = self.footprint.normal, self.body.interfaces
         low = [
@@ -298,7 +308,8 @@ class FlexibleRing:
                 lambda r, z: (np.abs(z) <= track * (1 + 1e-9)) & (r <= self.r_inner + 1.01 * self.depth)
             )
             section = self._grooved([q.rectangle for q in regions], track)
-        assert self.arm is not None and self.order is not None
+        assert self.arm is not None
+        assert self.order is not None
         grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0, footprint=self.footprint)}
         interfaces: dict[str, Face] = {}
         if self.layer is None and self.outside == "flexible":
@@ -349,7 +360,7 @@ class FlexibleRing:
 
     @property
     def error(self) -> dict[int, float]:
-        """Estimate, by order, of the largest relative error over 0…f_max of what raceways and interfaces feel."""
+        """Estimate, by order, of the largest error of receptances over 0…f_max; see Revolved.error."""
         return self.body.error
 
     @cached_property
@@ -366,10 +377,11 @@ class FlexibleRing:
         )
 
     def superelement(self) -> Superelement:
-        """Reduced matrices: interface and internal modes, and the raceways' coefficients; see Revolved.superelement.
+        """Reduced matrices: interface and internal modes, and the raceways' coefficients; see
+        Revolved.superelement.
 
-        With a bearing, what orders beyond the carried ones add at its balls are coordinates of their own, springs
-        with so little mass that they follow at once.
+        With a bearing, what orders beyond the carried ones add at its balls are coordinates of their own,
+        springs with so little mass that they follow at once.
         """
         element = self.body.superelement()
         if self.bearing is None:
@@ -380,7 +392,9 @@ class FlexibleRing:
         squares = rate**2 * np.ones(count)
 
         def wider(A: Array, own: Array | None = None) -> Array:
-            return np.asarray(scipy.linalg.block_diag(A, np.zeros((count, count)) if own is None else np.diag(own)))
+            return np.asarray(
+                scipy.linalg.block_diag(A, np.zeros((count, count)) if own is None else np.diag(own))
+            )
 
         def padded(rows: Array) -> Array:
             return np.hstack([rows, np.zeros((len(rows), count))])
@@ -400,7 +414,16 @@ class FlexibleRing:
             K=wider(element.K, squares),
             N=None if element.N is None else wider(element.N),
             outputs={name: padded(r) for name, r in element.outputs.items()},
-            viscoelastic=tuple(replace(v, H=wider(v.H)) for v in element.viscoelastic),
+            viscoelastic=tuple(
+                replace(
+                    v,
+                    H=wider(v.H),
+                    concentration=None
+                    if v.concentration is None
+                    else np.concatenate([v.concentration, np.ones(count)]),
+                )
+                for v in element.viscoelastic
+            ),
             raceways=raceways,
         )
 

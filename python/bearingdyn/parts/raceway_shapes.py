@@ -1,6 +1,7 @@
 """Shapes of one order of a ring, chosen by what its raceways and interfaces feel up to a frequency.
 
-From static shapes at several moduli and the answers to their inertia, and the motion at a few frequencies (a rational
+From static shapes at several moduli and the answers to their inertia, and the motion at a few frequencies (a
+rational
 Krylov space), a rich basis is made. Of it the fewest shapes are kept whose receptances at the raceways,
 transmissions and dynamic stiffness at the interfaces are those of the rich one over 0…f_max.
 """
@@ -9,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,7 +18,7 @@ import scipy
 
 from bearingdyn.cms import orthogonalise
 from bearingdyn.fem import Harmonic, factorise
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
 PROMISE = 1e-2  # f_max: receptances are right to this up to there
@@ -85,8 +87,8 @@ class Order:
         return self.h.stiffness(self.bulk, shear) - omega**2 * self.h.mass_matrix(self.density)
 
     def motion(self, shear: Any, omega: float) -> tuple[Complex, Complex]:
-        """Motion (n, faces + ports) of the whole model under unit motions of the faces and unit port loads, and
-        what the ports and faces feel (see `felt`)."""
+        """Motion (n, faces + ports) of the whole model under unit motions of the faces and unit port loads,
+        and what the ports and faces feel (see `felt`)."""
         D = self.dynamic(shear, omega)
         inner, r = self.inner, self.R.shape[1]
         load = np.hstack([-(D[inner][:, self.held] @ self.R), self.ports[:, inner].T])
@@ -99,8 +101,8 @@ class Order:
 
 
 def felt(D: Complex, L: Array, faces: int) -> Complex:
-    """(faces + ports, faces + ports): reaction of the faces and motion of the ports, by unit motions of the faces and
-    unit loads on the ports, of a small model of dynamic stiffness D and ports L."""
+    """(faces + ports, faces + ports): reaction of the faces and motion of the ports, by unit motions of the
+    faces and unit loads on the ports, of a small model of dynamic stiffness D and ports L."""
     r = faces
     load = np.hstack([-D[r:, :r], L[:, r:].T])
     u = np.zeros((len(D), load.shape[1]), dtype=np.complex128)
@@ -111,14 +113,15 @@ def felt(D: Complex, L: Array, faces: int) -> Complex:
     return np.vstack([reaction, L @ u])
 
 
-def misfit(got: Complex, wanted: Complex, scale: Array) -> float:
+def misfit(got: Any, wanted: Any, scale: Array) -> float:
     """Relative error of what is felt, each entry by the geometric mean of its two ports' own sizes."""
-    return float(np.linalg.norm((got - wanted) / scale, 2) / max(np.linalg.norm(wanted / scale, 2), 1.0))
+    off, size = (float(np.linalg.norm(a / scale, 2)) for a in (got - wanted, wanted))
+    return off / max(size, 1.0)
 
 
 def own_scale(T: Complex, usual: Array) -> Array:
-    """Sizes by which the entries of what is felt are judged: those of their ports there, but no antiresonance counts
-    for less than a tenth of what is usual."""
+    """Sizes by which the entries of what is felt are judged: those of their ports there, but no
+    antiresonance counts for less than a tenth of what is usual."""
     own = np.maximum(np.abs(np.diag(T)), 0.1 * usual)
     return np.asarray(np.sqrt(np.outer(own, own)))
 
@@ -143,10 +146,10 @@ def port_shapes(
     slow
         Rate, 1/s, that holds a free body while its elastic answer is sought.
     """
-    h, inner, r = order.h, order.inner, order.R.shape[1]
+    h, r = order.h, order.R.shape[1]
     M = h.mass_matrix(order.density)
     K = h.stiffness(order.bulk, levels[0])
-    rigid = np.zeros((h.n, 0))
+    rigid: Array = np.zeros((h.n, 0))
     if not order.held.size and h.order <= 1:
         motion = np.zeros((h.n, 2 if h.order else 1))
         motion[h.free] = h.rigid_shapes(np.arange(h.mesh.r.size))[h.free]
@@ -193,7 +196,7 @@ def lossy(shear: Sequence[complex]) -> Complex:
 def _rich(
     order: Order, levels: Sequence[Sequence[float]], M: Any, rigid: Array, slow: float
 ) -> tuple[Array, list[Array]]:
-    """Unit motions of the faces (n, r) at the first level; static shapes at all levels, and answers to inertia."""
+    """Unit motions of the faces (n, r) at the first level; static shapes at all, and answers to inertia."""
     h, inner, r = order.h, order.inner, order.R.shape[1]
     faces = np.zeros((h.n, r))
     rich = []
@@ -248,13 +251,15 @@ class _Small:
             A[self.r : self.fixed], A[:, self.r : self.fixed] = 0.0, 0.0
         still = 60.0 if self.free else 0.0  # rad/s: a free body has no receptance at rest
         rest = [np.asarray(level, dtype=np.complex128) for level in levels]
-        rest += [np.sqrt(a * b) for a, b in zip(rest, rest[1:], strict=False)]
+        rest += [np.sqrt(a * b) for a, b in pairwise(rest)]
         omegas = [2 * np.pi * f_max * k / PATH for k in range(1, PATH + 1)] if f_max > 0 else []
         self.points = [(G, still) for G in rest] + [(lossy(shear(w)), w) for w in omegas]
         self.limits = np.array([STILL] * len(rest) + [WANTED] * len(omegas))
         self.D = [self.dynamic(G, w) for G, w in self.points]
         self.wanted = [felt(D, self.L, self.r) for D in self.D]
-        sizes = [np.abs(np.diag(self.elastic(t, w))) for t, (_, w) in zip(self.wanted, self.points, strict=True)]
+        sizes = [
+            np.abs(np.diag(self.elastic(t, w))) for t, (_, w) in zip(self.wanted, self.points, strict=True)
+        ]
         self.usual = np.median(sizes, axis=0)
 
     def dynamic(self, shear: Any, omega: float) -> Complex:
@@ -263,8 +268,8 @@ class _Small:
         return np.asarray(D + sum(G * H for G, H in zip(shear, self.H, strict=True)), dtype=np.complex128)
 
     def elastic(self, T: Complex, omega: float) -> Complex:
-        """What is felt less what a free body does as a whole: that is exact, and may be cancelled by what will hold
-        it."""
+        """What is felt less what a free body does as a whole: that is exact, and may be cancelled by what
+        will hold it."""
         return T + self.rigid / omega**2 if self.free else T
 
     def missed(self, T: Complex, shear: Any, omega: float) -> float:
@@ -309,7 +314,7 @@ class _Small:
         return error
 
     def _answers(self, D: Complex) -> Complex:
-        """Internal part (m, faces + ports) of the motion under unit motions of the faces and loads on the ports."""
+        """Internal part (m, faces + ports) of the motion under unit motions of faces and loads on ports."""
         r, f = self.r, self.fixed
         load = np.hstack([-D[r:, :r], self.L[:, r:].T])
         return np.asarray(np.linalg.solve(D[r:, r:], load)[f - r :])

@@ -11,7 +11,7 @@ import numpy as np
 
 from bearingdyn.cms import inertia_shapes, orthogonalise
 from bearingdyn.fem import Harmonic, factorise, lowest_modes
-from bearingdyn.parts.boundaries import Boundaries
+from bearingdyn.parts.revolved_boundaries import Boundaries
 from bearingdyn.types import Array
 
 ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it is rigid motion
@@ -19,7 +19,7 @@ ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ShapeMaker:
-    """What the shapes depend on besides the moduli.
+    """Maker of the shapes of a body of revolution: what they depend on besides the moduli.
 
     Parameters
     ----------
@@ -60,7 +60,8 @@ class ShapeMaker:
         """Basis (n, columns) of a family: constraint shapes, then internal ones; and the number of the first.
 
         Internal are the differences of constraint shapes between moduli, which vanish on the boundaries,
-        and the modes with the interfaces held. They are made modes of each other, of unit modal mass, and those
+        and the modes with the interfaces held. They are made modes of each other, of unit modal mass, and
+        those
         without energy of their own are dropped (torsion has none: it changes no volume, so its shape does
         not depend on the modulus).
         """

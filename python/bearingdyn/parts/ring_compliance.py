@@ -4,7 +4,8 @@ Under loads Q of Z balls, equally spaced, the race sinks at ball i by Σ_j A_ij 
 
     A_ij = Σ_n C_n cos n(ψ_i − ψ_j) − δ_ij Σ_n h_n,
 
-C_n the compliance of order n of the ring and h_n that of the half-space under the same footprint. At the balls the
+C_n the compliance of order n of the ring and h_n that of the half-space under the same footprint. At the
+balls the
 orders n and p are alike if n ± p is a multiple of Z: cos n(ψ_i − ψ_j) = cos p(ψ_i − ψ_j). What the orders
 beyond the highest carried one add is therefore the same as a compliance of the orders p = 0…Z/2, exactly, and
 what these have in common is one at each ball by itself: its give.
@@ -17,10 +18,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
 from bearingdyn.bearing import half_space_orders
 from bearingdyn.material import Elastic
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 _DEPTHS = 5.0  # e^{-2kt} of what a wall t away changes is 5e-5 where k t is this
@@ -39,7 +41,8 @@ class RingCompliance:
     order
         Highest order that the ring carries by itself.
     ring, half_space
-        (m,) compliance C_n and h_n of the orders n = 0…m − 1, m/N, of a unit load on the coefficient along the
+        (m,) compliance C_n and h_n of the orders n = 0…m − 1, m/N, of a unit load on the coefficient along
+        the
         line of contact. C_n of orders 0 and 1 of a ring that nothing holds is that of its rigid motion, nan.
     give
         What the orders beyond `order` and the half-space leave at each ball by itself, m/N.
@@ -72,7 +75,7 @@ class RingCompliance:
         return abs(m * float(self.folded[0])) / (m * float(np.nansum(self.ring[: self.order + 1 : self.Z])))
 
 
-def _alike(n: Array, p: int, Z: int) -> Array:
+def _alike(n: NDArray[np.integer], p: int, Z: int) -> Array:
     """Orders n that are as p at the balls."""
     return np.asarray((n % Z == p % Z) | ((-n) % Z == p % Z))
 
@@ -106,7 +109,8 @@ def ring_compliance(
         From the race to the ring's other face, m.
     """
     order = len(low) - 1
-    # where the other face is not felt any more, what is left is the curvature of the race, which falls as 1/n of h_n
+    # where the other face is not felt any more, what is left is the curvature of the race, which falls as
+    # 1/n of h_n
     end = min(max(order + 8, int(np.ceil(_DEPTHS * radius / depth))), _FARTHEST)
     steps = order + 1 + np.round((end - order - 1) * np.linspace(0.0, 1.0, 10) ** 1.7).astype(int)
     solved = np.unique(np.concatenate([[order + 1, order + 2, end], steps]))
