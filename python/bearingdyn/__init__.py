@@ -75,6 +75,8 @@ PUBLIC = {
             "RigidBody",
             "RigidSurface",
             "Ring",
+            "RingBed",
+            "RingPoints",
             "Section",
             "Shaft",
             "Solid",

@@ -53,7 +53,7 @@ def half_space_orders(count: int, half_length: float, radius: float, ring: Elast
     weight = _transform(kappa * half_length) ** 2 * kappa
     edges = np.concatenate([[0.0], (np.arange(count) + 0.5) / radius])
     # ∫₀^K dk/√(κ² + k²) = asinh(K/κ)
-    upto = np.trapezoid(weight * np.arcsinh(edges[:, None] / kappa), t, axis=1)
+    upto = np.asarray(np.trapezoid(weight * np.arcsinh(edges[:, None] / kappa), t, axis=1))
     lowest = kappa[0]
     # ∫₀^κ₀ asinh(K/κ) dκ for K ≫ κ₀
     upto[1:] += lowest * (1.0 + np.log(2.0 * edges[1:] / lowest))

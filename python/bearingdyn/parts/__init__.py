@@ -16,6 +16,8 @@ from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
 from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring
+from bearingdyn.parts.ring_compliance import RingCompliance
+from bearingdyn.parts.ring_support import RingBed, RingPoints
 from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
@@ -46,6 +48,9 @@ __all__ = [
     "RigidBody",
     "RigidSurface",
     "Ring",
+    "RingBed",
+    "RingCompliance",
+    "RingPoints",
     "RoundFace",
     "Section",
     "Shaft",

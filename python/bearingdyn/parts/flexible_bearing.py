@@ -57,7 +57,7 @@ class FlexibleBearing:
             raise ValueError(
                 f"ring.arm is {self.ring.arm:.9g}; it must be the bearing's, {self.bearing.arm:.9g} m"
             )
-        if self.ring.layer is None and self.ring.outside != "rigid":
+        if self.ring.layer is None and self.ring.outside == "flexible":
             raise ValueError(f"ring.outside is {self.ring.outside!r}, and nothing holds the ring")
 
     @cached_property

@@ -13,7 +13,7 @@ import scipy
 
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import instance, one_of, positive, require, whole
-from bearingdyn.cms import Superelement
+from bearingdyn.cms import Superelement, Viscoelastic
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
@@ -23,6 +23,7 @@ from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import HIGHEST, Cylinder, Face, Footprint, Groove, Line, Where
 from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
+from bearingdyn.parts.ring_support import RingBed, RingPoints, held_by
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.types import Array
 
@@ -40,9 +41,10 @@ class FlexibleRing:
     """A flexible outer ring, not turning, whose "raceway" carries the balls of one bearing.
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
-    Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with
-    outside="flexible", it is the raceway "outside", as flexible as the raceway inside, and the ring is held
-    only by what carries that raceway.
+    Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with outside=RingBed(…)
+    or RingPoints(…), "outer" is the rigid bore on which such springs stand; or, with outside="flexible", it is
+    the raceway "outside", as flexible as the raceway inside, and the ring is held only by what carries that
+    raceway.
 
     Parameters
     ----------
@@ -66,7 +68,8 @@ class FlexibleRing:
     layer
         Rubber, its r_inner equal to r_outer here; its material, moduli and refinement are taken.
     outside
-        "rigid" or "flexible", where there is no layer.
+        "rigid" or "flexible", where there is no layer; or what stands between the ring and the rigid
+        interface "outer": a RingBed, RingPoints, or several of them.
     damping
         Ratio ζ of the ring's free elastic modes.
     refinement
@@ -99,7 +102,7 @@ class FlexibleRing:
     groove: float | None = None
     groove_radius: float | None = None
     layer: Layer | None = None
-    outside: Literal["rigid", "flexible"] = "rigid"
+    outside: Literal["rigid", "flexible"] | RingBed | RingPoints | tuple[RingBed | RingPoints, ...] = "rigid"
     material: Elastic = STEEL
     damping: float = 0.0
     f_max: float = F_HEARD
@@ -131,7 +134,8 @@ class FlexibleRing:
                 )
             if not self.depth < self.r_outer - self.r_inner:
                 raise ValueError(f"the groove is {self.depth:g} m deep and cuts the ring; make it narrower")
-        one_of("outside", self.outside, ("rigid", "flexible"))
+        if not self._supports:
+            one_of("outside", self.outside, ("rigid", "flexible"))
         if self.layer is not None:
             instance("layer", self.layer, Layer, "it must be a bd.Layer(…), or None")
             if not math.isclose(self.layer.r_inner, self.r_outer, rel_tol=1e-9):
@@ -140,9 +144,18 @@ class FlexibleRing:
                     f"r_outer = {self.r_outer} m"
                 )
             if self.outside != "rigid":
-                raise ValueError("outside is \"flexible\"; with a layer the ring's outside is the rubber's")
+                raise ValueError(
+                    f"outside is {self.outside!r}; with a layer the ring's outside is the rubber's: "
+                    "leave it out"
+                )
         self._check_footprint()
         _ = self.body
+
+    @property
+    def _supports(self) -> tuple[RingBed | RingPoints, ...]:
+        """Beds and feet of the outside."""
+        given = self.outside if isinstance(self.outside, tuple) else (self.outside,)
+        return tuple(q for q in given if isinstance(q, RingBed | RingPoints)) if given else ()
 
     def _take_bearing(self) -> None:
         """Arm and order from the bearing, where they are not given."""
@@ -312,7 +325,7 @@ class FlexibleRing:
         assert self.order is not None
         grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0, footprint=self.footprint)}
         interfaces: dict[str, Face] = {}
-        if self.layer is None and self.outside == "flexible":
+        if self.layer is None and self.outside != "rigid":
             grooves["outside"] = Groove(Line((outer, -half), (outer, half)), outer, self.order, z=0.0)
         else:
             interfaces["outer"] = Cylinder(outer)
@@ -356,6 +369,8 @@ class FlexibleRing:
         half = (-0.5 * self.width, 0.5 * self.width)
         if self.layer is None and self.outside == "flexible":
             known["outside"] = (RoundFace("shaft", self.r_outer, half),)
+        elif self._supports:
+            known["outer"] = (RoundFace("shaft", self.r_outer, half),)
         return known
 
     @property
@@ -384,51 +399,73 @@ class FlexibleRing:
         springs with so little mass that they follow at once.
         """
         element = self.body.superelement()
-        if self.bearing is None:
-            return element
+        if self._supports:
+            element = self._upon_supports(element)
+        return element if self.bearing is None else self._with_folded(element)
+
+    def _upon_supports(self, element: Superelement) -> Superelement:
+        """The free ring between its supports and the rigid interface "outer" on which they stand."""
+        outside = element.raceways["outside"]
+        K, C = held_by(self._supports, outside.rows, outside.series, self.r_outer, self.width)
+        wide = _wider(element, 6, "raceway")
+        return replace(
+            wide,
+            K=wide.K + K,
+            C=wide.C + C,
+            interfaces={**wide.interfaces, "outer": np.arange(element.n, element.n + 6)},
+        )
+
+    def _with_folded(self, element: Superelement) -> Superelement:
+        """What the orders beyond do at the balls, in coordinates of its own, and the give of the race."""
+        assert self.bearing is not None
         assert self.footprint is not None
         rate = 2 * math.pi * max(STIFF, 10.0 * self.f_max)
         count = len(self._folded)
-        squares = rate**2 * np.ones(count)
-
-        def wider(A: Array, own: Array | None = None) -> Array:
-            return np.asarray(
-                scipy.linalg.block_diag(A, np.zeros((count, count)) if own is None else np.diag(own))
-            )
-
-        def padded(rows: Array) -> Array:
-            return np.hstack([rows, np.zeros((len(rows), count))])
-
-        raceways = {name: replace(t, rows=padded(t.rows)) for name, t in element.raceways.items()}
-        raceway = raceways["raceway"]
+        own = np.arange(element.n, element.n + count)
+        wide = _wider(element, count, *element.raceways)
+        M, C, K = wide.M.copy(), wide.C.copy(), wide.K.copy()
+        M[own, own], C[own, own], K[own, own] = 1.0, 2.0 * self.damping * rate, rate**2
+        raceway = wide.raceways["raceway"]
         rows = raceway.rows.copy()
-        for k, (p, sine, c) in enumerate(self._folded):
+        for k, (p, sine, c) in zip(own, self._folded, strict=True):
             for axial, share in enumerate(self.footprint.normal):
-                rows[raceway.series.index(axial, p, sine), element.n + k] = share * rate * math.sqrt(c)
-        raceways["raceway"] = replace(raceway, rows=rows, give=self.compliance.give, Z=self.bearing.Z)
-        return replace(
-            element,
-            M=wider(element.M, np.ones(count)),
-            C=wider(element.C, 2.0 * self.damping * np.sqrt(squares)),
-            G=wider(element.G),
-            K=wider(element.K, squares),
-            N=None if element.N is None else wider(element.N),
-            outputs={name: padded(r) for name, r in element.outputs.items()},
-            viscoelastic=tuple(
-                replace(
-                    v,
-                    H=wider(v.H),
-                    concentration=None
-                    if v.concentration is None
-                    else np.concatenate([v.concentration, np.ones(count)]),
-                )
-                for v in element.viscoelastic
-            ),
-            raceways=raceways,
-        )
+                rows[raceway.series.index(axial, p, sine), k] = share * rate * math.sqrt(c)
+        carries = replace(raceway, rows=rows, give=self.compliance.give, Z=self.bearing.Z)
+        return replace(wide, M=M, C=C, K=K, raceways={**wide.raceways, "raceway": carries})
 
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""
         outline = self.body.outline()
-        none = np.zeros((len(outline.rows), len(self._folded)))
+        none = np.zeros((len(outline.rows), len(self._folded) + (6 if self._supports else 0)))
         return replace(outline, rows=np.hstack([outline.rows, none]))
+
+
+def _wider(element: Superelement, count: int, *raceways: str) -> Superelement:
+    """A part with `count` more coordinates, without mass and force, and those raceways that are named."""
+    none = np.zeros((count, count))
+
+    def wider(A: Array) -> Array:
+        return np.asarray(scipy.linalg.block_diag(A, none))
+
+    def padded(rows: Array) -> Array:
+        return np.hstack([rows, np.zeros((len(rows), count))])
+
+    def material(v: Viscoelastic) -> Viscoelastic:
+        strain = v.concentration
+        more = None if strain is None else np.concatenate([strain, np.ones(count)])
+        return replace(v, H=wider(v.H), concentration=more)
+
+    return replace(
+        element,
+        M=wider(element.M),
+        C=wider(element.C),
+        G=wider(element.G),
+        K=wider(element.K),
+        N=None if element.N is None else wider(element.N),
+        outputs={name: padded(r) for name, r in element.outputs.items()},
+        viscoelastic=tuple(map(material, element.viscoelastic)),
+        raceways={
+            name: replace(element.raceways[name], rows=padded(element.raceways[name].rows))
+            for name in raceways
+        },
+    )

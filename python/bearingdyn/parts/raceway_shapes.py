@@ -153,7 +153,7 @@ def port_shapes(
     if not order.held.size and h.order <= 1:
         motion = np.zeros((h.n, 2 if h.order else 1))
         motion[h.free] = h.rigid_shapes(np.arange(h.mesh.r.size))[h.free]
-        rigid = np.linalg.solve(np.linalg.cholesky(motion.T @ (M @ motion)), motion.T).T
+        rigid = np.asarray(np.linalg.solve(np.linalg.cholesky(motion.T @ (M @ motion)), motion.T).T)
     faces, rich = _rich(order, levels, M, rigid, slow if rigid.size else 0.0)
 
     def small_model() -> _Small:
