@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -29,7 +29,7 @@ from bearingdyn.types import Array
 
 F_HEARD = 6e3  # Hz, up to which a ring's receptances are right unless f_max says otherwise
 # of the ball's diameter, the height of shoulders of deep groove bearings, and of angular contact ones
-SHOULDER = 0.2
+SHOULDER = 0.16
 SHOULDER_ANGULAR = 0.3
 STIFF = 100e3  # Hz, the least natural frequency of what follows at once
 NEGLIGIBLE = 1e-9  # of the largest folded compliance
@@ -42,9 +42,9 @@ class FlexibleRing:
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
     Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with outside=RingBed(…)
-    or RingPoints(…), "outer" is the rigid bore on which such springs stand; or, with outside="flexible", it is
-    the raceway "outside", as flexible as the raceway inside, and the ring is held only by what carries that
-    raceway.
+    or RingPoints(…), "outer" is the rigid bore on which such springs stand; or, with outside="flexible", it
+    is the raceway "outside", as flexible as the raceway inside, and the ring is held only by what carries
+    that raceway.
 
     Parameters
     ----------
@@ -86,6 +86,9 @@ class FlexibleRing:
         quarter of the bearing's static rating. Eight times the load, twice the ellipse, change the give by a
         few per cent.
 
+    outputs
+        name -> point (r, z, φ), m, m, rad, whose motion (x, y, z) can be recorded, as "ring.name.x".
+
     Raises
     ------
     ValueError
@@ -109,6 +112,7 @@ class FlexibleRing:
     refinement: float = 1.0
     bearing: BallBearing | None = None
     load: float | None = None
+    outputs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
@@ -204,9 +208,8 @@ class FlexibleRing:
         FlexibleRing.
 
         The groove's bottom touches the balls of the centred bearing but for half the radial play; the
-        shoulders
-        stand SHOULDER of the ball's diameter above it (of an angular contact bearing both, so that its open
-        side is drawn too heavy).
+        shoulders stand 0.16 of the ball's diameter above it, 0.3 in an angular contact bearing, where both are
+        drawn and the open side is too heavy.
 
         Raises
         ------
@@ -218,7 +221,7 @@ class FlexibleRing:
         >>> import bearingdyn as bd
         >>> ring = bd.FlexibleRing.of(bd.catalogue.bearing("6305", clearance=10e-6), outside="flexible")
         >>> f"{1e3 * ring.r_inner:.2f} mm at the shoulders, {1e3 * ring.depth:.2f} mm deep"
-        '25.20 mm at the shoulders, 2.30 mm deep'
+        '25.66 mm at the shoulders, 1.84 mm deep'
         """
         instance("bearing", bearing, BallBearing, "it must be a bd.BallBearing(…)")
         if bearing.boundary is None:
@@ -332,6 +335,7 @@ class FlexibleRing:
         return Revolved(
             tuple(regions) if section is None else tuple(Patch(q.material) for q in regions),
             interfaces,
+            self.outputs,
             damping=self.damping,
             f_max=self.f_max,
             moduli=None if self.layer is None else self.layer.moduli,
