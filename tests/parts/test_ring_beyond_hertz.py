@@ -32,7 +32,7 @@ def beyond(Z: int, order: int, outside: str) -> float:
 
 @pytest.mark.parametrize(("Z", "wanted"), [(3, 31.91), (7, 5.376), (8, 5.125)])
 def test_equal_loads_bend_a_free_ring_as_solid_elements_do(Z: int, wanted: float) -> None:
-    # CalculiX, 3.0 × 0.4 mm patch, less the half-space; the issue's 2 %: a patch pressed evenly is not an ellipse
+    # CalculiX, 3.0 × 0.4 mm patch, less the half-space; the issue's 2 %: an even patch is not an ellipse
     assert beyond(Z, Z + 1, "flexible") == pytest.approx(wanted, rel=0.02)
     # orders beyond are folded: the issue's 0.5 %, here what interpolation between orders leaves
     assert beyond(Z, 2 * Z, "flexible") == pytest.approx(beyond(Z, Z + 1, "flexible"), rel=5e-4)
@@ -45,7 +45,7 @@ def test_a_rigid_bore_stiffens(Z: int) -> None:
 
 
 def test_the_orders_of_the_half_space_are_the_half_space() -> None:
-    """h_n(a, R) = h(n a/R)/R: of twice the length half as many orders, each twice; and by Parseval at high ones."""
+    """h_n(a, R) = h(n a/R)/R: of twice the length half as many orders, each twice; Parseval at high ones."""
     R, count = 0.0275, 4000
     one, other = (half_space_orders(count, a, R, STEEL) for a in (1e-3, 2e-3))
     # orders 50 … 99 of the length 2a are the shares of k a from 99/R to 199/R, orders 99.5 … 199.5 of a
@@ -85,7 +85,7 @@ def varying(ring: FlexibleRing, angles: Sequence[float]) -> tuple[np.ndarray, np
 def test_a_bearing_on_a_bed(stiffness: float, depth: float, peak: float, swing: float) -> None:
     """Raw orders to 10 give the independent figures; what they lack of the race's give is 0.28 µm.
 
-    The figures were made with orders to 10 and Hertz's dent in them, which is 2.2 % too stiff for equal loads.
+    The figures were made with orders to 10 and Hertz's dent in them, 2.2 % too stiff for equal loads.
     """
     bed, half = RingBed(stiffness), math.pi / 7
     y, Q = varying(replace(RING, outside=bed), (0.0, half))
@@ -178,7 +178,7 @@ def test_receptances_in_rubber_are_right_up_to_f_max(rubber: str) -> None:
 
 @cache
 def lines(speed: float, steps: int) -> np.ndarray:
-    """Amplitudes, µm, of the first four ball-pass lines of the outside below, on a bed of 3e9 N/m³ under 500 N."""
+    """Amplitudes, µm, of the first ball-pass lines of the outside below, on a bed of 3e9 N/m³ under 500 N."""
     bed = RingBed(3e9, damping=3e-5)
     ring = replace(RING, outside=bed, order=10, outputs={"below": (SIZE[1], 0.0, -0.5 * math.pi)})
     app = bd.Application()
@@ -194,7 +194,13 @@ def lines(speed: float, steps: int) -> np.ndarray:
     dt, settle = passage / steps, math.ceil(0.05 / passage)
     periods = 4
     run = bd.transient(
-        eq, speed, dt=dt, steps=periods * steps, record=["ring.below.y"], settle=settle * steps, filter=False
+        eq,
+        speed=speed,
+        dt=dt,
+        steps=periods * steps,
+        record=["ring.below.y"],
+        settle=settle * steps,
+        filter=False,
     )
     y = run["record"].values[-periods * steps :, 0]
     return 2e6 * np.abs(np.fft.rfft(y))[periods : 5 * periods : periods] / y.size
@@ -225,10 +231,10 @@ def test_bad_input_names_what_would_do() -> None:
         _ = FlexibleRing(*SIZE, arm=0.02).compliance
     with pytest.raises(ValueError, match="boundary is None"):
         FlexibleRing.of(replace(B6305, boundary=None))
+    app = bd.Application()
+    app.add("rotor", RigidBody(1.0, (1e-3,) * 3))
+    app.add("ring", RING)
     with pytest.raises(ValueError, match="made for 7"):
-        app = bd.Application()
-        app.add("rotor", RigidBody(1.0, (1e-3,) * 3))
-        app.add("ring", RING)
         app.bearing("b", replace(B6305, Z=8), inner="rotor.centre", outer="ring.raceway")
     for wrong in (
         {"stiffness": 0.0},

@@ -208,8 +208,8 @@ class FlexibleRing:
         FlexibleRing.
 
         The groove's bottom touches the balls of the centred bearing but for half the radial play; the
-        shoulders stand 0.16 of the ball's diameter above it, 0.3 in an angular contact bearing, where both are
-        drawn and the open side is too heavy.
+        shoulders stand 0.16 of the ball's diameter above it, 0.3 in an angular contact bearing, where both
+        are drawn and the open side is too heavy.
 
         Raises
         ------
