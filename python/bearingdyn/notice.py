@@ -39,12 +39,13 @@ class FitWarning(Notice):
 
 
 class OpenSideWarning(Notice):
-    """In a march, balls were pressed onto the side of an angular contact bearing that has no shoulder.
+    """In a march, balls of an angular contact bearing were pressed where it has no shoulder, or none onto it.
 
     The motion computed from then on is that of a bearing with two shoulders.
 
     When: a march in which a ball that carries (1 % of the largest ball load) stood beyond the bottom of its
-    groove, on the open side. The bearing, the first time and the number of steps are named.
+    groove, on the open side, or in which all that carry stood on the bottom, no axial load pressing them onto
+    the shoulder. The bearing, the first time and the number of steps are named.
 
     Remedy: more preload, or the bearing hung the other way round, `bearing.mirrored()`; with shoulders on
     both sides it has `open_side=None`.

@@ -270,12 +270,12 @@ class March:
             yield rows, state, report
 
     def _tell_open_side(self, report: core.Report) -> None:
-        """Warn of the first step with a ball on the open side of a bearing."""
+        """Warn of the first step in which a bearing did not hold together on its shoulder."""
         name = self.system.bearings[report.open_bearing].name
         warn(
             f"bearing {name!r}: from t = {report.open_t:.6g} s on, in {report.open_steps} of the "
             f"{report.steps} steps marched, balls are pressed onto its open side, where no shoulder holds "
-            f"them; {OPEN_SIDE_REMEDY}",
+            f"them, or none of them onto its shoulder; {OPEN_SIDE_REMEDY}",
             OpenSideWarning,
         )
 

@@ -124,7 +124,9 @@ def transient(
     Warns
     -----
     BearingWarning
-        Where a contact pressure was above 4.2 GPa (ISO 76) at the end, or by what was recorded.
+        Where a contact pressure was above 4.2 GPa (ISO 76) at the end of a step.
+    OpenSideWarning
+        Where balls of an angular contact bearing were pressed onto its open side, or none onto its shoulder.
 
     References
     ----------
@@ -177,7 +179,7 @@ def transient(
             plain=np.array([channel[0] == core.CHANNEL_KINDS["loaded"] for channel, _ in found], dtype=bool),
             past=None if resume is None else march.past(resume, record),
         )
-    warn_of_overload(march, model, state, record, rows)
+    warn_of_overload(march, report)
     energies = march.energies(model, state) if audit else {}
     error: dict[str, Any] = {}
     if check_step and report.status == 0:

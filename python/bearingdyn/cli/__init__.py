@@ -107,9 +107,7 @@ def _parser() -> argparse.ArgumentParser:
     fit.add_argument(
         "--band", type=float, nargs=2, metavar=("LOW", "HIGH"), help="frequencies to fit between at T-ref, Hz"
     )
-    fit.add_argument(
-        "--T-ref", type=float, metavar="T", help=f"reference temperature, C (default {T_REF:g})"
-    )
+    fit.add_argument("--T-ref", type=float, metavar="T", help=f"reference temperature, C (default {T_REF:g})")
     fit.add_argument(
         "--law", choices=("wlf", "arrhenius", "joined", "free"), help=f"shift law (default {LAW})"
     )
@@ -138,7 +136,10 @@ def _parser() -> argparse.ArgumentParser:
         help="of all points, C, where the table has no such column; one for each file",
     )
     fit.add_argument(
-        "--step", nargs="+", metavar="STEP", help="steps (or sheets) to read: parts of names, or numbers from 1"
+        "--step",
+        nargs="+",
+        metavar="STEP",
+        help="steps (or sheets) to read: parts of names, or numbers from 1",
     )
     fit.add_argument(
         "--run", nargs="+", dest="run_names", metavar="RUN", help="only these runs, as a column names them"

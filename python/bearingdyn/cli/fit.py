@@ -212,16 +212,12 @@ def _fit_table(
         "",
         f"errors of the {report.points} points {place}",
         f"  {what} rms {report.storage_rms:.2%}   largest {report.storage_max:.2%}",
-        *(
-            []
-            if relaxed
-            else [
-                f"  tan delta        rms {report.tan_delta_rms:.2%}   largest {report.tan_delta_max:.2%}"
-            ]
-        ),
-        *_low_end(report.low_end),
     ]
-    return "\n".join(lines)
+    if not relaxed:
+        lines.append(
+            f"  tan delta        rms {report.tan_delta_rms:.2%}   largest {report.tan_delta_max:.2%}"
+        )
+    return "\n".join([*lines, *_low_end(report.low_end)])
 
 
 def _origin(curve: MasterCurve | RelaxationData) -> list[str]:
@@ -229,8 +225,8 @@ def _origin(curve: MasterCurve | RelaxationData) -> list[str]:
     if isinstance(curve, RelaxationData):
         T = curve.isotherm_temperatures[0]
         return [
-            f"relaxation     {curve.time.size} points in {curve.mode} at {T:.4g} C, {curve.time.min():.3g} to "
-            f"{curve.time.max():.3g} s"
+            f"relaxation     {curve.time.size} points in {curve.mode} at {T:.4g} C, {curve.time.min():.3g} "
+            f"to {curve.time.max():.3g} s"
         ]
     ends = f"{curve.frequency[0]:.3g} to {curve.frequency[-1]:.3g} Hz"
     if curve.law is None:
