@@ -214,6 +214,16 @@ class TensionAsShear(Notice):
     """
 
 
+class FoldedMesh(Notice):
+    """Elements of a mesh overlap: one of them is folded into its neighbours, and its volume counts twice.
+
+    When: two elements of a mesh lie on the same side of a face that they share. gmsh writes such tetrahedra
+    beside pyramids now and then.
+
+    Remedy: mesh again with other sizes, or without pyramids; the text names the element and the place.
+    """
+
+
 class UnfinishedLine(Notice):
     """The last number of a text file may have been cut.
 

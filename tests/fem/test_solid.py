@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -33,6 +34,7 @@ from bearingdyn.fem.meshes.solid_element import BUBBLES, TET10, WEDGE15, points,
 from bearingdyn.fem.meshes.solid_mesh import second_order
 from bearingdyn.fem.solid import _with_bubble
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.notice import FoldedMesh
 from bearingdyn.parts import Feet, Housing
 
 pytest.importorskip("skfem")
@@ -199,6 +201,40 @@ def test_a_bubble_undoes_the_linear_part_of_the_change_of_volume():
         moments = np.einsum("miq,mqc,mq,mij->mjc", D, x, dV, follow)
         plain = np.einsum("miq,mqc,mq->mic", D[:, :-3], x, dV)
         assert np.abs(moments).max() < 1e-12 * np.abs(plain).max()
+
+
+@pytest.mark.parametrize("missing", [False, True])
+def test_pyramids_that_a_file_leaves_out_are_missed(missing):
+    """As gmsh's .unv does: what is left meets in edges only, and would be too small without a word."""
+    square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+    cube = [(x, y, z) for z in (0.0, 1.0) for x, y in square]
+    tip, above = [(0.5, 0.5, 1.5)], [(0.5, -0.5, 1.6), (1.5, 0.5, 1.6), (0.5, 1.5, 1.6), (-0.5, 0.5, 1.6)]
+    sides = [(4, 5), (5, 6), (6, 7), (7, 4)]
+    rows = [range(8), *[(a, b, 8, 9 + k) for k, (a, b) in enumerate(sides)]]
+    rows += [] if missing else [(4, 5, 6, 7, 8)]
+    corners = np.full((len(rows), 8), -1)
+    for i, row in enumerate(rows):
+        corners[i, : len(row)] = row
+    p, elements, _ = second_order(np.vstack([cube, tip, above]), corners)
+    if not missing:
+        assert SolidMesh(p, elements).volume() > 1.0
+        return
+    with pytest.raises(ValueError, match=r"meet in 4 edges without a common face.*the pyramids .*missing"):
+        SolidMesh(p, elements)
+
+
+def test_an_element_folded_into_its_neighbour_is_warned_of():
+    """Two tetrahedra on one side of the triangle they share; with one on each side, none."""
+    corners = [[0, 1, 2, 3], [0, 1, 2, 4]]
+    for height, folded in ((0.5, True), (-0.5, False)):
+        p = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.3, 0.3, height)], float)
+        rows = corners if folded else [corners[0], [0, 2, 1, 4]]
+        points, elements, _ = second_order(p, rows)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            SolidMesh(points, elements)
+        assert [w.category for w in told] == [FoldedMesh] * folded
+        assert all("element 0 and its neighbours" in str(w.message) for w in told)
 
 
 def test_regions_of_a_mesh_add_up():
