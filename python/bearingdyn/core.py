@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import _core
 from bearingdyn.progress import Progress as Progress
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 Model = _core.Model
@@ -25,6 +25,7 @@ LOAD_KINDS = _core.LOAD_KINDS
 CHANNEL_KINDS = _core.CHANNEL_KINDS
 WAVE_KINDS = _core.WAVE_KINDS
 PIT_KINDS = _core.PIT_KINDS
+SETTLED = _core.SETTLED
 ISAS = _core.ISAS
 ENERGIES = _core.ENERGIES
 REPORT_FIELDS = _core.REPORT_FIELDS
@@ -39,7 +40,7 @@ class Packable(Protocol):
 
 
 class SolverError(RuntimeError):
-    """A march that could not go on.
+    """A march in the core that could not go on.
 
     Attributes
     ----------
@@ -59,7 +60,7 @@ class SolverError(RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """A march ended by the user.
+    """A march in the core ended by the user.
 
     Attributes
     ----------
@@ -208,7 +209,7 @@ class Report:
 
 
 def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Array, tau: Array) -> Array:
-    """Deviatoric stress (nt, m) of a material point under a strain rate (nt, m) linear between samples.
+    """Deviatoric stress (nt, m) by the core's history update, the strain rate (nt, m) linear between samples.
 
     It starts from e = 0 and S = 0.
 
@@ -245,7 +246,7 @@ def bearing_force(
     shaft_angle: float = 0.0,
     shaft_speed: float = 0.0,
 ) -> tuple[Array, Array, Array, Array]:
-    """Force of a bearing on its raceways' coefficients, its tangents, and the load of each ball.
+    """Force of a bearing by the core: on its raceways' coefficients, tangents, and the load of each ball.
 
     Parameters
     ----------
@@ -266,6 +267,32 @@ def bearing_force(
     return _core.bearing_force(kernel.packed(), z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)
 
 
+def bearing_settle(
+    kernel: Packable, loads: Array, radius: Array, angle: float, shaft_angle: float = 0.0
+) -> tuple[Array, Array, Array]:
+    """Where a bearing comes to rest under each of many loads, its outer ring held.
+
+    Parameters
+    ----------
+    kernel
+        The bearing, as `BearingKernel` packs it.
+    loads
+        (m, n) on the coefficients of the raceways, N.
+    radius
+        (m,) of the order of the expected displacement, m, positive.
+    angle
+        Azimuth of the first ball, rad.
+    shaft_angle
+        Of the shaft, rad.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Coefficients (m, n), loads of the balls (m, Z), N, and how each case ended (m,), codes of SETTLED.
+    """
+    return _core.bearing_settle(kernel.packed(), loads, radius, angle, shaft_angle)
+
+
 def march(
     model: Model,
     state: Array,
@@ -276,7 +303,7 @@ def march(
     start: bool = False,
     progress: Progress | None = None,
 ) -> tuple[Array, Array, Report]:
-    """March a state, and say how far it came, whatever the status.
+    """March a state in the core, and say how far it came, whatever the status.
 
     Parameters
     ----------
@@ -313,7 +340,7 @@ def harmonic(
     speed: float = 0.0,
     progress: Progress | None = None,
 ) -> Complex:
-    """Complex response (frequencies, outputs, inputs) to unit forces.
+    """Complex response (frequencies, outputs, inputs) of the core's model to unit forces.
 
     Parameters
     ----------
@@ -350,7 +377,7 @@ def harmonic(
 
 
 def time_of(model: Model, state: Array) -> float:
-    """Time of a state, s.
+    """Time of a state of the core, s.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from bearingdyn.notice import BearingWarning, warn
 
 
 def warn_of_overload(march: March, report: core.Report) -> None:
-    """Warn of every bearing whose contacts went over 4.2 GPa (ISO 76) in a step.
+    """Warn of every bearing that a march overloaded: contacts over 4.2 GPa (ISO 76) in a step.
 
     Parameters
     ----------

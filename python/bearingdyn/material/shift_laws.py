@@ -259,7 +259,7 @@ class ShiftTable:
 
 @dataclass(frozen=True)
 class RhoT:
-    """Vertical shift of rubber elasticity: moduli at T are those at T_ref times b_T = ρT/(ρ_ref T_ref).
+    """Law of vertical shift, rubber elasticity: moduli at T are those at T_ref times b_T = ρT/(ρ_ref T_ref).
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def _check_range(name: str, measured: Range | None) -> None:
 
 
 def moved_shift(owner: str, law: Law, start: float, T: float) -> float:
-    """log10 a_T from a temperature `start` to T, °C, for a material named `owner`.
+    """Shift log10 a_T by a law from a temperature `start` to T, °C, for a material named `owner`.
 
     Warns (OutsideIsotherms) where T lies outside the isotherms the law was found from.
 
@@ -341,7 +341,7 @@ def moved_shift(owner: str, law: Law, start: float, T: float) -> float:
 
 
 def law_to_dict(law: Law) -> dict[str, Any]:
-    """The numbers of a law, ready for JSON; :func:`law_from_dict` reads them back."""
+    """The numbers of a shift law, ready for JSON; :func:`law_from_dict` reads them back."""
     known = {} if law.measured is None else {"measured": list(law.measured)}
     if isinstance(law, WLF):
         return {"law": "wlf", "C1": law.C1, "C2": law.C2, "T_ref": law.T_ref, **known}
@@ -354,7 +354,7 @@ def law_to_dict(law: Law) -> dict[str, Any]:
 
 
 def law_from_dict(data: dict[str, Any]) -> Law:
-    """The law written by :func:`law_to_dict`; ValueError if the data are not a law."""
+    """The shift law written by :func:`law_to_dict`; ValueError if the data are not one."""
     ends = data.get("measured") if isinstance(data, dict) else None
     measured = (ends[0], ends[1]) if isinstance(ends, list) and len(ends) == 2 else None
     match data:

@@ -1,0 +1,15 @@
+"""The sample table that is shipped with the package."""
+
+from __future__ import annotations
+
+import importlib.resources
+from pathlib import Path
+
+
+def sample_dma_path() -> Path:
+    """Path of the sample table shipped with the package: made from a model its header states, not
+    measured.
+
+    Returns the path of a CSV: frequency, Hz, temperature, °C, storage and loss modulus in shear, Pa.
+    """
+    return Path(str(importlib.resources.files("bearingdyn.material") / "sample_dma.csv"))
