@@ -69,8 +69,10 @@ def assemble_solid(
 
     Parameters
     ----------
+    mesh
+        The solid.
     elements
-        Indices of the region to assemble (default all); the nodes are numbered as for the whole mesh.
+        Indices of the region to assemble; None: all. The nodes are numbered as for the whole mesh.
     incompressible
         Take from div u only what the element can keep as ν → ½: in 27-node bricks its part linear in each
         element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987, ch. 4), in 20-node
@@ -80,6 +82,10 @@ def assemble_solid(
         ν = 0.45 costs .1 % of a strip). A bonded ring of ν = 0.499 with 4×8×24 elements is within 0.2 % with
         27-node bricks and 3 % with 20-node ones; a bonded strip with two through its thickness within .5 %
         with wedges and 2 % with tetrahedra, with four within .3 %.
+
+    Returns
+    -------
+    SolidMatrices
     """
     chosen = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
     n = len(mesh.points)
