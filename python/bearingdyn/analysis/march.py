@@ -19,7 +19,7 @@ from bearingdyn.analysis.shaft_speed import drive_of
 from bearingdyn.analysis.step_size import warn_if_coarse
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
-from bearingdyn.checks import positive, whole
+from bearingdyn.checks import instance, positive, require, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.progress import part_of
@@ -101,6 +101,8 @@ class March:
             "decimate": whole("decimate", decimate, 1),
         }
         drive = drive_of(speed)
+        if scheme is not None:
+            instance("scheme", scheme, core.Scheme, "it must be a bd.Scheme(...)")
         if isinstance(source, Application):
             source = equilibrium(source)
         elif not isinstance(source, Equilibrium):
@@ -155,6 +157,8 @@ class March:
             For a result without a state, for the state of another application, and for a state that holds a
             number no march could have reached.
         """
+        remedy = "give the result of `transient`"
+        require(hasattr(result, "data_vars"), "resume", result, remedy)
         if "state" not in result:
             raise ValueError(
                 f"resume holds {sorted(map(str, result))} and no state; give the result of `transient`"

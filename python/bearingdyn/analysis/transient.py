@@ -17,7 +17,7 @@ from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.step_size import STEP_ERROR_MADE, step_error
 from bearingdyn.application import Application
-from bearingdyn.checks import name_list, whole
+from bearingdyn.checks import instance, items, name_list, named, whole
 from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import System
@@ -146,6 +146,10 @@ def transient(
     True
     """
     record = name_list("record", record)
+    if initial is not None:
+        initial = named("initial", initial, "it must be displacements by place, as {'shaft.left': [...]}")
+    if stream is not None:
+        instance("stream", stream, (str, os.PathLike), "it must be the path of a file")
     if resume is not None and stream is not None:
         raise ValueError(
             "resume and stream are both given; a stream continues by itself, so give one of them"
@@ -192,7 +196,12 @@ def transient(
     return march.ended(result, report)
 
 
-def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -> list[xarray.Dataset]:
+def transients(
+    cases: Sequence[Mapping[str, Any]],
+    threads: int | None = None,
+    *,
+    progress: Progress | bool | None = None,
+) -> list[xarray.Dataset]:
     """Many transients at once over threads.
 
     The marches share nothing and hold no lock.
@@ -203,6 +212,9 @@ def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -
         Of each march the arguments of `transient` by name, `source` too.
     threads
         How many marches run at a time; by default as many as there are cores.
+    progress
+        True for a bar, False for none, or a function called with (marches done, marches in all); None for a
+        bar where standard error is a terminal. The marches themselves show none.
 
     Returns
     -------
@@ -213,11 +225,21 @@ def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -
     ------
     Exception
         What the first failing case, in their order, raised; after all have ended.
+    ValueError
+        Before, for cases that are no mappings.
     """
-    from concurrent.futures import ThreadPoolExecutor
+    from concurrent.futures import ThreadPoolExecutor, as_completed
 
     if threads is not None:
         threads = whole("threads", threads, 1)
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        marches = [pool.submit(transient, **case) for case in cases]
+    remedy = "it must be a list of mappings, each the arguments of `transient` by name"
+    asked = [named(f"cases[{k}]", case, remedy) for k, case in enumerate(items("cases", cases, remedy))]
+    with (
+        told(progress, "march") as tell,
+        ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool,
+    ):
+        marches = [pool.submit(transient, **{"progress": False, **case}) for case in asked]
+        for done, _ in enumerate(as_completed(marches), 1):
+            if tell is not None:
+                tell(done, len(marches))
     return [march.result() for march in marches]
