@@ -33,8 +33,9 @@ WRONG = [
     object(), 1.5, True, BALL,
 ]  # fmt: skip
 GOOD = {
-    "app": APP, "eq": STATE, "source": STATE, "result": RUN, "found": MODES, "speed": 10.0, "frequency": [10.0, 20.0],
-    "frequencies": [10.0, 20.0], "inputs": ["r.centre.y"], "outputs": ["r.centre.y"], "dt": 1e-5, "steps": 8,
+    "app": APP, "eq": STATE, "source": STATE, "result": RUN, "found": MODES, "speed": 10.0,
+    "frequency": [10.0, 20.0], "frequencies": [10.0, 20.0], "inputs": ["r.centre.y"],
+    "outputs": ["r.centre.y"], "dt": 1e-5, "steps": 8,
     "record": ["r.centre.y"], "speeds": [0.0, 10.0], "channel": "r.centre.y", "bearing": "b", "mode": 0,
     "x": "r.centre.x", "y": "r.centre.y", "length": 2e-4, "band": (1e3, 2e4), "highest": 5.0, "orders": [1.0],
     "surfaces": ["r.all"], "cases": [],
