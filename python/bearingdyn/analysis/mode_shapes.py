@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.equilibrium import Equilibrium, state_of, system_of
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.application import COMPONENTS, Application, arm
 from bearingdyn.checks import name_list, table, whole
 from bearingdyn.parts import Outlined
 from bearingdyn.short_repr import short
-from bearingdyn.system import System
+from bearingdyn.system import System, system_of
 from bearingdyn.types import Array, Complex, Index
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import argparse
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from bearingdyn.checks import require
 from bearingdyn.cli.outcome import GOOD
@@ -27,7 +27,7 @@ from bearingdyn.material import (
 BULK_MODULUS = 2e9
 DENSITY = 1200.0
 T_REF = 20.0
-LAW = "wlf"
+LAW: Final = "wlf"
 
 # options of this command by the argument of read_dma they stand for
 _OPTIONS = {
@@ -132,7 +132,7 @@ def _curve(dma: DMAData, arguments: argparse.Namespace) -> MasterCurve | Relaxat
         return master_curve(
             dma,
             T_ref=T_REF if arguments.T_ref is None else arguments.T_ref,
-            law=arguments.law or LAW,
+            law=LAW if arguments.law is None else arguments.law,
             clean=not arguments.no_clean,
         )
     for name, option in _SHIFTING.items():
