@@ -78,6 +78,8 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
 
 /* Of the largest ball load: a ball that only brushes the groove does not carry. */
 static const double carries = 0.01;
+/* Of the open sine, 1 of 5 degrees: a ball that leans on the shoulder at all. */
+static const double leans = 0.2;
 
 bool bd_bearing_runs_off(const bd_bearing *bearing, const bd_bearing_work *work)
 {
@@ -89,7 +91,7 @@ bool bd_bearing_runs_off(const bd_bearing *bearing, const bd_bearing_work *work)
         const double sine = (double)data->shoulder * work->sine_a[j], force = work->force[j];
         largest = fmax(largest, force);
         astray = sine < -data->open_sine ? fmax(astray, force) : astray;
-        leaning = sine > data->open_sine ? fmax(leaning, force) : leaning;
+        leaning = sine > leans * data->open_sine ? fmax(leaning, force) : leaning;
     }
     return astray > carries * largest || (largest > 0.0 && leaning <= carries * largest);
 }
