@@ -88,8 +88,8 @@ def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str 
         )
     return (
         f"none of its {int(carries.sum())} loaded balls leans on the shoulder, all stand on the bottom of "
-        f"the groove {worst}: it bears no axial load to speak of, and nothing keeps the inner ring from sliding off "
-        f"towards {side}"
+        f"the groove {worst}: it bears no axial load to speak of, and nothing keeps the inner ring "
+        f"from sliding off towards {side}"
     )
 
 
