@@ -282,6 +282,7 @@ void bd_model_free(bd_model *model);
 
 int bd_model_blocks(const bd_model *model);
 int bd_model_channels(const bd_model *model);
+int bd_model_bearings(const bd_model *model);
 int bd_model_coefs(const bd_model *model);
 int bd_model_layers(const bd_model *model);
 int bd_model_softening(const bd_model *model); /* how many layers soften */
@@ -359,12 +360,13 @@ typedef long long bd_count;
     X(bd_count, refreshes, sum)  /* of Newton's matrix */                                          \
     X(bd_count, refactors, sum)  /* of S, as the speed or a layer moved: counted by the caller */  \
     X(bd_count, grazing, sum)    /* steps in which balls were held where their film opens */       \
-    X(bd_count, open_steps, sum) /* with a ball pressed on a bearing's open side */                \
-    X(double, open_t, first)     /* at the first of them, -1 without */                            \
-    X(int, open_bearing, first)  /* whose it was, -1 without */                                    \
-    X(double, t, last)           /* at the end */                                                  \
-    X(double, residual, last)    /* of the last step, relative */                                  \
-    X(int, bearing, last)        /* with the largest residual, -1 without */
+    X(bd_count, open_steps,                                                                        \
+      sum)                   /* with a ball on a bearing's open side, or none on its shoulder */   \
+    X(double, open_t, first) /* at the first of them, -1 without */                                \
+    X(int, open_bearing, first) /* whose it was, -1 without */                                     \
+    X(double, t, last)          /* at the end */                                                   \
+    X(double, residual, last)   /* of the last step, relative */                                   \
+    X(int, bearing, last)       /* with the largest residual, -1 without */
 
 #define BD_REPORT_FIELD(type, name, adds) type name;
 typedef struct bd_report {
@@ -436,6 +438,9 @@ double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double
  * Notes:    before bd_prepare; without BD_OK the acceleration is void */
 bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                    bd_work *work, double *flat);
+
+/* Largest load of one ball of a bearing, N, at the end of any step marched with this work. */
+double bd_peak_load(const bd_model *model, const bd_work *work, int bearing);
 
 /* n_steps of the scheme prepared in work.
  * Given:    decimate >= 1: a row of channels is kept each time the state's step count is a multiple;

@@ -484,6 +484,11 @@ int bd_model_blocks(const bd_model *model)
     return model->n_blocks;
 }
 
+int bd_model_bearings(const bd_model *model)
+{
+    return model->n_bearings;
+}
+
 int bd_model_channels(const bd_model *model)
 {
     return model->n_channels;

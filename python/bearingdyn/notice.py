@@ -39,12 +39,13 @@ class FitWarning(Notice):
 
 
 class OpenSideWarning(Notice):
-    """Notice: a march pressed balls onto the side of an angular contact bearing that has no shoulder.
+    """Notice: an angular contact bearing of a march was pressed where it has no shoulder, or not onto it.
 
     The motion computed from then on is that of a bearing with two shoulders.
 
     When: a march in which a ball that carries (1 % of the largest ball load) stood beyond the bottom of its
-    groove, on the open side. The bearing, the first time and the number of steps are named.
+    groove, on the open side, or in which all that carry stood on the bottom, no axial load pressing them onto
+    the shoulder. The bearing, the first time and the number of steps are named.
 
     Remedy: more preload, or the bearing hung the other way round, `bearing.mirrored()`; with shoulders on
     both sides it has `open_side=None`.
@@ -231,6 +232,16 @@ class TensionAsShear(Notice):
     When: `fit_maxwell` is given a master curve in tension.
 
     Remedy: `master.to_shear(K=...)` or `to_shear(nu=...)` beforehand says how it is meant.
+    """
+
+
+class FoldedMesh(Notice):
+    """Notice: elements of a mesh overlap, one folded into its neighbours, and its volume counts twice.
+
+    When: two elements of a mesh lie on the same side of a face that they share. gmsh writes such tetrahedra
+    beside pyramids now and then.
+
+    Remedy: mesh again with other sizes, or without pyramids; the text names the element and the place.
     """
 
 

@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Sequence
 from typing import Literal
 
-from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, run_fit
+from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, LAW, T_REF, run_fit
 from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
 from bearingdyn.cli.own import run_check, run_demo, run_version
 from bearingdyn.cli.show import run_show
@@ -22,6 +22,8 @@ from bearingdyn.results import versions
 EPILOG = """\
 examples:
   bearingdyn fit rubber.csv --n 5 --band 10 5000 --out rubber.json
+  bearingdyn fit sweep_20C.csv --temperature 20 --n auto
+  bearingdyn fit trios.txt --step "Frequency sweep" --run a b
   bearingdyn show result.nc
   bearingdyn check
   bearingdyn demo --out demo
@@ -95,18 +97,19 @@ def _parser() -> argparse.ArgumentParser:
         "fit",
         run_fit,
         "a Maxwell model from measured DMA data",
-        "Shift the isotherms of a DMA measurement to a master curve and fit a Maxwell model to it.",
+        "Shift the isotherms of a DMA measurement to a master curve and fit a Maxwell model to it. A single "
+        "sweep, such as a supplier's finished curve, and a single relaxation are fitted as they are.",
     )
-    fit.add_argument("data", help="table of isothermal frequency sweeps, with a header")
+    fit.add_argument(
+        "data", nargs="+", help="table of isothermal frequency sweeps, with a header; or several, one each"
+    )
     fit.add_argument("--n", type=_branches, default=5, help='number of branches, or "auto" (default 5)')
     fit.add_argument(
         "--band", type=float, nargs=2, metavar=("LOW", "HIGH"), help="frequencies to fit between at T-ref, Hz"
     )
+    fit.add_argument("--T-ref", type=float, metavar="T", help=f"reference temperature, C (default {T_REF:g})")
     fit.add_argument(
-        "--T-ref", type=float, default=20.0, metavar="T", help="reference temperature, C (default 20)"
-    )
-    fit.add_argument(
-        "--law", choices=("wlf", "arrhenius", "joined", "free"), default="wlf", help="shift law (default wlf)"
+        "--law", choices=("wlf", "arrhenius", "joined", "free"), help=f"shift law (default {LAW})"
     )
     fit.add_argument("--K", type=float, help=f"bulk modulus, Pa (default {BULK_MODULUS:g}, usual for rubber)")
     fit.add_argument("--density", type=float, help=f"kg/m3 (default {DENSITY:g}, usual for rubber)")
@@ -125,6 +128,29 @@ def _parser() -> argparse.ArgumentParser:
         help="""titles of columns the header does not make plain: storage="G' (kPa)" """,
     )
     fit.add_argument("--mode", choices=("shear", "tension"), help="where the header does not say it")
+    fit.add_argument(
+        "--temperature",
+        type=float,
+        nargs="+",
+        metavar="T",
+        help="of all points, C, where the table has no such column; one for each file",
+    )
+    fit.add_argument(
+        "--step",
+        nargs="+",
+        metavar="STEP",
+        help="steps (or sheets) to read: parts of names, or numbers from 1",
+    )
+    fit.add_argument(
+        "--run", nargs="+", dest="run_names", metavar="RUN", help="only these runs, as a column names them"
+    )
+    fit.add_argument(
+        "--isotherms", type=float, nargs=2, metavar=("LOW", "HIGH"), help="temperatures to use, C"
+    )
+    fit.add_argument("--sort", action="store_true", help="sort the points instead of refusing unsorted ones")
+    fit.add_argument(
+        "--drop-invalid", action="store_true", help="leave out rows whose numbers are not positive"
+    )
     fit.add_argument("--f-max", type=float, metavar="F", help="leave out what was measured above, Hz")
     fit.add_argument("--no-clean", action="store_true", help="keep points that look like fixture resonance")
     fit.add_argument("--out", metavar="FILE", help="write the model there, as Maxwell.from_json reads it")

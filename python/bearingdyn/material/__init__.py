@@ -16,7 +16,14 @@ from bearingdyn.material.reading import ReadingError, read_dma, sample_dma_path
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
 from bearingdyn.material.superposition import LIMIT as KK_LIMIT
-from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, master_curve, suspects
+from bearingdyn.material.superposition import (
+    MasterCurve,
+    Suspect,
+    kk_ratio,
+    master_curve,
+    one_curve,
+    suspects,
+)
 
 __all__ = [
     "KK_LIMIT",
@@ -53,6 +60,7 @@ __all__ = [
     "group_isotherms",
     "kk_ratio",
     "master_curve",
+    "one_curve",
     "read_dma",
     "read_strain_sweep",
     "sample_dma_path",
