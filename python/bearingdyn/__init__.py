@@ -98,6 +98,11 @@ PUBLIC = {
     },
     "analysis": {
         "analysis": (
+            "operating_point",
+            "estimated_network",
+            "ThermalRunaway",
+            "OperatingPoint",
+            "ThermalNetwork",
             "Equilibrium",
             "ball_channels",
             "campbell",

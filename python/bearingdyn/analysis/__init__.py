@@ -9,6 +9,12 @@ from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.frequency_response import frequency_response
 from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.modes import modes
+from bearingdyn.analysis.operating_point import (
+    OperatingPoint,
+    ThermalRunaway,
+    estimated_network,
+    operating_point,
+)
 from bearingdyn.analysis.orbit import orbit
 from bearingdyn.analysis.orders import order_spectrum, track_orders
 from bearingdyn.analysis.radiated_power import radiated_power
@@ -16,6 +22,7 @@ from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_stati
 from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.static_summary import static_summary
+from bearingdyn.analysis.thermal_network import ThermalNetwork
 from bearingdyn.analysis.transient import transient, transients
 from bearingdyn.analysis.unbalance_response import unbalance_response
 from bearingdyn.analysis.waterfall import waterfall
@@ -24,6 +31,9 @@ __all__ = [
     "BearingState",
     "Equilibrium",
     "MovedSurface",
+    "OperatingPoint",
+    "ThermalNetwork",
+    "ThermalRunaway",
     "ball_channels",
     "campbell",
     "contact_statistics",
@@ -31,10 +41,12 @@ __all__ = [
     "energy_shares",
     "envelope_spectrum",
     "equilibrium",
+    "estimated_network",
     "frequency_response",
     "mode_shapes",
     "mode_surfaces",
     "modes",
+    "operating_point",
     "orbit",
     "order_spectrum",
     "radiated_power",
