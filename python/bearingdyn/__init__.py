@@ -98,6 +98,11 @@ PUBLIC = {
     },
     "analysis": {
         "analysis": (
+            "stiffness_table",
+            "ross_table",
+            "export_stiffness",
+            "state_space",
+            "StateSpace",
             "operating_point",
             "estimated_network",
             "ThermalRunaway",

@@ -1,4 +1,4 @@
-"""The warm running state: closed forms of heat in slab and ring, and a fixed point that keeps its own books."""
+"""The warm running state: closed forms of heat in slab and ring, and a fixed point that balances its heat."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ class TestOperatingPoint:
         # and the friction is that of the temperatures found
         for side in ("left", "right"):
             mean = (T[f"{side}.inner"] + T[f"{side}.outer"]) / 2
-            assert warm.viscosity[side] == pytest.approx(OIL.kinematic.viscosity(mean), rel=1e-9)
+            assert warm.viscosity[side] == pytest.approx(OIL.kinematic.viscosity(mean), rel=1e-5)
             assert warm.friction[side].power == pytest.approx(warm.heat[side], rel=1e-12)
 
     def test_the_demo_takes_less_than_a_second(self):
@@ -179,8 +179,8 @@ class TestOperatingPoint:
                 with pytest.raises(bd.ThermalRunaway, match="left_layer"):
                     run()
                 continue
-            T = run().temperatures["left_layer"]
-            assert G * (T - 20) == pytest.approx(W0 * math.exp((T - 20) / s), rel=5e-3)
+            rise = run().temperatures["left_layer"] - 20
+            assert G * rise == pytest.approx(W0 * math.exp(rise / s), rel=5e-3)
 
     def test_fits_that_eat_the_clearance_are_named(self):
         tight = {"left": Mounting(0.017, 0.040, shaft=Seat(interference=40e-6))}

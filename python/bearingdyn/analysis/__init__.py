@@ -21,7 +21,9 @@ from bearingdyn.analysis.radiated_power import radiated_power
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
 from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
+from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
+from bearingdyn.analysis.stiffness_table import export_stiffness, ross_table, stiffness_table
 from bearingdyn.analysis.thermal_network import ThermalNetwork
 from bearingdyn.analysis.transient import transient, transients
 from bearingdyn.analysis.unbalance_response import unbalance_response
@@ -32,6 +34,7 @@ __all__ = [
     "Equilibrium",
     "MovedSurface",
     "OperatingPoint",
+    "StateSpace",
     "ThermalNetwork",
     "ThermalRunaway",
     "ball_channels",
@@ -42,6 +45,7 @@ __all__ = [
     "envelope_spectrum",
     "equilibrium",
     "estimated_network",
+    "export_stiffness",
     "frequency_response",
     "mode_shapes",
     "mode_surfaces",
@@ -50,9 +54,12 @@ __all__ = [
     "orbit",
     "order_spectrum",
     "radiated_power",
+    "ross_table",
     "shaft_angle",
     "spectrum",
+    "state_space",
     "static_summary",
+    "stiffness_table",
     "track_orders",
     "transient",
     "transients",
