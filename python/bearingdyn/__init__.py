@@ -98,6 +98,9 @@ PUBLIC = {
     },
     "analysis": {
         "analysis": (
+            "sheet_text",
+            "sheet_html",
+            "bearing_sheet",
             "stiffness_table",
             "ross_table",
             "export_stiffness",

@@ -1,5 +1,6 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
+from bearingdyn.analysis.bearing_sheet import bearing_sheet, sheet_html, sheet_text, single_bearing
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.dissipation import dissipation
@@ -38,6 +39,7 @@ __all__ = [
     "ThermalNetwork",
     "ThermalRunaway",
     "ball_channels",
+    "bearing_sheet",
     "campbell",
     "contact_statistics",
     "dissipation",
@@ -56,6 +58,9 @@ __all__ = [
     "radiated_power",
     "ross_table",
     "shaft_angle",
+    "sheet_html",
+    "sheet_text",
+    "single_bearing",
     "spectrum",
     "state_space",
     "static_summary",

@@ -64,13 +64,16 @@ class StateSpace:
         return scipy.signal.StateSpace(self.A, self.B, self.C, self.D)
 
     def control(self) -> Any:
-        """The same as a control.StateSpace of the package python-control, which must be installed."""
+        """The same as a control.StateSpace of the package python-control, which must be installed.
+
+        Its names allow no dots: "shaft.left.y" is "shaft_left_y" there.
+        """
         from importlib import import_module
 
         control = import_module("control")
-        return control.ss(
-            self.A, self.B, self.C, self.D, inputs=list(self.inputs), outputs=list(self.outputs)
-        )
+        names = {"inputs": self.inputs, "outputs": self.outputs}
+        plain = {key: [name.replace(".", "_") for name in channels] for key, channels in names.items()}
+        return control.ss(self.A, self.B, self.C, self.D, **plain)
 
 
 def state_space(
