@@ -16,6 +16,7 @@ from bearingdyn.bearing.contact_damping import (
     resultant_damping,
 )
 from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure
+from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
@@ -87,6 +88,7 @@ __all__ = [
     "WavinessSpectrum",
     "catalogue",
     "check_bearing_pressure",
+    "clearance_range",
     "contact_modulus",
     "dent",
     "diameter_scatter",
@@ -108,6 +110,7 @@ __all__ = [
     "passage",
     "rating_life",
     "ratings_of",
+    "read_designation",
     "resultant_damping",
     "resultant_deflection_coefficient",
     "runs_off",
