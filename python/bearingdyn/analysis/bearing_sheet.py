@@ -15,19 +15,22 @@ from bearingdyn.bearing import (
     STATIC_PRESSURE,
     BallBearing,
     BearingKernel,
+    FrictionModel,
     Lubricant,
+    Phase,
+    Supply,
     equivalent_life,
     equivalent_load,
     equivalent_static_load,
     fault_lines,
     friction,
+    in_hours,
     life_of_loads,
     modified_life,
     nijenbanning_venner_moes,
     ratings_of,
 )
 from bearingdyn.bearing import catalogue as listed
-from bearingdyn.bearing.rating import FrictionModel, Phase, Supply, in_hours
 from bearingdyn.checks import instance, items, meant, named, nonnegative, positive, require
 from bearingdyn.magnitude import plausible
 from bearingdyn.notice import BearingWarning, warn

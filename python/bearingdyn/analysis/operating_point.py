@@ -18,8 +18,17 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.thermal_network import AIR, ThermalNetwork
 from bearingdyn.application import Application, Place
-from bearingdyn.bearing import BallBearing, Lubricant, Mounting, catalogue, friction, ratings_of
-from bearingdyn.bearing.rating import Friction, FrictionModel, Supply
+from bearingdyn.bearing import (
+    BallBearing,
+    Friction,
+    FrictionModel,
+    Lubricant,
+    Mounting,
+    Supply,
+    catalogue,
+    friction,
+    ratings_of,
+)
 from bearingdyn.checks import instance, meant, named, positive, require, vector, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.parts import Layer
