@@ -139,7 +139,7 @@ def friction(
     >>> from bearingdyn.bearing.rating import friction
     >>> size = {"bore": 0.025, "outside": 0.052, "C0": 7850.0}
     >>> friction("palmgren", radial=2000.0, axial=0.0, speed=314.0, viscosity=11e-6, **size)
-    <Friction palmgren: 54.37 N mm (rolling 27.6, sliding 26.7), 17.07 W>
+    <Friction palmgren: 38.96 N mm (rolling 11.7, sliding 27.2), 12.23 W>
     """
     one_of("model", model, ("palmgren", "four-term"))
     one_of("supply", supply, tuple(_SUPPLY))
