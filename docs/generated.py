@@ -1,4 +1,4 @@
-"""What the pages show and a build makes: the picture of the rooms, and the first hour as it runs."""
+"""What the pages show and a build makes: pictures, tables, and the first hour as it runs."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 import architecture
+import sheet_figure
 
 HERE = Path(__file__).parent
 STATIC = HERE / "_static"
@@ -26,6 +27,7 @@ def make() -> None:
     (STATIC / "warnings.txt").write_text(warnings_table(), encoding="utf-8")
     (STATIC / "names.txt").write_text(names(), encoding="utf-8")
     architecture.draw(STATIC / "architecture.svg")
+    sheet_figure.draw(STATIC / "sheet.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))

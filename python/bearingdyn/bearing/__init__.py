@@ -16,6 +16,7 @@ from bearingdyn.bearing.contact_damping import (
     resultant_damping,
 )
 from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure
+from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
@@ -32,11 +33,17 @@ from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
 from bearingdyn.bearing.random_surfaces import WavinessSpectrum, diameter_scatter
 from bearingdyn.bearing.rating import (
+    Friction,
+    FrictionModel,
     LoadCases,
+    Phase,
     Ratings,
+    Supply,
     equivalent_life,
     equivalent_load,
     equivalent_static_load,
+    friction,
+    in_hours,
     iso_ratings,
     life_factor,
     life_of_loads,
@@ -62,6 +69,8 @@ __all__ = [
     "Damping",
     "Film",
     "Frequencies",
+    "Friction",
+    "FrictionModel",
     "Geometry",
     "Imperfections",
     "LoadCases",
@@ -74,18 +83,21 @@ __all__ = [
     "NoBalance",
     "Pair",
     "Passage",
+    "Phase",
     "Pit",
     "PointContact",
     "RacewaySeries",
     "Ratings",
     "Running",
     "Seat",
+    "Supply",
     "TabulatedDamping",
     "Walther",
     "Waviness",
     "WavinessSpectrum",
     "catalogue",
     "check_bearing_pressure",
+    "clearance_range",
     "contact_modulus",
     "dent",
     "diameter_scatter",
@@ -93,7 +105,9 @@ __all__ = [
     "equivalent_load",
     "equivalent_static_load",
     "fault_lines",
+    "friction",
     "hamrock_dowson",
+    "in_hours",
     "iso_ratings",
     "life_factor",
     "life_of_loads",
@@ -106,6 +120,7 @@ __all__ = [
     "passage",
     "rating_life",
     "ratings_of",
+    "read_designation",
     "resultant_damping",
     "resultant_deflection_coefficient",
     "runs_off",

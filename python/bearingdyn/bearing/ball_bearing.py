@@ -29,7 +29,7 @@ from bearingdyn.bearing.load_and_motion_checks import check_load, check_motion
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, runs_off, shoulder
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
-from bearingdyn.checks import nonnegative, number, positive, require, vector
+from bearingdyn.checks import nonnegative, number, positive, require, vector, whole
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.types import Array
@@ -320,6 +320,31 @@ class BallBearing:
             return self.geometry.frequencies(*rings)
         loaded = abs(number("contact_angle", contact_angle, "it must be a finite angle in rad"))
         return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(*rings)
+
+    def lines(
+        self, speed: float, *, harmonics: int = 1, contact_angle: float | None = None
+    ) -> dict[str, float]:
+        """Name -> frequency, Hz, of localised defects and the cage, as `fault_lines` gives them.
+
+        Parameters
+        ----------
+        speed
+            Of the shaft, rad/s.
+        harmonics
+            How many multiples of the ball passes and of 2 BSF.
+        contact_angle
+            Of the loaded state, rad; None: nominal.
+        """
+        whole("harmonics", harmonics, 1, 10_000)
+        f = self.frequencies(number("speed", speed), contact_angle)
+        found = {"shaft": abs(speed) / (2 * math.pi), "FTF": f.FTF}
+        for k in range(1, harmonics + 1):
+            found |= {
+                f"{k} BPFO" if k > 1 else "BPFO": k * f.BPFO,
+                f"{k} BPFI" if k > 1 else "BPFI": k * f.BPFI,
+                f"{2 * k} BSF": 2 * k * f.BSF,
+            }
+        return found
 
     def turned(self, angle: float) -> BallBearing:
         """The bearing as it stands with its cage at `angle`, rad, from now on called zero.

@@ -276,10 +276,31 @@ def _listed(designation: str | int, read: Designation, balls: int | None) -> Ent
     return other
 
 
+def series_of(bearing: BallBearing) -> str | None:
+    """Series of a bearing by its boundary dimensions, such as "62" or "619"; None where none has them.
+
+    Parameters
+    ----------
+    bearing
+        With its boundary known.
+    """
+    if bearing.boundary is None:
+        return None
+    angular = bearing.contact_angle is not None
+    for name, listed in CATALOGUE.items():
+        same = all(
+            math.isclose(a, b, rel_tol=1e-9)
+            for a, b in zip(bearing.boundary, (listed.bore, listed.outside, listed.width), strict=True)
+        )
+        if same and angular == (listed.contact_angle is not None):
+            return name.rstrip("ABC")[:-2]
+    return None
+
+
 def bearing(
     designation: str | int, *, clearance: float | None = None, balls: int | None = None, **keywords: Any
 ) -> BallBearing:
-    """BallBearing from the catalogue, with the internal geometry of a designation.
+    """BallBearing with the internal geometry of a designation.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The command line: `bearingdyn fit`, `show`, `check`, `demo` and `version`.
+"""The command line: `bearingdyn fit`, `show`, `bearing`, `check`, `demo` and `version`.
 
 Results go to standard output; progress, and warnings and errors of one line each, to standard error. The exit
 code is 0, 1 where a check does not hold, 2 for a command or input that cannot be used, 130 after Ctrl-C.
@@ -13,6 +13,7 @@ import warnings
 from collections.abc import Sequence
 from typing import Literal
 
+from bearingdyn.cli.bearing import run_bearing
 from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, LAW, T_REF, run_fit
 from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
 from bearingdyn.cli.own import run_check, run_demo, run_version
@@ -25,6 +26,7 @@ examples:
   bearingdyn fit sweep_20C.csv --temperature 20 --n auto
   bearingdyn fit trios.txt --step "Frequency sweep" --run a b
   bearingdyn show result.nc
+  bearingdyn bearing 6205/C3 --radial 2000 --axial 300 --rpm 3000 --oil VG32 --temperature 70
   bearingdyn check
   bearingdyn demo --out demo
 
@@ -167,6 +169,37 @@ def _parser() -> argparse.ArgumentParser:
     )
     show.add_argument("result", help="file written by bearingdyn.save")
 
+    sheet = add(
+        "bearing",
+        run_bearing,
+        "the sheet of one bearing: load, life, film, friction, stiffness, lines",
+        "What a bearing bears, how long, how warm and how stiff, by its designation and load; the inner ring "
+        "turns, the shaft holds it upright.",
+    )
+    sheet.add_argument("designation", help='as people write it: 6205, "SKF 6203-2RS/C3", "7014 ACD"')
+    sheet.add_argument("--radial", type=float, default=0.0, metavar="N", help="radial load, N (default 0)")
+    sheet.add_argument("--axial", type=float, default=0.0, metavar="N", help="axial load, N (default 0)")
+    sheet.add_argument("--rpm", type=float, default=0.0, metavar="N", help="speed of the shaft, rpm")
+    sheet.add_argument("--oil", metavar="GRADE", help="ISO viscosity grade, as VG32 (default: no oil)")
+    sheet.add_argument(
+        "--temperature", type=float, default=40.0, metavar="T", help="of the oil, C (default 40)"
+    )
+    sheet.add_argument(
+        "--clearance", type=float, metavar="UM", help="diametral, micrometres (default: by the class)"
+    )
+    sheet.add_argument(
+        "--contamination",
+        default="normal cleanliness",
+        metavar="E",
+        help='e_C from 0 to 1, or words as "high cleanliness" (default "normal cleanliness")',
+    )
+    sheet.add_argument(
+        "--reliability", type=float, default=90.0, metavar="R", help="90 to 99 percent (default 90)"
+    )
+    sheet.add_argument(
+        "--friction", choices=("palmgren", "four-term"), default="palmgren", help="model (default palmgren)"
+    )
+    sheet.add_argument("--html", metavar="FILE", help="also write the sheet there as one page")
     add(
         "check",
         run_check,
