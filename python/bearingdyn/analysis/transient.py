@@ -45,7 +45,7 @@ def transient(
     memory: float | None = None,
     progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
-    """March an application from its equilibrium, at constant speed or through a run-up.
+    """Find a transient: march an application from its equilibrium, at constant speed or through a run-up.
 
     Parameters
     ----------

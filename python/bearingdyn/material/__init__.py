@@ -7,6 +7,7 @@ from bearingdyn.material.dma import DMAData
 from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
 from bearingdyn.material.fit_report import FitReport, OutsideBand
+from bearingdyn.material.hyperelastic import NEO_HOOKE, Hyperelastic, MooneyRivlin, NeoHooke, Yeoh
 from bearingdyn.material.identification import fit_dense, fit_maxwell
 from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.low_end import LowEnd
@@ -19,6 +20,7 @@ from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, ma
 
 __all__ = [
     "KK_LIMIT",
+    "NEO_HOOKE",
     "STEEL",
     "WLF",
     "Arrhenius",
@@ -26,10 +28,13 @@ __all__ = [
     "Elastic",
     "FitReport",
     "FractionalZener",
+    "Hyperelastic",
     "Joined",
     "LowEnd",
     "MasterCurve",
     "Maxwell",
+    "MooneyRivlin",
+    "NeoHooke",
     "OutsideBand",
     "Payne",
     "PayneFit",
@@ -41,6 +46,7 @@ __all__ = [
     "StrainSweep",
     "Suspect",
     "TabulatedModulus",
+    "Yeoh",
     "fit_dense",
     "fit_maxwell",
     "fit_payne",

@@ -75,7 +75,7 @@ def _factor(owner: str, law: Law | None, temperature: float | None, T: float) ->
 
 @dataclass(frozen=True, eq=False)
 class TabulatedModulus(Softening):
-    """Complex shear modulus as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
+    """Complex modulus in shear as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ class TabulatedModulus(Softening):
 
 @dataclass(frozen=True)
 class PowerLaw(Softening):
-    """Power law, the paper's "simple exponential function": G* = G_ref (iω/ω_ref)^α.
+    """Complex modulus by a power law, the paper's "simple exponential function": G* = G_ref (iω/ω_ref)^α.
 
     |G*| grows as ω^α and the loss factor is tan(απ/2) at all frequencies: the only causal modulus with a
     constant loss factor.
@@ -259,7 +259,7 @@ class PowerLaw(Softening):
 
 @dataclass(frozen=True)
 class FractionalZener(Softening):
-    """Fractional Zener model: G* = (G0 + G∞ (iωτ)^α)/(1 + (iωτ)^α).
+    """Complex modulus by a fractional Zener model: G* = (G0 + G∞ (iωτ)^α)/(1 + (iωτ)^α).
 
     Parameters
     ----------

@@ -44,6 +44,7 @@ class Maxwell(Retunable, Softening):
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
     G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).
+    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
 
     Parameters
     ----------
@@ -76,8 +77,6 @@ class Maxwell(Retunable, Softening):
     payne
         Law of softening with the amplitude of strain; G0, G and tau are then those at the law's gamma_r. None
         for none: the material is linear.
-
-    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
 
     Raises
     ------
