@@ -18,7 +18,7 @@ typedef struct bd_layer {
     int block, rank, padded;
     int offset;                         /* in padded vectors of layer rates */
     int branch, n_branches;             /* the first one's place among the branches of all layers */
-    int n_stresses;                     /* branches, and two more where the layer softens */
+    int n_stresses;                     /* branches, and three more where the layer softens */
     size_t memory;                      /* of its deviation in a state's softening */
     const bd_softening_data *softening; /* or NULL */
     size_t stress;                      /* of its first branch in a state's stress */
