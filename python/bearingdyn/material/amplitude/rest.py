@@ -2,7 +2,7 @@
 
 In time the law is a spring E and a Maxwell branch of strength 2 L whose rate is the running frequency Ω. The
 rest, G_lin(ω) − F(γr) − i L(γr), has to be a Maxwell model itself; as its loss is less than its storage's
-slope would have it (Kramers and Kronig), it is rendered within a percent or so, never with too much of either.
+slope would have it (Kramers and Kronig), it is rendered within a percent or so, never with too much.
 What it lacks at Ω is added there, to the law's branch and to a branch so slow that it bears no lasting
 load: a spring that followed Ω would lose some of that load whenever it weakens.
 """
