@@ -113,6 +113,7 @@ from bearingdyn.parts import (
     at_radius,
     damping_sample,
     quadrilaterals,
+    specimen_factor,
 )
 from bearingdyn.results import (
     open_result,
@@ -212,6 +213,7 @@ __all__ = [
     "sample_dma_path",
     "save",
     "shaft_angle",
+    "specimen_factor",
     "spectrum",
     "static_summary",
     "track_orders",
