@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "softening.h"
-
 const char *bd_status_text(bd_status status)
 {
 #define BD_STATUS_TEXT(name, value, text)                                                          \
@@ -217,6 +215,11 @@ static double *copy_factor(arena *a, const partition *parts, const bd_block *blo
         memcpy(L + (size_t)j * padded, from->L + (size_t)parts->order[block->first + j] * rank,
                rank * sizeof *L);
     return L;
+}
+
+size_t bd_softening_size(const bd_layer *layer)
+{
+    return layer->softening ? (size_t)layer->padded + (size_t)BD_PADDED(BD_SOFTENING_NUMBERS) : 0;
 }
 
 /* A law with arrays of its own, or NULL. */

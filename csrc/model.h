@@ -70,6 +70,12 @@ struct bd_model {
     const double *B;    /* (n_padded x coefs): row j holds coordinate j's part in each */
 };
 
+/* Numbers that a state keeps of a layer that softens, behind its deviation (softening.c). */
+enum { BD_SOFTENING_NUMBERS = 10 };
+
+/* Doubles of both, padded; 0 where a layer does not soften. */
+size_t bd_softening_size(const bd_layer *layer);
+
 /* The matrices of one block. */
 bd_matrices bd_matrices_of(const bd_model *model, const bd_block *block);
 

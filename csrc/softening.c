@@ -6,7 +6,7 @@
 
 /* Of a layer's block in a state, behind its deviation: both filters of d^2 and of y'^2; what S was factored with; when
  * that was; whether it was. */
-enum { A_ONCE, A_TWICE, B_ONCE, B_TWICE, SPRING, BRANCH, RATE, LIFT, RENEWED, SET, NUMBERS };
+enum { A_ONCE, A_TWICE, B_ONCE, B_TWICE, SPRING, BRANCH, RATE, LIFT, RENEWED, SET };
 
 /* Shares of E that E and L may be off by in the long run: a third of a percent of E is a thousandth of a layer's
  * modulus, and so is the other of its loss. While the amplitude builds up, for `patience` memories after a renewal, S is
@@ -26,11 +26,6 @@ static const double slow = 10.0;
 typedef struct law {
     double spring, branch, rate, lift; /* E, L in Pa; Omega in 1/s; the slow branch, Pa */
 } law;
-
-size_t bd_softening_size(const bd_layer *layer)
-{
-    return layer->softening ? (size_t)layer->padded + (size_t)BD_PADDED(NUMBERS) : 0;
-}
 
 static double *numbers_of(const bd_layer *layer, const bd_state *state)
 {
@@ -137,20 +132,16 @@ double bd_softening_strain(const bd_layer *layer, const bd_state *state)
     return layer->softening ? sqrt(2.0 * numbers_of(layer, state)[A_TWICE]) : 0.0;
 }
 
-void bd_softening_rest(const bd_model *model, const bd_state *state)
+/* The spring of a layer at rest in x: what it carries there beyond its own relaxed stiffness. */
+static void press(const bd_model *model, const bd_layer *layer, const bd_state *state)
 {
-    for (int l = 0; l < model->n_layers; l++) {
-        const bd_layer *layer = &model->layers[l];
-        if (!layer->softening)
-            continue;
-        const bd_block *block = &model->blocks[layer->block];
-        double *spring = stress_of(layer, state);
-        for (int j = 0; j < block->n; j++)
-            for (int r = 0; r < layer->rank; r++)
-                spring[r] += 2.0 * layer->softening->pressed *
-                             layer->L[(size_t)j * (size_t)layer->padded + (size_t)r] *
-                             state->x[block->offset + j];
-    }
+    const bd_block *block = &model->blocks[layer->block];
+    double *spring = stress_of(layer, state);
+    for (int j = 0; j < block->n; j++)
+        for (int r = 0; r < layer->rank; r++)
+            spring[r] += 2.0 * layer->softening->pressed *
+                         layer->L[(size_t)j * (size_t)layer->padded + (size_t)r] *
+                         state->x[block->offset + j];
 }
 
 bool bd_softening_moved(const bd_model *model, const bd_state *state)
@@ -240,6 +231,7 @@ void bd_soften(const bd_model *model, const bd_scheme *scheme, double *flat, boo
         double *numbers = numbers_of(layer, &state);
         const law now = law_at(layer->softening, numbers);
         if (numbers[SET] == 0.0) {
+            press(model, layer, &state);
             hold_law(numbers, now, t);
         } else if (anew) {
             const double lost = renew(layer, &state, now, t);

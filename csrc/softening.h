@@ -16,12 +16,6 @@
 
 #include "work.h"
 
-/* Doubles that a state keeps of a layer that softens: the deviation d, and the numbers below. */
-size_t bd_softening_size(const bd_layer *layer);
-
-/* The spring of a state at rest in x: what the layer carries there beyond its own relaxed stiffness. */
-void bd_softening_rest(const bd_model *model, const bd_state *state);
-
 /* Whether E, L or Omega has moved so far from what S was factored with that both are to be renewed. */
 bool bd_softening_moved(const bd_model *model, const bd_state *state);
 

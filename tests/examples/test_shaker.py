@@ -312,7 +312,7 @@ def test_the_other_causes_are_small_or_go_the_wrong_way() -> None:
         rig = measured()[k].rig
         lost = 1 - (rig.r_outer - 5e-4) ** 2 / rig.r_outer**2
         assert -lost / 2 < change["outer 0.5 mm not bonded"] < 0
-        # a lossless compliance would explain the frequency, and miss the height by 10 % (the mean of the masses:
+        # a lossless compliance would explain the frequency, and miss the height by 10 % (mean of the masses:
         # accelerometers are good to 5 %)
         series = otherwise(k)["lossless spring in series"][1]
         said, computed = peaks()[k]

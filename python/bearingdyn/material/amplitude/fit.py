@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +11,8 @@ import scipy
 
 from bearingdyn.checks import positive
 from bearingdyn.material.amplitude.law import Payne
+from bearingdyn.material.amplitude.report import PayneFit
 from bearingdyn.material.amplitude.sweep import StrainSweep, in_shear, read_strain_sweep
-from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 _RISE = 0.01  # of G′ from a smaller strain to a larger one: noise of an instrument, and no more
@@ -22,46 +22,6 @@ _PARAMETERS = 7  # of the law and the two constants it stands on
 _EXACT = 1e-12  # squared relative misfit of a point that is round-off
 _FACTORS = (0.2, 20.0)  # of D sought, over the fall of G′ within the sweep
 _CUT = 5e-3  # of ln D
-
-
-@dataclass(frozen=True)
-class PayneFit:
-    """How well a law renders the strain sweep it was fitted to.
-
-    Attributes
-    ----------
-    frequency, temperature
-        Of the sweep, Hz and °C.
-    strain
-        Shear strain of the points used, a fraction, (n,).
-    storage, loss
-        Measured moduli, Pa, (n,).
-    linear
-        What the law is added to at this frequency: G* of the sweep less F + iL, Pa.
-    storage_max, tan_delta_max
-        Largest relative deviation of G′ and of tan δ.
-    D_range
-        Lowest and highest D that the sweep does not refute with 90 % confidence (F test); the lowest is
-        taken. inf where a larger D is always as good.
-    """
-
-    frequency: float
-    temperature: float
-    strain: Array = field(compare=False, repr=False)
-    storage: Array = field(compare=False, repr=False)
-    loss: Array = field(compare=False, repr=False)
-    linear: complex
-    storage_max: float
-    tan_delta_max: float
-    D_range: tuple[float, float]
-    source: str = ""
-
-    __repr__ = short
-
-    @property
-    def D_known(self) -> bool:
-        """Whether the sweep holds D within a factor of two."""
-        return self.D_range[1] < 2 * self.D_range[0]
 
 
 def fit_payne(
