@@ -101,7 +101,7 @@ def estimate(
     kind: Kind = "deep groove",
     contact_angle: float | None = None,
 ) -> Entry:
-    """A catalogue's entry for boundary dimensions in m: an estimate of typical geometry, no maker's design.
+    """Typical internal geometry for boundary dimensions in m: an estimate, no maker's design.
 
     Pitch diameter midway. Balls: the largest in steps of 1/64 inch up to 0.3 of the section (outside − bore);
     in narrow bearings, up to 0.7 of the width. Deep groove: as many as can be filled in over 196°; angular
@@ -221,7 +221,7 @@ ALTERNATIVES: dict[str, tuple[Entry, ...]] = {
 
 
 def entry(designation: str | int, *, balls: int | None = None) -> Entry:
-    """The catalogue's entry for a designation: typical geometry, and its source.
+    """Geometry of a designation, and its source.
 
     Parameters
     ----------
@@ -279,7 +279,7 @@ def _listed(designation: str | int, read: Designation, balls: int | None) -> Ent
 def bearing(
     designation: str | int, *, clearance: float | None = None, balls: int | None = None, **keywords: Any
 ) -> BallBearing:
-    """BallBearing from the catalogue, with the internal geometry of a designation.
+    """BallBearing with the internal geometry of a designation.
 
     Parameters
     ----------
