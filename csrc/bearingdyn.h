@@ -196,7 +196,7 @@ size_t bd_bearing_work_size(const bd_bearing_data *data);
 /* ---------------------------------------------------------------- model (model.c) */
 
 /* How a layer softens with the amplitude of its own strain (softening.c): beside the Maxwell branches stand a spring
- * E = F - L and a branch of modulus 2 L, of the running strain amplitude,
+ * E = F - L, a branch of modulus 2 L, and one that makes good what the Maxwell branches lack, of the running strain amplitude,
  *     F = D (1 + (A/gamma_c)^p)^(-m/p),   L = Lm (A/gamma_l)^p / (1 + (A/gamma_l)^p) */
 typedef struct bd_softening_data {
     double D, gamma_c, m, Lm, gamma_l, p;
@@ -206,7 +206,8 @@ typedef struct bd_softening_data {
     const double *strain; /* (rank) weights of y^2 in the square of the strain amplitude */
     int n_table;          /* frequencies, even in their logarithm from rate_first to rate_last */
     double rate_first, rate_last;
-    const double *table; /* (2 n_table) what the branches have too much of storage, then of loss */
+    const double
+        *table; /* (2 n_table) what the branches lack: strength of a slow branch, then loss */
 } bd_softening_data;
 
 typedef struct bd_layer_data {

@@ -151,7 +151,8 @@ static bool softening_valid(const bd_softening_data *law, int rank)
            all_finite(law->strain, (size_t)rank) && nonnegative(law->strain, rank) &&
            (law->n_table < 1 ||
             (law->rate_first > 0.0 && law->rate_last > law->rate_first &&
-             isfinite(law->rate_last) && all_finite(law->table, 2 * (size_t)law->n_table)));
+             isfinite(law->rate_last) && all_finite(law->table, 2 * (size_t)law->n_table) &&
+             nonnegative(law->table, 2 * law->n_table)));
 }
 
 bd_status bd_model_check(const bd_model_data *data)

@@ -83,6 +83,7 @@ PUBLIC = {
             "at_radius",
             "damping_sample",
             "quadrilaterals",
+            "specimen_factor",
         ),
         "fem": (
             "MM_TONNE",

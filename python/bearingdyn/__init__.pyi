@@ -126,6 +126,7 @@ from bearingdyn.parts import (
     at_radius,
     damping_sample,
     quadrilaterals,
+    specimen_factor,
 )
 from bearingdyn.results import (
     open_result,
@@ -236,6 +237,7 @@ __all__ = [
     "shaft_angle",
     "sheet_html",
     "sheet_text",
+    "specimen_factor",
     "spectrum",
     "state_space",
     "static_summary",

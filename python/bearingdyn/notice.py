@@ -155,6 +155,17 @@ class MixedRuns(Notice):
     """
 
 
+class UnequalRuns(Notice):
+    """Runs (specimens) of one measurement stand at different levels.
+
+    When: `master_curve` finds that the moduli of a run have to be multiplied by a factor more than 2 % and
+    three standard errors from 1, so that all runs follow one law; or cannot tell the level of a run.
+
+    Remedy: check the specimens' thickness and clamping; choose one run by `dma.select(run=...)`, or give
+    `levels={run: factor}`; `levels=None` leaves moduli as measured.
+    """
+
+
 class CutFile(Notice):
     """Notice: a file ends inside a character: it was cut off in copying, and its last line is left out.
 

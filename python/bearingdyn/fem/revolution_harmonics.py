@@ -203,7 +203,7 @@ def deviatoric_strains(
 
     Parameters
     ----------
-    order, components
+    mesh, order, components
         Of the harmonic that u is of.
     u
         Shapes in its coordinates.

@@ -19,7 +19,9 @@ from bearingdyn.parts.ring import Ring
 from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.parts.specimen import specimen_factor
 from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.parts.strain import Strain
 
 __all__ = [
     "Cylinder",
@@ -51,9 +53,11 @@ __all__ = [
     "Shaft",
     "Solid",
     "Squeezed",
+    "Strain",
     "ViscoelasticSolid",
     "Where",
     "at_radius",
     "damping_sample",
     "quadrilaterals",
+    "specimen_factor",
 ]
