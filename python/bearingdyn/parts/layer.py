@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, one_of, positive, require
 from bearingdyn.cms import Superelement, check_moduli
-from bearingdyn.fem import revolution_mesh
-from bearingdyn.fem.finite_strain import NoBalance
+from bearingdyn.fem import (
+    NoBalance,
+    revolution_mesh,
+)
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline

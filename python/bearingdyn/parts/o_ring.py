@@ -9,8 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from bearingdyn.checks import nonnegative, positive, require
-from bearingdyn.fem import RevolutionMesh, disc_section, quadrilaterals
-from bearingdyn.fem.finite_strain import NoBalance
+from bearingdyn.fem import (
+    NoBalance,
+    RevolutionMesh,
+    disc_section,
+    quadrilaterals,
+)
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic
 from bearingdyn.parts.regions import Patch, ViscoelasticSolid

@@ -93,12 +93,15 @@ class NoBalance(ArithmeticError):
         Of the squeeze asked for that was reached.
     reason
         What stopped it.
+    state
+        The body where it stopped.
     """
 
-    def __init__(self, share: float, reason: str) -> None:
+    def __init__(self, share: float, reason: str, state: Any) -> None:
         super().__init__(reason)
         self.share = share
         self.reason = reason
+        self.state = state
 
 
 def balance(
@@ -148,7 +151,7 @@ def balance(
             step *= 0.5
             here = Balance(u, state(u), touching)
             if step < SMALLEST:
-                raise NoBalance(reached, reasons[0]) from None
+                raise NoBalance(reached, reasons[0], here.state) from None
             continue
         u, touching, reached = here.u, here.touching, target
         reasons.clear()
