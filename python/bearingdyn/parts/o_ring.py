@@ -127,14 +127,18 @@ class ORing:
         """
         remedy = "it must be a share of the cord, above 0 and less than 1: unsqueezed it has no stiffness"
         require(0.0 < nonnegative("squeeze", squeeze, remedy) < 1.0, "squeeze", squeeze, remedy)
-        try:
-            return self.body.squeezed(
+
+        def on(ring: ORing) -> Squeezed:
+            return ring.body.squeezed(
                 {"outer": squeeze * self.cord},
                 slip=("inner", "outer"),
                 law=law,
                 branches=branches,
                 after=after,
             )
+
+        try:
+            return on(self)
         except NoBalance as failure:
             raise ValueError(
                 f"squeeze is {squeeze}; {failure.share * squeeze:.3g} of the cord is reached: "
