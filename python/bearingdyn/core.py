@@ -77,7 +77,7 @@ class Interrupted(KeyboardInterrupt):
 
 @dataclass(frozen=True, kw_only=True)
 class Scheme:
-    """Newmark's scheme, and how exactly the bearing forces are found in it.
+    """The core's scheme, Newmark's, and how exactly the bearing forces are found in it.
 
     The step, the speed and the audit are arguments of the analysis that marches.
 
@@ -164,7 +164,7 @@ class Stepping:
 
 @dataclass(frozen=True)
 class Report:
-    """Where and how a march ended (bd_report); the sum of two is that of one march after the other.
+    """The core's report of where and how a march ended (bd_report); the sum of two is of one after the other.
 
     The fields are those of REPORT_FIELDS, which says of each whether it adds, or the first or last counts.
     """
@@ -383,7 +383,7 @@ def time_of(model: Model, state: Array) -> float:
 
 
 def energies(model: Model, state: Array) -> dict[str, float]:
-    """What the audit of a march integrated, J, by the names of ENERGIES.
+    """What the audit of a march in the core integrated, J, by the names of ENERGIES.
 
     Parameters
     ----------

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ import bearingdyn as bd
 from bearingdyn.material import Elastic, Maxwell
 from bearingdyn.notice import BeyondData, MeshDependent, StrainedLayer
 from bearingdyn.parts import Layer, Squeezed
+from bearingdyn.parts.squeezed import compare_meshes
 
 MM = 1e-3
 G, K = 1e6, 2e9
@@ -191,8 +194,16 @@ def test_static_state_beyond_the_data_warns() -> None:
 
 
 def test_a_mesh_that_decides_warns() -> None:
-    with pytest.warns(MeshDependent, match=r"times its refinement"):
-        layer(0.0, RUBBER, 0.36).assembled(squeeze=0.03)
+    """Two answers 2 % apart are told of; two of the same ring on neighbouring meshes are not."""
+    fine, other = (
+        layer(0.0, RUBBER, 0.5).assembled(squeeze=s, inside="slip", outside="slip", compare=False)
+        for s in (0.100, 0.102)
+    )
+    with pytest.warns(MeshDependent, match=r"times its refinement, \d"):
+        compare_meshes(fine, lambda: other)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MeshDependent)
+        layer(0.0, RUBBER, 1.0).assembled(squeeze=0.03)
 
 
 def test_an_equilibrium_tells_of_a_layer_strained_beyond_its_linear_stiffness() -> None:

@@ -27,7 +27,7 @@ def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 def frozen_sparse(name: str, value: Any, n: int, columns: int | None = None) -> scipy.sparse.csr_matrix:
-    """A part's sparse matrix (csr), to be frozen. Raises ValueError for another shape or a non-finite entry."""
+    """A part's sparse matrix (csr), to be frozen; ValueError for another shape or a non-finite entry."""
     matrix = scipy.sparse.csr_matrix(value, dtype=np.float64)
     shape = (n, n if columns is None else columns)
     if matrix.shape != shape:

@@ -134,10 +134,11 @@ class Harmonic:
         return A
 
 
-def _element_matrices(
+def _strain_operators(
     mesh: RevolutionMesh, n: int, components: tuple[int, ...]
-) -> tuple[Array, Array, Array]:
-    """Mass (m, 9, 9) of one component, volumetric and deviatoric stiffness (m, 9c, 9c) of every element."""
+) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """Of the 3×3 points q of every element m: N (q, 9), r, z, det (m, q), m³ of the order's integral over φ,
+    and B (m, q, 6, 9c), amplitudes of the strains ε_rr, ε_θθ, ε_zz, γ_rz, γ_rθ, γ_θz."""
     x, w = np.polynomial.legendre.leggauss(3)
     xi, eta = np.repeat(x, 3), np.tile(x, 3)
     N, N_xi, N_eta = shape_functions(xi, eta)
@@ -152,7 +153,6 @@ def _element_matrices(
     d_z = (r_xi / det)[:, :, None] * N_eta - (r_eta / det)[:, :, None] * N_xi
     by_r = N / r[:, :, None]
 
-    # Amplitudes of the strains ε_rr, ε_θθ, ε_zz, γ_rz, γ_rθ, γ_θz for U, V, W at each node.
     B = np.zeros((*d_r.shape[:2], 6, 9, 3))
     B[..., 0, :, 0] = d_r
     B[..., 1, :, 0], B[..., 1, :, 1] = by_r, n * by_r
@@ -161,6 +161,15 @@ def _element_matrices(
     B[..., 4, :, 0], B[..., 4, :, 1] = -n * by_r, d_r - by_r
     B[..., 5, :, 1], B[..., 5, :, 2] = d_z, -n * by_r
     B = B[..., list(components)].reshape(*d_r.shape[:2], 6, -1)
+
+    return N, r, z, det, dV, B
+
+
+def _element_matrices(
+    mesh: RevolutionMesh, n: int, components: tuple[int, ...]
+) -> tuple[Array, Array, Array]:
+    """Mass (m, 9, 9) of one component, volumetric and deviatoric stiffness (m, 9c, 9c) of every element."""
+    N, r, z, det, dV, B = _strain_operators(mesh, n, components)
 
     trace = B[:, :, :3].sum(axis=2)
     # Pressures are linear in r and z themselves: linear in ξ and η they lose an order where elements are
@@ -173,13 +182,44 @@ def _element_matrices(
     volumetric = D.transpose(0, 2, 1) @ np.linalg.solve(P, D)
 
     # e:e = Σ(ε_ii − ε_kk/3)² + ½Σγ², which is εᵀT2ε.
-    B[:, :, :3] -= trace[:, :, None] / 3
-    B[:, :, 3:] *= np.sqrt(0.5)
+    _make_deviatoric(B)
     B *= np.sqrt(dV)[:, :, None, None]
     B = B.reshape(len(B), -1, B.shape[-1])
     deviatoric = B.transpose(0, 2, 1) @ B
     mass = np.einsum("eq,qa,qb->eab", dV, N, N, optimize=True)
     return mass, volumetric, deviatoric
+
+
+def _make_deviatoric(B: Array) -> None:
+    """Turn strains (m, q, 6, …) into numbers whose squares add up to e:e, in place."""
+    B[:, :, :3] -= B[:, :, :3].sum(axis=2)[:, :, None] / 3
+    B[:, :, 3:] *= np.sqrt(0.5)
+
+
+def deviatoric_strains(
+    mesh: RevolutionMesh, order: int, components: tuple[int, ...], u: Array
+) -> tuple[Array, Array]:
+    """Deviatoric strain of shapes u (n, k) at the 3×3 points of every element, and the points' volumes.
+
+    Parameters
+    ----------
+    order, components
+        Of the harmonic that u is of.
+    u
+        Shapes in its coordinates.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        (m, 9, 6, k), amplitudes whose squares add up to e:e, the first four in cos nφ, the last two in sin nφ
+        (without φ in order 0); and (m, 9), m³ per radian.
+    """
+    *_, dV, B = _strain_operators(mesh, order, components)
+    _make_deviatoric(B)
+    c = len(components)
+    local = u.reshape(-1, c, u.shape[1])[mesh.elements].reshape(len(mesh.elements), 9 * c, -1)
+    around = 2 * np.pi if order == 0 else np.pi
+    return np.einsum("eqsa,eak->eqsk", B, local, optimize=True), dV / around
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,7 +289,20 @@ def _kept_on_axis(mesh: RevolutionMesh, order: int, components: tuple[int, ...])
 def assemble_harmonic(
     mesh: RevolutionMesh, order: int, components: tuple[int, ...] = ALL_COMPONENTS
 ) -> Harmonic:
-    """Matrices of a body of revolution for the Fourier harmonic n >= 0, components (0: U, 1: V, 2: W).
+    """Matrices of a body of revolution for one Fourier harmonic.
+
+    Parameters
+    ----------
+    mesh
+        The section in (r, z).
+    order
+        Of the harmonic in the azimuth, 0, 1, 2, …
+    components
+        The motions that are left free, 0: radial U, 1: tangential V, 2: axial W.
+
+    Returns
+    -------
+    Harmonic
 
     Raises
     ------

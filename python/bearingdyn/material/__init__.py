@@ -1,5 +1,6 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
+from bearingdyn.material.amplitude import Payne, PayneFit, StrainSweep, fit_payne, read_strain_sweep
 from bearingdyn.material.beyond_data import warn_beyond
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
@@ -35,20 +36,25 @@ __all__ = [
     "MooneyRivlin",
     "NeoHooke",
     "OutsideBand",
+    "Payne",
+    "PayneFit",
     "PowerLaw",
     "ReadingError",
     "RelaxationData",
     "RhoT",
     "ShiftTable",
+    "StrainSweep",
     "Suspect",
     "TabulatedModulus",
     "Yeoh",
     "fit_dense",
     "fit_maxwell",
+    "fit_payne",
     "group_isotherms",
     "kk_ratio",
     "master_curve",
     "read_dma",
+    "read_strain_sweep",
     "sample_dma_path",
     "suspects",
     "to_abaqus_frequency",

@@ -50,7 +50,7 @@ def _above_zero(field: str, T: float) -> None:
 
 @dataclass(frozen=True)
 class WLF:
-    """Williams–Landel–Ferry: log10 a_T = −C1 (T − T_ref)/(C2 + T − T_ref).
+    """Shift law of Williams, Landel and Ferry: log10 a_T = −C1 (T − T_ref)/(C2 + T − T_ref).
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class WLF:
 
 @dataclass(frozen=True)
 class Arrhenius:
-    """Arrhenius: ln a_T = (Ea/R)(1/T − 1/T_ref), absolute temperatures.
+    """Shift law of Arrhenius: ln a_T = (Ea/R)(1/T − 1/T_ref), absolute temperatures.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Arrhenius:
 
 @dataclass(frozen=True)
 class Joined:
-    """WLF above the glass transition, Arrhenius below, joined at Tg: log10 a_T = f(T) − f(T_ref).
+    """Shift law joined at Tg, WLF above it and Arrhenius below: log10 a_T = f(T) − f(T_ref).
 
     f = −C1 (T − Tg)/(C2 + T − Tg) for T ≥ Tg and (Ea/R ln 10)(1/T − 1/Tg), absolute temperatures, below.
 

@@ -24,6 +24,7 @@ from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
+from bearingdyn.parts.strain import Strain
 from bearingdyn.types import Array, Complex
 
 
@@ -258,6 +259,43 @@ class Layer:
             for s in (-0.5 * self.width, 0.5 * self.width)
         ]
         return np.asarray(np.maximum(*ends) / self.thickness)
+
+    def strain(self, relative: ArrayLike, modulus: float | None = None) -> Strain:
+        """Shear strain of the rubber under a relative motion of the interfaces, by the strain at each place.
+
+        Parameters
+        ----------
+        relative
+            (6,) motion x, y, z, θx, θy, θz of the outer interface against the inner one, m and rad, real or
+            complex, zero-to-peak.
+        modulus
+            Shear modulus, Pa, on which the shape depends; None: the lowest of `moduli`.
+
+        Returns
+        -------
+        Strain
+            Over the volume `rms`; `logarithmic`, the one that a law of softening is asked at; `largest`.
+
+        Raises
+        ------
+        ValueError
+            For a motion of another shape, or an elastic material.
+
+        Examples
+        --------
+        >>> import bearingdyn as bd
+        >>> rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
+        >>> layer = bd.Layer(r_inner=0.020, r_outer=0.022, width=0.017, material=rubber)
+        >>> g = layer.strain([10e-6, 0, 0, 0, 0, 0])  # 10 µm across 2 mm of rubber, radially
+        >>> f"{100 * g.rms:.2f} % rms, {100 * g.logarithmic:.2f} % where the energy is"
+        '0.95 % rms, 1.45 % where the energy is'
+        """
+        q = np.asarray(relative)
+        require(
+            not isinstance(self.material, Elastic), "material", self.material, "a strain is asked of rubber"
+        )
+        require(q.shape == (6,), "relative", relative, "it must be (6,): x, y, z, θx, θy, θz")
+        return self.body.strain(np.concatenate([np.zeros(6), q]), modulus)
 
     def nominal_strain(self, relative: ArrayLike) -> Array:
         """Nominal strain max |t + θ × ρ| / (r_outer − r_inner) under a relative motion of the interfaces.

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 
 from bearingdyn.checks import named, require, whole
 from bearingdyn.cms import (
@@ -32,6 +33,7 @@ from bearingdyn.fem import (
     NoBalance,
     RevolutionMesh,
     assemble_harmonic,
+    deviatoric_strains,
     lowest_modes,
     revolution_mesh,
 )
@@ -48,13 +50,16 @@ from bearingdyn.parts.round_face import RoundFace, face_of_nodes
 from bearingdyn.parts.shape_moduli import shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.static_modulus import quasi_static
+from bearingdyn.parts.strain import Strain
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
+
+_AZIMUTHS = 16  # of a quarter turn: ln γ averages to 1e-4 over them
 
 
 @dataclass(frozen=True, eq=False)
 class RevolvedModes:
-    """Undamped modes of a body of revolution, of one Fourier order.
+    """Undamped modes of a revolved body, of one Fourier order.
 
     Parameters
     ----------
@@ -452,13 +457,7 @@ class Revolved:
         if not self.interfaces and not self.grooves:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
         n = self._size
-        rubbers: list[Any] = []
-        owner = np.full(len(self.regions), -1)
-        for i, q in enumerate(self.regions):
-            if not isinstance(q.material, Elastic):
-                if not any(q.material is m for m in rubbers):
-                    rubbers.append(q.material)
-                owner[i] = next(j for j, m in enumerate(rubbers) if q.material is m)
+        rubbers, owner = self._rubbers
         bulk = np.array(self._bulk)
         shear = np.array([q.material.G if isinstance(q.material, Elastic) else 0.0 for q in self.regions])
 
@@ -488,12 +487,105 @@ class Revolved:
             K=P @ K @ P,
             interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(self.interfaces)},
             outputs=rows,
-            viscoelastic=tuple(Viscoelastic(m, P @ h @ P) for m, h in zip(rubbers, H, strict=True)),
+            viscoelastic=tuple(
+                Viscoelastic(m, P @ h @ P, *self._strain_scale(j))
+                for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
+            ),
             raceways={
                 name: Raceway(t.series, t.arm, np.eye(n)[self._boundaries.starts[name] :][: len(t.series)])
                 for name, t in self._boundaries.tracks.items()
             },
         )
+
+    def _soft(self, owner: int | None = None) -> Index:
+        """Elements of the viscoelastic regions, or of one material's, numbered as in the superelement."""
+        _, owners = self._rubbers
+        wanted = owners >= 0 if owner is None else owners == owner
+        return np.flatnonzero(wanted[self.mesh.region])
+
+    @cached_property
+    def _rubbers(self) -> tuple[list[Any], Index]:
+        """The viscoelastic materials, and of each region the number of its own, -1 if it is elastic."""
+        rubbers: list[Any] = []
+        owner = np.full(len(self.regions), -1)
+        for i, q in enumerate(self.regions):
+            if not isinstance(q.material, Elastic):
+                if not any(q.material is m for m in rubbers):
+                    rubbers.append(q.material)
+                owner[i] = next(j for j, m in enumerate(rubbers) if q.material is m)
+        return rubbers, owner
+
+    def _strain_scale(self, owner: int) -> tuple[float, Array]:
+        """Volume of a rubber, m³, and χ of each coordinate (n,), logarithmic over rms strain of its shape."""
+        elements, scale = self._soft(owner), np.ones(self._size)
+        volume = np.zeros(0)
+        for h, Psi, places in self._placed():
+            e, volume = deviatoric_strains(self.mesh, h.order, h.components, h.complete(Psi.copy()))
+            e, volume = e[elements], volume[elements].ravel()
+            even, odd = (
+                2 * (part**2).sum(axis=2).reshape(volume.size, -1) for part in (e[:, :, :4], e[:, :, 4:])
+            )
+            phi = np.zeros(1) if h.order == 0 else (np.arange(_AZIMUTHS) + 0.5) * np.pi / _AZIMUTHS / h.order
+            cos2, sin2 = np.cos(h.order * phi) ** 2, np.sin(h.order * phi) ** 2
+            if h.order == 0:
+                sin2 = np.ones(1)
+            floor = 1e-9 * max(float((volume @ (even + odd)).max()), 1e-300)
+            for k in range(even.shape[1]):
+                if not volume @ (even[:, k] + odd[:, k]) > floor:
+                    continue
+                squares = np.outer(even[:, k], cos2) + np.outer(odd[:, k], sin2)
+                chi = Strain.of_field(np.sqrt(squares).ravel(), np.repeat(volume, phi.size)).concentration
+                for index, _ in places:
+                    scale[index[k]] = chi
+        return 2 * np.pi * float(volume.sum()), scale
+
+    def strain_field(self, motion: ArrayLike, modulus: float | None = None) -> tuple[Array, Array]:
+        """Shear strain amplitude γ = √(2 e:e) of the rubber under motions of the interfaces, point by point.
+
+        Parameters
+        ----------
+        motion
+            (6 i,) real or complex, zero-to-peak: x, y, z, θx, θy, θz of each interface in their order.
+        modulus
+            Shear modulus, Pa, of the rubber, on which its shape depends; None: the lowest of `moduli`.
+
+        Returns
+        -------
+        tuple of numpy.ndarray
+            γ (azimuths, points) at evenly spaced azimuths and the points of integration, and the points'
+            volumes (points,), m³, all around.
+        """
+        q = np.asarray(motion)
+        count = 6 * len(self.interfaces)
+        if q.shape != (count,) or not np.isfinite(q).all():
+            raise ValueError(
+                f"motion has shape {q.shape}; it must be ({count},), finite: six of each interface"
+            )
+        elements = self._soft()
+        levels = shape_moduli(self.regions, self.moduli if modulus is None else (modulus,))
+        phi = np.arange(4 * _AZIMUTHS) * 2 * np.pi / (4 * _AZIMUTHS)
+        rigid = Boundaries(self._boundaries.faces, {})
+        total: Any = 0.0
+        volume = np.zeros(0)
+        for order, components, copies in rigid.families():
+            h = self._harmonic(order, components)
+            u, _ = self._shape_maker().constraint_shapes(h, levels[0], grooves=False)
+            e, volume = deviatoric_strains(self.mesh, order, components, h.complete(u.copy()))
+            e, volume = e[elements], volume[elements].ravel()
+            for copy in range(copies):
+                index, sign = rigid.place(h, copy)
+                own = e @ (sign * q[index])
+                cos, sin = np.cos(order * phi), np.sin(order * phi)
+                even, odd = (sin, -cos) if copy else (cos, sin if order else np.ones_like(phi))
+                turn = np.stack([even] * 4 + [odd] * 2, axis=-1)
+                total = total + turn[:, None, :] * own.reshape(volume.size, 6)
+        gamma = np.sqrt(2.0 * (np.abs(total) ** 2).sum(axis=-1))
+        return gamma, 2 * np.pi * volume
+
+    def strain(self, motion: ArrayLike, modulus: float | None = None) -> Strain:
+        """The rubber's strain in one number, under motions as in `strain_field`."""
+        gamma, volume = self.strain_field(motion, modulus)
+        return Strain.of_field(gamma.ravel(), np.tile(volume / len(gamma), len(gamma)))
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""

@@ -255,6 +255,7 @@ class Solid:
         n = 3 * len(self.mesh.points)
         M, E, bulk = (scipy.sparse.csr_matrix((n, n)) for _ in range(3))
         rubbers: list[tuple[ViscoelasticSolid, Any]] = []
+        volumes: list[float] = []
         for name, elements in self.mesh.regions.items():
             material = self._materials[name]
             unit = assemble_solid(self.mesh, elements, incompressible=is_rubber(material))
@@ -266,8 +267,10 @@ class Solid:
             same = [k for k, (other, _) in enumerate(rubbers) if other is material]
             if same:
                 rubbers[same[0]] = (material, rubbers[same[0]][1] + unit.deviatoric)
+                volumes[same[0]] += float(unit.mass.sum()) / 3
             else:
                 rubbers.append((material, unit.deviatoric))
+                volumes.append(float(unit.mass.sum()) / 3)
         interfaces = {}
         for name, (nodes, reference) in self._faces.items():
             dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
@@ -280,7 +283,10 @@ class Solid:
             E=E if rubbers else None,
             interfaces=interfaces,
             outputs=self._rows,
-            viscoelastic=tuple(Viscoelastic(material, H) for material, H in rubbers),
+            viscoelastic=tuple(
+                Viscoelastic(material, H, volume)
+                for (material, H), volume in zip(rubbers, volumes, strict=True)
+            ),
         )
 
     def full_model(self) -> FullModel:

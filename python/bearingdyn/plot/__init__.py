@@ -10,7 +10,7 @@ from bearingdyn.plot.bearing_spectrum import bearing_spectrum
 from bearingdyn.plot.bearing_stiffness import bearing_stiffness
 from bearingdyn.plot.campbell import campbell
 from bearingdyn.plot.film import film
-from bearingdyn.plot.frequency_response import frequency_response, unbalance_response
+from bearingdyn.plot.frequency_response import frequency_response
 from bearingdyn.plot.isotherms import isotherms, master, shifts
 from bearingdyn.plot.layer_stiffness import layer_stiffness
 from bearingdyn.plot.load_distribution import load_distribution
@@ -23,6 +23,7 @@ from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.squeezed_section import squeezed_section
 from bearingdyn.plot.time_traces import time
 from bearingdyn.plot.trade_off import trade_off
+from bearingdyn.plot.unbalance_response import unbalance_response
 from bearingdyn.plot.waterfall import waterfall
 
 __all__ = [

@@ -44,7 +44,7 @@ PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The style of the figures, for as long as the context is open.
+    """The style and frame of the figures, for as long as the context is open.
 
     Only these settings are put back at its end. The first figure of a session loads the backend, perhaps in
     here, and a notebook's backend then switches `interactive` on, without which it shows no further figure:

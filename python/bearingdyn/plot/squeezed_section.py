@@ -41,6 +41,8 @@ def squeezed_section(squeezed: Squeezed, ax: Axes | None = None) -> Axes:
     ValueError
         For anything else.
     """
+    from matplotlib.tri import Triangulation
+
     prestress = getattr(getattr(squeezed, "part", None), "prestress", None)
     require(isinstance(prestress, Prestress), "squeezed", squeezed, "it must be what Layer.assembled returns")
     assert isinstance(prestress, Prestress)
@@ -51,14 +53,12 @@ def squeezed_section(squeezed: Squeezed, ax: Axes | None = None) -> Axes:
         stretch = _nodal(mesh.elements, state.elements.stretches[..., -1], mesh.r.size)
         eighths = mesh.elements[:, np.array(TRIANGLES)].reshape(-1, 3)
         drawn = ax.tripcolor(
-            1e3 * mesh.z,
-            1e3 * mesh.r,
-            eighths,
+            Triangulation(1e3 * mesh.z, 1e3 * mesh.r, eighths),
             stretch,
             shading="gouraud",
             cmap="viridis",
             vmin=1.0,
-            vmax=top,
+            vmax=max(float(stretch.max()), 1.0 + 1e-6),
         )
         ax.figure.colorbar(drawn, ax=ax, label="largest stretch")
         for k, side in enumerate(before.outline_sides):

@@ -46,8 +46,12 @@ def read_matrix_market(
         Paths of the files.
     points
         Positions of the nodes, as in check_matrices.
-    check
+    **check
         Further arguments of check_matrices.
+
+    Returns
+    -------
+    FEMatrices
 
     Raises
     ------

@@ -7,9 +7,13 @@ from pathlib import Path
 
 
 def sample_dma_path() -> Path:
-    """Path of the sample table shipped with the package: made from a model its header states, not
-    measured.
+    """Path of the sample table that is shipped with the package.
 
-    Returns the path of a CSV: frequency, Hz, temperature, °C, storage and loss modulus in shear, Pa.
+    Its values are computed from a model, which its header states, and not measured.
+
+    Returns
+    -------
+    Path
+        Of a CSV: frequency, Hz, temperature, °C, storage and loss modulus in shear, Pa.
     """
     return Path(str(importlib.resources.files("bearingdyn.material") / "sample_dma.csv"))
