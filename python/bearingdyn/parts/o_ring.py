@@ -56,7 +56,7 @@ class ORing:
     >>> rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
     >>> seal = bd.ORing(radius=0.022, cord=0.004, material=rubber).assembled(squeeze=0.10)
     >>> f"{seal.force:.0f} N all around, {seal.widths['outer'] * 1e3:.1f} mm wide at the bore"
-    '99 N all around, 1.3 mm wide at the bore'
+    '99 N all around, 1.2 mm wide at the bore'
     """
 
     radius: float

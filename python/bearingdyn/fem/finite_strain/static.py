@@ -119,10 +119,16 @@ def balance(
     ----------
     state
         The body under a displacement (n,).
+    n
+        Number of coordinates.
     free
         Coordinates that exist; the others stay at zero.
-    held, travel
-        Coordinates that are moved, and how far, m.
+    held
+        Coordinates that are moved.
+    travel
+        How far each of them is moved, m.
+    walls
+        Rigid surfaces without friction.
     check
         Why a converged state is refused; None if it is not.
 
