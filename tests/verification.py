@@ -23,6 +23,7 @@ from verified import (
     rings,
     shaker,
     solids,
+    squeezed,
     structures,
 )
 from verified.row import Row
@@ -47,6 +48,8 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Press fits": bearings.fits,
     "Varying compliance": motion.varying_compliance,
     "Bonded rings": structures.bonded_rings,
+    "Squeezed rings": squeezed.squeezed_rings,
+    "Squeezed pads and O-rings": squeezed.squeezed_pads,
     "Damping-layer sample": structures.sample,
     "Sandwich cantilever": solids.sandwich,
     "Solids of elements": solids.bonded,

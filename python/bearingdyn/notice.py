@@ -106,6 +106,28 @@ class BeyondData(Notice):
     """
 
 
+class StrainedLayer(Notice):
+    """Notice: a layer's linear stiffness is wrong at the static displacement that an equilibrium gives it.
+
+    When: `equilibrium` displaces the surfaces of a Layer against each other, across the axis, by more than
+    4 % of its thickness: there its stiffness has risen by 1 %. The text says by how much the state itself,
+    and a small motion about it, is wrong. Along the axis the linear stiffness is good to 1 % up to 20 % of
+    the thickness, and nothing warns.
+
+    Remedy: less load or a thicker layer; or take the figures of the text as the error of the answer.
+    """
+
+
+class MeshDependent(Notice):
+    """Notice: the answer of a squeezed part changes by more than 1 % between two meshes.
+
+    When: `assembled` finds another force or static stiffness on a coarser mesh; at the sharp edge of a bond
+    the strain is singular, and near to folding the mesh decides.
+
+    Remedy: a greater `refinement`; a recess at the edges of the bonds; `compare=False` where it is known.
+    """
+
+
 class BeyondSweep(Notice):
     """A rubber vibrates with more strain than its law of softening was found from.
 

@@ -11,6 +11,7 @@ from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.node_set import NodeSet, at_radius
 from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
+from bearingdyn.parts.prestress import Prestress
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
@@ -42,6 +43,7 @@ __all__ = [
     "Outline",
     "Outlined",
     "Patch",
+    "Prestress",
     "Region",
     "Revolved",
     "RevolvedModes",

@@ -30,13 +30,13 @@ from bearingdyn.fem import (
     AXIAL,
     TORSION,
     Harmonic,
+    NoBalance,
     RevolutionMesh,
     assemble_harmonic,
     deviatoric_strains,
     lowest_modes,
     revolution_mesh,
 )
-from bearingdyn.fem.finite_strain import NoBalance
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline, azimuths, revolved
