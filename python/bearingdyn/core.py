@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import _core
 from bearingdyn.progress import Progress as Progress
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 Model = _core.Model
@@ -38,7 +38,7 @@ class Packable(Protocol):
 
 
 class SolverError(RuntimeError):
-    """A march that could not go on.
+    """A march in the core that could not go on.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class SolverError(RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """A march ended by the user.
+    """A march in the core ended by the user.
 
     Attributes
     ----------
@@ -203,7 +203,7 @@ class Report:
 
 
 def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Array, tau: Array) -> Array:
-    """Deviatoric stress (nt, m) of a material point under a strain rate (nt, m) linear between samples.
+    """Deviatoric stress (nt, m) by the core's history update, the strain rate (nt, m) linear between samples.
 
     It starts from e = 0 and S = 0.
 
@@ -240,7 +240,7 @@ def bearing_force(
     shaft_angle: float = 0.0,
     shaft_speed: float = 0.0,
 ) -> tuple[Array, Array, Array, Array]:
-    """Force of a bearing on its raceways' coefficients, its tangents, and the load of each ball.
+    """Force of a bearing by the core: on its raceways' coefficients, tangents, and the load of each ball.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ def march(
     start: bool = False,
     progress: Progress | None = None,
 ) -> tuple[Array, Array, Report]:
-    """March a state, and say how far it came, whatever the status.
+    """March a state in the core, and say how far it came, whatever the status.
 
     Parameters
     ----------
@@ -308,7 +308,7 @@ def harmonic(
     speed: float = 0.0,
     progress: Progress | None = None,
 ) -> Complex:
-    """Complex response (frequencies, outputs, inputs) to unit forces.
+    """Complex response (frequencies, outputs, inputs) of the core's model to unit forces.
 
     Parameters
     ----------
@@ -345,7 +345,7 @@ def harmonic(
 
 
 def time_of(model: Model, state: Array) -> float:
-    """Time of a state, s.
+    """Time of a state of the core, s.
 
     Parameters
     ----------

@@ -12,8 +12,9 @@ from bearingdyn.analysis import equilibrium
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
 from bearingdyn.bearing.catalogue import bearing
+from bearingdyn.bearing.film_thickness import dimensionless_film
 from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.bearing.lubricant import Walther, dimensionless_film
+from bearingdyn.bearing.lubricant import Walther
 from bearingdyn.parts import RigidBody
 from verified.row import INDEPENDENT, MM, RPM, Row, rows, steel, to_the_digit
 

@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
-from bearingdyn.analysis.harmonic import linear
+from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import Application
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
-from bearingdyn.analysis.statics import Statics
+from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.channels import channel_of
-from bearingdyn.analysis.coarseness import STEP_ERROR_MADE, step_error
+from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.overload import warn_of_overload
-from bearingdyn.analysis.room import check_room
+from bearingdyn.analysis.record_memory import check_room
+from bearingdyn.analysis.step_size import STEP_ERROR_MADE, step_error
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, whole
 from bearingdyn.progress import Progress, told
@@ -191,7 +191,7 @@ def transient(
 
 
 def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -> list[xarray.Dataset]:
-    """Many marches at once over threads.
+    """Many transients at once over threads.
 
     The marches share nothing and hold no lock.
 

@@ -35,7 +35,7 @@ _RACES = (0.52, 0.53)
 
 
 class Entry(NamedTuple):
-    """Boundary dimensions (standard) and internal geometry (typical), m; contact angle in rad or None."""
+    """An entry of the catalogue: boundary dimensions (standard), internal geometry (typical), m and rad."""
 
     bore: float
     outside: float
@@ -214,7 +214,7 @@ def bearing(designation: str | int, *, clearance: float | None = None, **keyword
 
 
 def from_entry(entry: Entry, *, clearance: float | None = None, **keywords: Any) -> BallBearing:
-    """BallBearing of an Entry, such as one by `estimate`.
+    """BallBearing of an Entry of the catalogue, or of one by `estimate`.
 
     Parameters
     ----------

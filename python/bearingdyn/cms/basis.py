@@ -12,12 +12,12 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import whole
-from bearingdyn.cms.full import FullModel
-from bearingdyn.cms.options import check_f_max, check_moduli, check_rounds
-from bearingdyn.cms.superelement import ComplexModulus
+from bearingdyn.cms.full_model import FullModel
+from bearingdyn.cms.reduction_options import check_f_max, check_moduli, check_rounds
+from bearingdyn.cms.viscoelastic import ComplexModulus
 from bearingdyn.fem import factorise, lowest_modes
 from bearingdyn.material import Maxwell
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
 DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off
@@ -25,7 +25,7 @@ DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, belo
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """Shapes of a reduction, u = Psi q.
+    """The basis of a reduction: shapes, u = Psi q.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def craig_bampton(
 def modulus_levels(
     materials: Sequence[ComplexModulus], moduli: Sequence[float] | None = None
 ) -> list[list[float]]:
-    """Real shear moduli, Pa, at which shapes are taken: a list over the viscoelastic materials per level.
+    """Real shear moduli, Pa, at which the shapes of a basis are taken: a list over the materials per level.
 
     By default two levels for each material: its relaxed modulus, for the static state (or, if that is zero,
     |G*| at the slowest branch), and |G*| at ω = 1/τ of its fastest branch, the end of the band in which
@@ -225,7 +225,7 @@ def modulus_levels(
 
 
 def orthogonalise(shapes: Array, K: Any, M: Any) -> tuple[Array, Array]:
-    """Combine shapes (n, m) into modes of each other: unit modal mass, diagonal stiffness.
+    """Combine shapes (n, m) of a basis into modes of each other: unit modal mass, diagonal stiffness.
 
     The shapes come with energies uᵀKu of at most about one; combinations with less than DISTINCT are
     dropped as round-off. Returns rising frequencies (p,), Hz, and shapes (n, p), p <= m.
@@ -274,7 +274,7 @@ def basis_of(
     inertia: int = 1,
     attach: Iterable[str] = (),
 ) -> Basis:
-    """Shapes of a model's reduction; the arguments and errors are those of `reduce`."""
+    """The basis of a model's reduction; the arguments and errors are those of `reduce`."""
     _check_truncation(f_max, n_modes)
     if not model.interfaces:
         raise ValueError("interfaces is empty; a part needs at least one to be joined by")

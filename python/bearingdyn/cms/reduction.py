@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.cms.basis import Basis, basis_of
-from bearingdyn.cms.damping import modal_damping
-from bearingdyn.cms.full import FullModel, RigidInterface
-from bearingdyn.cms.options import check_held
-from bearingdyn.cms.superelement import Superelement, Viscoelastic
+from bearingdyn.cms.full_model import FullModel, RigidInterface
+from bearingdyn.cms.modal_damping import modal_damping
+from bearingdyn.cms.reduction_options import check_held
+from bearingdyn.cms.superelement import Superelement
+from bearingdyn.cms.viscoelastic import Viscoelastic
 from bearingdyn.fem import rigid_body_residual, rigid_transfer
 
 
@@ -26,7 +27,7 @@ def reduce(
     damping: float = 0.0,
     held: str | None = None,
 ) -> Superelement:
-    """Superelement of a full model: constraint modes of its interfaces and shapes that vanish on them.
+    """Reduce a full model to a superelement: constraint modes, and shapes that vanish on the interfaces.
 
     Parameters
     ----------
@@ -63,7 +64,7 @@ def reduce(
 
 
 def project(model: FullModel, basis: Basis, *, damping: float = 0.0, held: str | None = None) -> Superelement:
-    """Superelement of a model in a given basis (Psiᵀ A Psi for each of its matrices); see `reduce`."""
+    """Reduce a full model to a superelement in a given basis (Psiᵀ A Psi for each matrix); see `reduce`."""
     faces = list(model.interfaces.values())
     r = 6 * len(faces)
     R = rigid_transfer([f.position for f in faces], np.mean([f.position for f in faces], axis=0))
@@ -131,7 +132,7 @@ def reduce_free_body(
     f_max: float | None = None,
     n_modes: int | None = None,
 ) -> Superelement:
-    """Superelement of an elastic body free in space, by Craig-Bampton reduction.
+    """Reduce an elastic body free in space to a superelement, by Craig-Bampton.
 
     Parameters
     ----------

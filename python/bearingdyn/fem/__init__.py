@@ -6,8 +6,8 @@ all three.
 """
 
 from bearingdyn.fem.beam import Section, assemble_beam, bending_wavelength
-from bearingdyn.fem.eigen import lowest_modes
 from bearingdyn.fem.factors import Factors, factorise, order_of
+from bearingdyn.fem.lowest_modes import lowest_modes
 from bearingdyn.fem.matrix_files import (
     MM_TONNE,
     FEMatrices,
@@ -36,9 +36,9 @@ from bearingdyn.fem.meshes import (
     revolution_mesh,
     ring_mesh,
 )
-from bearingdyn.fem.revolution import ALL_COMPONENTS, AXIAL, TORSION, Harmonic, assemble_harmonic
-from bearingdyn.fem.rigid import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
-from bearingdyn.fem.solid import SolidMatrices, assemble_solid
+from bearingdyn.fem.revolution_harmonics import ALL_COMPONENTS, AXIAL, TORSION, Harmonic, assemble_harmonic
+from bearingdyn.fem.rigid_motion import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
+from bearingdyn.fem.solid_matrices import SolidMatrices, assemble_solid
 
 __all__ = [
     "ALL_COMPONENTS",

@@ -41,7 +41,7 @@ def factorise(A: Any) -> Any:
 
 
 def pivots(A: Any) -> Array:
-    """Pivots (n,) of a sparse symmetric matrix, by its rows.
+    """Pivots (n,) of the factors of a sparse symmetric matrix, by its rows.
 
     As many are negative as eigenvalues are (Sylvester). −1 stands where rows were exchanged, which only a
     pivot of zero makes necessary.
@@ -60,7 +60,7 @@ def pivots(A: Any) -> Array:
 
 
 def order_of(A: Any) -> Index:
-    """Order of elimination (n,) for many matrices of one pattern, found once; see Factors."""
+    """Order of elimination (n,) for the factors of many matrices of one pattern, found once; see Factors."""
     return elimination_order(A) if A.shape[0] > DISSECT else np.argsort(_by_minimum_degree(A).perm_c)
 
 

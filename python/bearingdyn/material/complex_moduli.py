@@ -23,7 +23,7 @@ from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
 from bearingdyn.material.superposition import MasterCurve, one_curve
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 _PER_DECADE = 40  # points at which a modulus is handed to the fit

@@ -19,7 +19,7 @@ from bearingdyn.material.shift_laws import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrh
 
 
 def elastic_constants(G: float, K: float) -> tuple[float, float]:
-    """Young's modulus 9KG/(3K + G), Pa, and Poisson's ratio (3K − 2G)/(6K + 2G)."""
+    """Young's modulus 9KG/(3K + G), Pa, and Poisson's ratio (3K − 2G)/(6K + 2G), as exports write them."""
     return 9 * K * G / (3 * K + G), (3 * K - 2 * G) / (6 * K + 2 * G)
 
 

@@ -37,7 +37,7 @@ def _branches(name: str, values: ArrayLike) -> Array:
 
 @dataclass(frozen=True, init=False, eq=False)
 class Maxwell(Retunable):
-    """Generalised Maxwell material: viscoelastic in shear, elastic in volume.
+    """The generalised Maxwell model, viscoelastic in shear, elastic in volume.
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
     G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).

@@ -14,7 +14,7 @@ from bearingdyn.types import Array, Complex
 
 
 class Retunable:
-    """What a Maxwell model offers to be made harder, softer, or more lossy."""
+    """What a Maxwell model offers to be retuned: made harder, softer, or more lossy."""
 
     G0: float
     G: Array

@@ -259,7 +259,7 @@ class ShiftTable:
 
 @dataclass(frozen=True)
 class RhoT:
-    """Vertical shift of rubber elasticity: moduli at T are those at T_ref times b_T = ρT/(ρ_ref T_ref).
+    """Law of vertical shift, rubber elasticity: moduli at T are those at T_ref times b_T = ρT/(ρ_ref T_ref).
 
     Parameters
     ----------

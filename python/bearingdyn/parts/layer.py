@@ -14,17 +14,17 @@ from bearingdyn.checks import positive
 from bearingdyn.cms import Superelement, check_moduli
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
-from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.types import Array, Complex
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
+    """A layer: a rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
 
     Parameters
     ----------

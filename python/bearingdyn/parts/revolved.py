@@ -35,20 +35,22 @@ from bearingdyn.fem import (
 )
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
-from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
-from bearingdyn.parts.faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.outline import Outline, azimuths, revolved
-from bearingdyn.parts.regions import Patch, Region, quasi_static, shape_moduli
+from bearingdyn.parts.regions import Patch, Region
+from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_boundaries
+from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
-from bearingdyn.short import short
+from bearingdyn.parts.shape_moduli import shape_moduli
+from bearingdyn.parts.static_modulus import quasi_static
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
 
 @dataclass(frozen=True, eq=False)
 class RevolvedModes:
-    """Undamped modes of one Fourier order.
+    """Undamped modes of a body of revolution, of one Fourier order.
 
     Parameters
     ----------

@@ -39,9 +39,10 @@ from bearingdyn.fem import (
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.regions import ViscoelasticSolid, quasi_static
+from bearingdyn.parts.regions import ViscoelasticSolid
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
-from bearingdyn.short import short
+from bearingdyn.parts.static_modulus import quasi_static
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
@@ -52,7 +53,7 @@ LOCKING = 0.45  # Poisson's ratio from which an elastic region is assembled as i
 
 @dataclass(frozen=True)
 class RigidSurface:
-    """Surfaces of a mesh that move together as one rigid body with six coordinates.
+    """Surfaces of a solid that move together as one rigid body with six coordinates.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ class RigidSurface:
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A three-dimensional body of one or more materials, not turning, with rigid interfaces.
+    """A solid of one or more materials, of any shape, not turning, with rigid interfaces.
 
     Viscoelastic regions, and elastic ones with ν of 0.45 or more, are assembled as incompressible, so that
     they do not lock: see fem.assemble_solid. In rubber use 27-node bricks, which are some five times as

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.ticker import Formatter
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+GREY = "0.35"  # of what explains a curve
 DASHES = ("-", "--", "-.", (0, (1, 1)))
 STYLE: Mapping[str, Any] = {
     "font.size": 9.0,
@@ -42,7 +43,7 @@ PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The package's own look, for as long as the context is open.
+    """The style of the figures, for as long as the context is open.
 
     Only these settings are put back at its end. The first figure of a session loads the backend, perhaps in
     here, and a notebook's backend then switches `interactive` on, without which it shows no further figure:
@@ -60,7 +61,7 @@ def style() -> Iterator[None]:
 
 
 def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = None) -> Axes:
-    """Axes in a figure of their own; width and height in inches."""
+    """Axes in a new figure of their own; width and height in inches."""
     import matplotlib.pyplot as plt
 
     figure = plt.figure(figsize=(width, height), layout="constrained")
@@ -96,7 +97,7 @@ def stack(ax: Axes, shares: Sequence[float]) -> list[Axes]:
 
 
 def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
-    """Frame, ticks and grid; title on the left, the legend in rows between it and the data."""
+    """Finish a figure: frame, ticks, grid; title on the left, the legend in rows between it and the data."""
     ax.spines[["top", "right"]].set_visible(False)
     # said here since ticks are made when they are drawn, outside the style's context
     ax.tick_params(which="both", labelsize=8.5, width=0.7)
@@ -179,19 +180,28 @@ def frame_log(ax: Axes, values: Array) -> None:
 
 
 def colour(k: int) -> str:
-    """Colour of the k-th curve."""
+    """Colour of the k-th curve of a figure."""
     return COLOURS[k % len(COLOURS)]
 
 
 def is_result(datasets: object) -> bool:
-    """Whether it is one result and no mapping of several: a Dataset is a Mapping too, of its variables."""
+    """Whether a figure is asked for one result and no mapping of several: a Dataset is a Mapping too."""
     return hasattr(datasets, "data_vars")
 
 
 def some(datasets: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The results by label; ValueError if there are none, or one without a label."""
+    """The results a figure shows, by label; ValueError if there are none, or one without a label."""
     if is_result(datasets):
         raise ValueError('this is a result without a label; give results by label, such as {"run": result}')
     if not datasets:
         raise ValueError("there is nothing to draw; give at least one result with its label")
     return datasets
+
+
+def kind_of(data: xarray.Dataset) -> str:
+    """What a result that a figure is to show is, with the band of an envelope."""
+    kind = str(data.attrs.get("analysis", "spectrum"))
+    if "band" in data.attrs:
+        low, high = (float(f) for f in data.attrs["band"])
+        kind += f" ({low:g} to {high:g} Hz)"
+    return kind

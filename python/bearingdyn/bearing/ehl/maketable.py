@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from bearingdyn.bearing.ehl import harmonic
-from bearingdyn.bearing.ehl.film import Figures, Steady, steady
-from bearingdyn.bearing.ehl.places import HIGHEST, D, L, loads, place
-from bearingdyn.bearing.ehl.table import OMEGA
+from bearingdyn.bearing.ehl import harmonic_approach
+from bearingdyn.bearing.ehl.steady_film import Figures, Steady, steady
+from bearingdyn.bearing.ehl.table_places import HIGHEST, D, L, loads, place
+from bearingdyn.bearing.ehl.table_lookup import OMEGA
 
 ACCURACY = (0.02, 0.05, 0.1)
 """What `steady` is asked for; the next where one needs too many nodes."""
@@ -49,7 +49,7 @@ def point(M: float, L: float, D: float) -> list[float]:
     # the shape is that of the second grid: a ratio hardly depends on the pitch
     level = found[0].levels[-2]
     K0, C0 = level.figures.K0, level.figures.C0
-    answers = [harmonic.stiffness(level.equations, level.state, x) for x in OMEGA]
+    answers = [harmonic_approach.stiffness(level.equations, level.state, x) for x in OMEGA]
     K = [k.real - K0 for k in answers]
     C = [1.5 * k.imag / x / C0 for k, x in zip(answers, OMEGA, strict=True)]
     figures = np.array([s.figures for s in found])

@@ -14,7 +14,8 @@ import scipy.sparse
 
 from bearingdyn.checks import existing
 from bearingdyn.fem.abaqus_input import blocks, node
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.matrix_checks import checked_files
 from bearingdyn.fem.matrix_files.text_tables import (
     Form,
     first_line,

@@ -19,7 +19,8 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.checks import existing
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.matrix_checks import checked_files
 from bearingdyn.writing import write_whole
 
 # what zipfile and NumPy raise for damage, which depends on where it is
@@ -133,7 +134,7 @@ def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FE
 
 
 def write_npz(path: str | Path, model: FEMatrices) -> None:
-    """Write a model as read_npz reads it, in compressed sparse rows and SI units."""
+    """Write a finite element model to a NumPy archive (.npz), in compressed sparse rows and SI units."""
     arrays: dict[str, Any] = {}
     for name, A in (("K", model.K), ("M", model.M)):
         arrays |= {

@@ -10,7 +10,7 @@ from itertools import islice
 from pathlib import Path
 
 from bearingdyn.fem.abaqus_input import real, whole
-from bearingdyn.fem.mesh_files.numbered import Numbered
+from bearingdyn.fem.mesh_files.numbered_elements import Numbered
 from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
 
 # I-deas goes round a face, corner and middle in turn; which of its nodes is each of ours

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from bearingdyn.fem.abaqus_input import real, whole
-from bearingdyn.fem.mesh_files.numbered import Numbered
+from bearingdyn.fem.mesh_files.numbered_elements import Numbered
 from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
 
 BRICK = [

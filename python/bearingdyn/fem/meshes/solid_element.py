@@ -47,7 +47,7 @@ PYRAMID_SPAN = (
 
 @dataclass(frozen=True)
 class SolidElement:
-    """A kind of element.
+    """A kind of second-order solid element: its nodes, edges and faces.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ FACE_INTERPOLATION = {6: "ElementTriP2", 8: "ElementQuadS2", 9: "ElementQuad2"}
 
 
 def by_size(faces: Index) -> list[tuple[Index, int]]:
-    """Rows of triangles and of quadrilaterals among faces (f, w), and how many nodes such a face has."""
+    """Faces (f, w) of solid elements parted into triangles and quadrilaterals, and the nodes of each kind."""
     width = faces.shape[1]
     if width == 6:
         return [(np.arange(len(faces)), 6)]
@@ -161,7 +161,7 @@ def _spanned(kind: SolidElement, X: Array) -> tuple[Array, Array]:
 
 
 def shapes(kind: SolidElement, X: Array) -> tuple[Array, Array]:
-    """Shape functions (q, k) and their gradients (q, k, 3) at points X (q, 3) of the unit element."""
+    """Shape functions (q, k) of a solid element and gradients (q, k, 3) at points X (q, 3)."""
     if isinstance(kind.interpolation, str):
         return _shapes(kind.interpolation, kind.places, X)
     nodal = np.linalg.inv(_spanned(kind, kind.places)[0])
@@ -170,7 +170,7 @@ def shapes(kind: SolidElement, X: Array) -> tuple[Array, Array]:
 
 
 def face_shapes(nodes: int, X: Array) -> tuple[Array, Array]:
-    """Shape functions (q, f) and gradients (q, f, 2) of a face of 6, 8 or 9 nodes at X (q, 2)."""
+    """Shape functions (q, f), gradients (q, f, 2) of a solid element's face at X (q, 2); f is 6, 8 or 9."""
     c = np.array([(0, 0), (1, 0), (0, 1)] if nodes == 6 else [(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
     middles = 0.5 * (c + np.roll(c, -1, axis=0))
     places = np.vstack([c, middles, c.mean(axis=0)[None]])[:nodes]
@@ -195,7 +195,7 @@ def simplex_points(dimensions: int) -> tuple[Array, Array]:
 
 
 def points(kind: SolidElement, reduced: bool = False) -> tuple[Array, Array]:
-    """Integration points (q, 3) and weights, exact for straight edges.
+    """Integration points (q, 3) of a solid element and weights, exact for straight edges.
 
     Bricks 3×3×3, reduced 2×2×2; tetrahedra to order 4; wedges those of the triangle times 3; pyramids
     3×3×4 of a brick whose top shrinks to the tip, where their rational functions are polynomials.
@@ -215,5 +215,5 @@ def points(kind: SolidElement, reduced: bool = False) -> tuple[Array, Array]:
 
 
 def face_points(nodes: int) -> tuple[Array, Array]:
-    """Integration points (q, 2) and weights of a face of 6, 8 or 9 nodes."""
+    """Integration points (q, 2) of a solid element's face of 6, 8 or 9 nodes, and weights."""
     return simplex_points(2) if nodes == 6 else gauss(3, 2)

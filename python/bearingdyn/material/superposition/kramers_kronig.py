@@ -30,7 +30,7 @@ _ISOTHERMS = 4  # with fewer, what stays at one frequency cannot be told from wh
 
 @dataclass(frozen=True)
 class Suspect:
-    """A point that no passive material could give.
+    """A point that, by Kramers and Kronig, no passive material could give.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ def kk_ratio(dma: DMAData) -> Array:
 
 
 def suspects(dma: DMAData) -> tuple[NDArray[np.bool_], tuple[Suspect, ...]]:
-    """Points that no passive material could give: mask (n,), and what is wrong with each.
+    """Points that, by Kramers and Kronig, no passive material could give: mask (n,), and what is wrong.
 
     Negative (or zero) moduli always; and, with four isotherms or more, every point from the frequency on
     from which the median ratio over the isotherms exceeds 1.5 up to the highest one, two frequencies at
@@ -123,7 +123,7 @@ def _median(ratio: Array) -> float:
 
 
 def summary(found: tuple[Suspect, ...]) -> str:
-    """How many points are flagged and why, in words."""
+    """How many points fail Kramers' and Kronig's relations and why, in words."""
     parts = []
     for reason in ("negative modulus", "fixture resonance"):
         those = [s for s in found if s.reason == reason]
