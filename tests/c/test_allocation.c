@@ -123,5 +123,6 @@ int main(void)
     the_march_allocates_nothing(BD_DAMPING_TABLE, motor_run_up());
     the_march_allocates_nothing(BD_DAMPING_LOAD, motor_scheme());
     the_march_allocates_nothing(BD_DAMPING_LOAD, motor_run_up());
+    the_march_allocates_nothing(BD_DAMPING_FILM, motor_scheme());
     return check_result();
 }
