@@ -431,6 +431,30 @@ bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const 
                             double angle, double cage_speed, bd_turn shaft, double *g, double *K,
                             double *C, double *loads);
 
+/* ---------------------------------------------------------------- one bearing at rest (settle.c) */
+
+/* How a search for the place of rest ended. */
+#define BD_SETTLED_LIST(X)                                                                         \
+    X(BD_SETTLED, "settled")                                                                       \
+    X(BD_SETTLED_NOT, "no equilibrium")                                                            \
+    X(BD_SETTLED_ASTRAY,                                                                           \
+      "open side") /* a ball that carries is pressed where there is no shoulder */
+
+typedef enum bd_settled { BD_SETTLED_LIST(BD_ENUMERATOR) } bd_settled;
+
+/* One bearing at one cage angle, which many loads are put on; outer ring held. */
+typedef struct bd_settle bd_settle;
+bd_settle *bd_settle_create(const bd_bearing_data *data, double angle,
+                            double shaft_angle); /* NULL: out of memory */
+void bd_settle_free(bd_settle *settle);          /* safe on NULL */
+
+/* Given:    load (n_coefs) on the coefficients, radius > 0 of the order of the expected displacement
+ * Returned: z (n_coefs), loads (n_balls)
+ * Notes:    allocates nothing. The energy is convex: regularised Newton steps from z = 0, whose length
+ *           follows what they gain. A motion that costs nothing stays at its origin. */
+bd_settled bd_settle_case(bd_settle *settle, const double *load, double radius, double *z,
+                          double *loads);
+
 /* ---------------------------------------------------------------- harmonic response (harmonic.c) */
 
 typedef struct bd_harmonic_data {

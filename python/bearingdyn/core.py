@@ -24,6 +24,7 @@ LOAD_KINDS = _core.LOAD_KINDS
 CHANNEL_KINDS = _core.CHANNEL_KINDS
 WAVE_KINDS = _core.WAVE_KINDS
 PIT_KINDS = _core.PIT_KINDS
+SETTLED = _core.SETTLED
 ISAS = _core.ISAS
 ENERGIES = _core.ENERGIES
 REPORT_FIELDS = _core.REPORT_FIELDS
@@ -76,7 +77,7 @@ class Interrupted(KeyboardInterrupt):
 
 @dataclass(frozen=True, kw_only=True)
 class Scheme:
-    """Newmark's scheme, and how exactly the bearing forces are found in it.
+    """The core's scheme, Newmark's, and how exactly the bearing forces are found in it.
 
     The step, the speed and the audit are arguments of the analysis that marches.
 
@@ -163,7 +164,7 @@ class Stepping:
 
 @dataclass(frozen=True)
 class Report:
-    """Where and how a march ended (bd_report); the sum of two is that of one march after the other.
+    """The core's report of where and how a march ended (bd_report); the sum of two is of one after the other.
 
     The fields are those of REPORT_FIELDS, which says of each whether it adds, or the first or last counts.
     """
@@ -261,6 +262,32 @@ def bearing_force(
     return _core.bearing_force(kernel.packed(), z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)
 
 
+def bearing_settle(
+    kernel: Packable, loads: Array, radius: Array, angle: float, shaft_angle: float = 0.0
+) -> tuple[Array, Array, Array]:
+    """Where a bearing comes to rest under each of many loads, its outer ring held.
+
+    Parameters
+    ----------
+    kernel
+        The bearing, as `BearingKernel` packs it.
+    loads
+        (m, n) on the coefficients of the raceways, N.
+    radius
+        (m,) of the order of the expected displacement, m, positive.
+    angle
+        Azimuth of the first ball, rad.
+    shaft_angle
+        Of the shaft, rad.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Coefficients (m, n), loads of the balls (m, Z), N, and how each case ended (m,), codes of SETTLED.
+    """
+    return _core.bearing_settle(kernel.packed(), loads, radius, angle, shaft_angle)
+
+
 def march(
     model: Model,
     state: Array,
@@ -356,7 +383,7 @@ def time_of(model: Model, state: Array) -> float:
 
 
 def energies(model: Model, state: Array) -> dict[str, float]:
-    """What the audit of a march integrated, J, by the names of ENERGIES.
+    """What the audit of a march in the core integrated, J, by the names of ENERGIES.
 
     Parameters
     ----------

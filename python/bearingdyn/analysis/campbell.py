@@ -35,7 +35,7 @@ def campbell(
     damped: bool = True,
     modulus: str = "relaxed",
 ) -> xarray.Dataset:
-    """Find the modes at each speed, and follow each from speed to speed by its shape.
+    """Find the Campbell diagram: the modes at each speed, followed from speed to speed by their shapes.
 
     The bearings keep the tangents of the equilibrium. Modes that are double at standstill are distinct at
     speed, where gyroscopic forces part them: they are therefore followed from the highest speed down, by the

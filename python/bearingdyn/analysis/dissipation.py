@@ -52,7 +52,7 @@ def dissipation(
     scheme: core.Scheme | None = None,
     progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
-    """March as `transient` does, and sum what every part, bearing and spring turns into heat.
+    """Find what an application dissipates: march as `transient`, and sum what becomes heat, and where.
 
     Viscous damping loses ẋᵀCẋ. The shear of a viscoelastic part, "layer (shear)", loses what the dashpots of
     its branches and its η0 lose; a bearing what its contacts lose. Powers are summed by the trapezoidal rule

@@ -51,16 +51,16 @@ def modes(
         Over "mode": frequency (Hz), damping_ratio, eigenvalue (rad/s, complex), and shape (mode, coordinate),
         complex, in the coordinates of the system; the motion of a place is rows(place) @ shape.
 
-    Warns
-    -----
-    UnloadedBearing
-        Where a bearing of the equilibrium carries nothing, and so has no stiffness.
-
     Raises
     ------
     ValueError
         For bearings without an equilibrium, and for a part that would turn although its damping is known at
         rest only.
+
+    Warns
+    -----
+    UnloadedBearing
+        Where a bearing of the equilibrium carries nothing, and so has no stiffness.
 
     Examples
     --------

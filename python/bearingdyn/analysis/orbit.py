@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def orbit(result: xarray.Dataset, x: str, y: str) -> xarray.Dataset:
-    """Two channels against each other, each with the mean of its record subtracted.
+    """The orbit of two channels against each other, each with the mean of its record subtracted.
 
     The mean is the static deflection and what the rotation adds to it.
 

@@ -17,6 +17,18 @@ if TYPE_CHECKING:
 def ball_channels(source: Equilibrium | System, bearing: str) -> list[str]:
     """Channels of the loads of all balls of a bearing, "left.ball1" …, for the record of `transient`.
 
+    Parameters
+    ----------
+    source
+        Equilibrium, or a system.
+    bearing
+        Name of the bearing.
+
+    Returns
+    -------
+    list of str
+        One name for each ball, from 1.
+
     Raises
     ------
     ValueError

@@ -49,7 +49,18 @@ def angle_turned(stepping: core.Stepping, t: float) -> float:
 
 
 def shaft_angle(result: xarray.Dataset) -> Array:
-    """Angle of the shaft at every sample of a march, (n,), rad: the exact integral of its speed profile."""
+    """Angle of the shaft at every sample of a march: the exact integral of its speed profile.
+
+    Parameters
+    ----------
+    result
+        As `transient` returns it.
+
+    Returns
+    -------
+    Array
+        (n,), rad; zero at t = 0.
+    """
     t = np.asarray(result["time"].values, dtype=np.float64)
     times, speeds = speed_profile(result)
     if speeds.size == 1:

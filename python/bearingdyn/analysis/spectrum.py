@@ -66,7 +66,7 @@ def check_window(window: str) -> None:
 
 
 def amplitudes(signal: Array, window: str) -> Array:
-    """One-sided amplitude spectra (..., n//2 + 1), zero-to-peak, of signals (..., n), their means removed."""
+    """One-sided amplitude spectra (..., n//2 + 1), zero-to-peak, of signals (..., n) about their means."""
     n = signal.shape[-1]
     weight = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(n) / n) if window == "hann" else np.ones(n)
     centred = signal - signal.mean(axis=-1, keepdims=True)

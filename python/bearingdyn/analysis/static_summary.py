@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def static_summary(eq: Equilibrium) -> xarray.Dataset:
-    """Deflection, strain, modulus, time and temperature of every layer in an equilibrium.
+    """Static summary of the layers: deflection, strain, modulus, time and temperature in an equilibrium.
 
     Parameters
     ----------

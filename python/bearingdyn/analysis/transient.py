@@ -44,7 +44,7 @@ def transient(
     scheme: core.Scheme | None = None,
     progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
-    """March an application from its equilibrium, at constant speed or through a run-up.
+    """Find a transient: march an application from its equilibrium, at constant speed or through a run-up.
 
     Parameters
     ----------

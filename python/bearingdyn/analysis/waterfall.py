@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def waterfall(
     result: xarray.Dataset, channel: str, length: float, overlap: float = 0.5, window: str = "hann"
 ) -> xarray.Dataset:
-    """Amplitude spectra (zero-to-peak) of one piece of a record after another.
+    """A waterfall: amplitude spectra (zero-to-peak) of one piece of a record after another.
 
     Parameters
     ----------

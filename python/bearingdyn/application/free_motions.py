@@ -47,7 +47,7 @@ def rigid_shapes(element: Superelement) -> Array | None:
 
 
 def arm(rows: Array, shapes: Array) -> Array:
-    """Position (3,), m, of a place from the first interface of its part: a rotation θ moves it by θ × arm.
+    """Arm of a place in rigid motions, (3,), m, from its part's first interface: θ moves it by θ × arm.
 
     Parameters
     ----------

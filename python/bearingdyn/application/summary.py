@@ -14,7 +14,7 @@ from bearingdyn.types import Array
 
 
 def summary(plan: Plan) -> str:
-    """An application in words: parts with masses, joints, bearings, loads and free motions, one to a line."""
+    """Summary of an application: parts, masses, joints, bearings, loads, free motions, one to a line."""
     lines = ["parts"]
     for name, element in plan.parts.items():
         mass, T = plan.mass(name), plan.temperatures.get(name)

@@ -20,7 +20,7 @@ from bearingdyn.material import Elastic
 
 
 def contact_modulus(first: Elastic, second: Elastic) -> float:
-    """Contact modulus E* of two elastic bodies, 1/E* = Σ(1 − ν²)/E, Pa.
+    """Hertz' contact modulus E* of two elastic bodies, 1/E* = Σ(1 − ν²)/E, Pa.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def resultant_deflection_coefficient(*kappa: float) -> float:
 
 
 def ellipticity(F: float) -> float:
-    """Ratio χ = a/b ≥ 1 of the contact ellipse's semi-axes from the curvature difference F(ρ), 0 ≤ F < 1.
+    """Hertz' ellipticity χ = a/b ≥ 1 of the contact from the curvature difference F(ρ), 0 ≤ F < 1.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from bearingdyn.magnitude import plausible
 
 @dataclass(frozen=True)
 class WavinessSpectrum:
-    """Amplitudes of the waves of a race or a ball over their order n: A_n = amplitude (order/n)^exponent.
+    """Random waves of a race or a ball by their amplitudes over the order n, amplitude (order/n)^exponent.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class WavinessSpectrum:
 
 
 def diameter_scatter(Z: int, deviation: float, seed: int) -> tuple[float, ...]:
-    """Deviations of Z ball diameters, m, normal with the standard deviation given: `oversize` of BallBearing.
+    """Random deviations of Z ball diameters, m, normal, of a standard deviation: `oversize` of BallBearing.
 
     Parameters
     ----------

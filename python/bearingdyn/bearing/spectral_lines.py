@@ -11,7 +11,7 @@ from bearingdyn.checks import instance, number, require, whole
 def fault_lines(
     bearing: BallBearing, speed: float, *, harmonics: int = 1, contact_angle: float | None = None
 ) -> dict[str, float]:
-    """Name -> frequency, Hz, of localised defects and the cage: shaft, FTF, BPFO, BPFI, 2 BSF and multiples.
+    """Name -> frequency, Hz, of the spectral lines of faults and the cage: shaft, FTF, BPFO, BPFI, 2 BSF …
 
     A defect of a ball meets a race at twice the spin of the ball.
 

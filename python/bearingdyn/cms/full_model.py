@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.cms.matrix_checks import check_symmetry, frozen, frozen_sparse
+from bearingdyn.cms.frozen_matrices import check_symmetry, frozen, frozen_sparse
 from bearingdyn.cms.superelement import Superelement
 from bearingdyn.cms.viscoelastic import Viscoelastic
 from bearingdyn.short_repr import short

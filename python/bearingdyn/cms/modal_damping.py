@@ -12,11 +12,23 @@ from bearingdyn.types import Array
 
 
 def modal_damping(M: ArrayLike, K: ArrayLike, zeta: float) -> Array:
-    """Viscous damping (n, n), N s/m, that gives every free elastic mode of (M, K) the damping ratio zeta.
+    """Viscous damping that gives every free elastic mode the same damping ratio.
 
-    C = M Φ diag(2 ζ ω) Φᵀ M with ΦᵀMΦ = I, rigid-body modes undamped: the same matrix serves the time and
-    the frequency domain. M (n, n) must be positive definite. A mode counts as rigid when its ω² is below
-    round-off of the largest.
+    C = M Φ diag(2 ζ ω) Φᵀ M with ΦᵀMΦ = I, rigid-body modes undamped: the same matrix serves the time and the
+    frequency domain.
+
+    Parameters
+    ----------
+    M, K
+        Mass, kg, positive definite, and stiffness, N/m, (n, n). A mode counts as rigid when its ω² is below
+        round-off of the largest.
+    zeta
+        The damping ratio ζ.
+
+    Returns
+    -------
+    Array
+        C (n, n), N s/m.
 
     Raises
     ------

@@ -57,16 +57,27 @@ def march(
 ) -> March:
     """March a part by itself from rest: Newmark's scheme, the core's history of branches (paper (14), (9)).
 
-    One sparse factorisation in all; each step costs a solve and a product with each matrix.
+    One sparse factorisation in all; each step costs a solve and a product with each matrix. The body is not
+    turning: G and N are left out.
 
     Parameters
     ----------
+    model
+        The part, unreduced or reduced.
     loads
         Interface or output -> (steps + 1, 6 or 3) forces, N, and moments, N m, at 0, dt, ...
+    dt
+        Time step, s.
     fixed
-        Interfaces held still. The body is not turning: G and N are left out.
+        Interfaces held still.
     record
-        Interfaces and outputs whose motion is kept (default: all that can move).
+        Interfaces and outputs whose motion is kept; None: all that can move.
+    beta, gamma
+        Of Newmark's scheme.
+
+    Returns
+    -------
+    March
 
     Raises
     ------

@@ -8,7 +8,7 @@ import numpy as np
 
 from bearingdyn.bearing import RacewaySeries
 from bearingdyn.checks import positive
-from bearingdyn.cms.matrix_checks import frozen
+from bearingdyn.cms.frozen_matrices import frozen
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 

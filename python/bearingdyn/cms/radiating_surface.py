@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.checks import positive
-from bearingdyn.cms.matrix_checks import check_symmetry, frozen
+from bearingdyn.cms.frozen_matrices import check_symmetry, frozen
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 

@@ -70,10 +70,14 @@ def reduction_error(
     """Relative error of a reduction at given frequencies.
 
     Rotations are measured by the arc they make at the body's radius of gyration. At a lightly damped
-    resonance a shift of its frequency counts as error; it is one, for the response at that frequency.
+    resonance a shift of its frequency counts as an error; it is one, for the response at that frequency.
 
     Parameters
     ----------
+    model
+        The part's unreduced equations.
+    basis
+        The shapes of the reduction.
     frequency
         (f,), Hz, above zero.
     loads
@@ -89,6 +93,12 @@ def reduction_error(
         solutions enlarge the basis (a hierarchical estimate), and the model in the larger basis, which is
         exact where it was solved, stands for the full one in between. Solves are added where the estimate was
         changed most by the last ones, until it changes by less than a tenth.
+    solves
+        Most solves of the full model for an estimate.
+
+    Returns
+    -------
+    ReductionError
 
     Raises
     ------

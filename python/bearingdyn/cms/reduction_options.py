@@ -17,9 +17,21 @@ F_MAX = 20e3  # Hz, the end of what is heard
 
 
 def check_f_max(f_max: float, *, may_be_zero: bool = True, may_be_infinite: bool = False) -> None:
-    """Check the option f_max: a frequency, Hz, of zero (no modes) or more; infinite means all modes.
+    """Check the option f_max of a reduction.
 
-    A part whose mesh follows from f_max lets it be neither.
+    Parameters
+    ----------
+    f_max
+        Frequency, Hz, up to which modes are kept.
+    may_be_zero
+        Zero keeps no modes. A part whose mesh follows from f_max allows neither this nor infinity.
+    may_be_infinite
+        Infinity keeps all modes.
+
+    Raises
+    ------
+    ValueError
+        For a frequency that is not allowed, negative, or not a number.
     """
     f_max = _ordered("f_max", f_max, "it must be a frequency in Hz")
     good = (f_max >= 0 if may_be_zero else f_max > 0) and (may_be_infinite or f_max < math.inf)
@@ -39,26 +51,78 @@ def _ordered(field: str, value: Any, remedy: str) -> float:
 
 
 def check_damping(damping: float, field: str = "damping") -> None:
-    """Check the option damping of a reduction: 0 <= damping < 1, else ValueError."""
+    """Check the option damping of a reduction.
+
+    Parameters
+    ----------
+    damping
+        Ratio ζ of every elastic mode.
+    field
+        Its name in messages.
+
+    Raises
+    ------
+    ValueError
+        Unless 0 <= damping < 1.
+    """
     number(field, damping, f"it must be a damping ratio, 0 <= {field} < 1")
     require(0 <= damping < 1, field, damping, f"it must be a damping ratio, 0 <= {field} < 1")
 
 
 def check_held(held: str | None, interfaces: Iterable[str]) -> None:
-    """Check the option held of a reduction: None, or the name of an interface, else ValueError."""
+    """Check the option held of a reduction.
+
+    Parameters
+    ----------
+    held
+        Name of the interface at which modal damping holds the body; None for a free one.
+    interfaces
+        Names that there are.
+
+    Raises
+    ------
+    ValueError
+        For an unknown name.
+    """
     known = sorted(interfaces)
     require(held is None or held in known, "held", held, f"the interfaces are {known}")
 
 
 def check_rounds(inertia: Any) -> None:
-    """Check the option rounds of a reduction: 0, 1, 2, … rounds of inertia shapes, else ValueError."""
+    """Check the option inertia of a reduction.
+
+    Parameters
+    ----------
+    inertia
+        Rounds of inertia shapes.
+
+    Raises
+    ------
+    ValueError
+        Unless it is 0, 1, 2, …
+    """
     number("inertia", inertia, "it must be a number of rounds: 0, 1, 2, ...")
     good = inertia >= 0 and inertia % 1 == 0
     require(good, "inertia", inertia, "it must be a number of rounds: 0, 1, 2, ...")
 
 
 def check_moduli(moduli: Sequence[float]) -> tuple[float, ...]:
-    """Check the option moduli of a reduction: one or more positive shear moduli, Pa, else ValueError."""
+    """Check the option moduli of a reduction.
+
+    Parameters
+    ----------
+    moduli
+        Shear moduli, Pa, at which shapes are taken.
+
+    Returns
+    -------
+    tuple of float
+
+    Raises
+    ------
+    ValueError
+        Unless they are one or more positive and finite numbers.
+    """
     remedy = "it must hold one or more positive shear moduli, Pa"
     values = tuple(numbers("moduli", moduli, remedy).tolist())
     good = bool(values) and all(0 < G < math.inf for G in values)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bearingdyn.cms.matrix_checks import check_symmetry, frozen
+from bearingdyn.cms.frozen_matrices import check_symmetry, frozen
 from bearingdyn.cms.raceway import Raceway
 from bearingdyn.cms.radiating_surface import Surface
 from bearingdyn.cms.viscoelastic import Viscoelastic

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 import scipy
 
-from bearingdyn.cms.matrix_checks import check_symmetry, frozen, frozen_sparse
+from bearingdyn.cms.frozen_matrices import check_symmetry, frozen, frozen_sparse
 from bearingdyn.short_repr import short
 
 

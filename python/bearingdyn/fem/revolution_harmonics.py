@@ -10,7 +10,6 @@ ch. 4), which does not lock as ν → ½. Bulk and shear modulus enter as scalar
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -183,10 +182,32 @@ def _element_matrices(
     return mass, volumetric, deviatoric
 
 
-def _scatter(
-    mesh: RevolutionMesh, c: int, regions: int, blocks: Sequence[Array]
-) -> tuple[NDArray[np.intc], NDArray[np.intc], list[Array]]:
-    """Sum element matrices (m, 9c, 9c) into csc indices, indptr and data (regions, nonzeros)."""
+@dataclass(frozen=True, eq=False)
+class Pattern:
+    """Where element matrices (m, 9c, 9c) add up in a csc matrix.
+
+    Parameters
+    ----------
+    indices, indptr
+        Of the csc matrix.
+    place
+        (m, 81 c²) place of each entry of each element among the data.
+    """
+
+    indices: NDArray[np.intc]
+    indptr: NDArray[np.intc]
+    place: Index
+
+    def add(self, blocks: Array, region: Index) -> Array:
+        """Data (regions, nonzeros) of the sums over the elements of each region."""
+        size, regions = self.indices.size, int(region.max()) + 1
+        place = self.place + (region * size)[:, None]
+        summed = np.bincount(place.ravel(), weights=blocks.ravel(), minlength=regions * size)
+        return np.asarray(summed, dtype=np.float64).reshape(regions, -1)
+
+
+def pattern(mesh: RevolutionMesh, c: int) -> Pattern:
+    """The pattern of a mesh's elements with c components at each node."""
     nodes = mesh.r.size
     key = (
         mesh.elements[:, None, :] * nodes + mesh.elements[:, :, None]
@@ -208,13 +229,7 @@ def _scatter(
 
     # Element entry (9c, 9c) as (node i, a, node j, b); `where` runs over (element, i, j).
     place = at[where.reshape(-1, 9, 9)].transpose(0, 1, 3, 2, 4).reshape(len(mesh.elements), -1)
-    place = place + (mesh.region * indices.size)[:, None]
-    size = regions * indices.size
-    data = [
-        np.asarray(np.bincount(place.ravel(), weights=A.ravel(), minlength=size), dtype=np.float64)
-        for A in blocks
-    ]
-    return indices, indptr, [values.reshape(regions, -1) for values in data]
+    return Pattern(indices, indptr, place)
 
 
 def _kept_on_axis(mesh: RevolutionMesh, order: int, components: tuple[int, ...]) -> tuple[Index, Index]:
@@ -234,7 +249,20 @@ def _kept_on_axis(mesh: RevolutionMesh, order: int, components: tuple[int, ...])
 def assemble_harmonic(
     mesh: RevolutionMesh, order: int, components: tuple[int, ...] = ALL_COMPONENTS
 ) -> Harmonic:
-    """Matrices of a body of revolution for the Fourier harmonic n >= 0, components (0: U, 1: V, 2: W).
+    """Matrices of a body of revolution for one Fourier harmonic.
+
+    Parameters
+    ----------
+    mesh
+        The section in (r, z).
+    order
+        Of the harmonic in the azimuth, 0, 1, 2, …
+    components
+        The motions that are left free, 0: radial U, 1: tangential V, 2: axial W.
+
+    Returns
+    -------
+    Harmonic
 
     Raises
     ------
@@ -246,8 +274,31 @@ def assemble_harmonic(
         raise ValueError(
             f"components is {components}; orders above 0 need (0, 1, 2), order 0 takes (0, 2) or (1,) too"
         )
-    c, regions = len(components), int(mesh.region.max()) + 1
     mass, volumetric, deviatoric = _element_matrices(mesh, order, components)
+    return gathered_harmonic(mesh, order, components, mass, volumetric, deviatoric)
+
+
+def gathered_harmonic(
+    mesh: RevolutionMesh,
+    order: int,
+    components: tuple[int, ...],
+    mass: Array,
+    volumetric: Array,
+    deviatoric: Array,
+    known: Pattern | None = None,
+) -> Harmonic:
+    """A harmonic of element matrices; some are changed here, where the axis ties coordinates.
+
+    Parameters
+    ----------
+    mass
+        (m, 9, 9) of one component.
+    volumetric, deviatoric
+        (m, 9c, 9c) stiffness per unit bulk modulus and per 2G.
+    known
+        The pattern of the mesh with c components, if it is at hand.
+    """
+    c = len(components)
     mass = (mass[:, :, None, :, None] * np.eye(c)[:, None, :]).reshape(len(mass), 9 * c, 9 * c)
     free, axis = _kept_on_axis(mesh, order, components)
     blocks = [mass, volumetric, deviatoric]
@@ -258,13 +309,14 @@ def assemble_harmonic(
             A[e, :, 3 * k] -= A[e, :, 3 * k + 1]
             A[e, 3 * k + 1] = 0
             A[e, :, 3 * k + 1] = 0
-    indices, indptr, data = _scatter(mesh, c, regions, blocks)
+    where = pattern(mesh, c) if known is None else known
+    data = [where.add(A, mesh.region) for A in blocks]
     return Harmonic(
         mesh=mesh,
         order=order,
         components=components,
-        indices=indices,
-        indptr=indptr,
+        indices=where.indices,
+        indptr=where.indptr,
         mass=data[0],
         volumetric=data[1],
         deviatoric=data[2],

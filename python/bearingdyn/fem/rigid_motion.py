@@ -53,11 +53,37 @@ def rigid_transfer(positions: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0))
 
 
 def rigid_body_inertia(M: Any, R: Array) -> Array:
-    """Mass matrix (6, 6) of the rigid motions R (n, 6): mass, first moments, inertia about the reference."""
+    """Mass matrix of the rigid motions of a body: mass, first moments, inertia about the reference.
+
+    Parameters
+    ----------
+    M
+        Mass (n, n), kg.
+    R
+        Rigid motions (n, 6), as rigid_motion or rigid_transfer gives them.
+
+    Returns
+    -------
+    Array
+        (6, 6); kg, kg m, kg m².
+    """
     return np.asarray(R.T @ (M @ R))
 
 
 def rigid_body_residual(K: Any, R: Array) -> float:
-    """max|K R| / max(|K| |R|) of rigid motions R (n, k): round-off, unless K resists rigid motion."""
+    """How much a stiffness resists rigid motions: the largest of K R over the largest of |K| |R|.
+
+    Parameters
+    ----------
+    K
+        Stiffness (n, n), N/m.
+    R
+        Rigid motions (n, k).
+
+    Returns
+    -------
+    float
+        Round-off, unless K resists rigid motion.
+    """
     scale = float(np.max(abs(K) @ np.abs(R)))
     return float(np.max(np.abs(K @ R))) / scale if scale > 0 else 0.0

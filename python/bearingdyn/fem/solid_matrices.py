@@ -61,8 +61,10 @@ def assemble_solid(
 
     Parameters
     ----------
+    mesh
+        The solid.
     elements
-        Indices of the region to assemble (default all); the nodes are numbered as for the whole mesh.
+        Indices of the region to assemble; None: all. The nodes are numbered as for the whole mesh.
     incompressible
         Take from div u only what the element can keep as ν → ½: in 27-node bricks its part linear in each
         element (Q2/P1, the pressure condensed; Hughes, The Finite Element Method, 1987, ch. 4), in 20-node
@@ -71,6 +73,10 @@ def assemble_solid(
         linear along the axis, too soft as well. A bonded ring of ν = 0.499 with 4×8×24 elements is within
         0.2 % with 27-node bricks and 3 % with 20-node ones; a bonded strip with two tetrahedra through its
         thickness is 7 % too soft, with six 3 %; with two wedges 22 % or less, as they lie, with four 10 %.
+
+    Returns
+    -------
+    SolidMatrices
     """
     chosen = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
     n = len(mesh.points)

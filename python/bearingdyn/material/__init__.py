@@ -6,6 +6,7 @@ from bearingdyn.material.dma import DMAData
 from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
 from bearingdyn.material.fit_report import FitReport, OutsideBand
+from bearingdyn.material.hyperelastic import NEO_HOOKE, Hyperelastic, MooneyRivlin, NeoHooke, Yeoh
 from bearingdyn.material.identification import fit_dense, fit_maxwell
 from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.low_end import LowEnd
@@ -18,6 +19,7 @@ from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, ma
 
 __all__ = [
     "KK_LIMIT",
+    "NEO_HOOKE",
     "STEEL",
     "WLF",
     "Arrhenius",
@@ -25,10 +27,13 @@ __all__ = [
     "Elastic",
     "FitReport",
     "FractionalZener",
+    "Hyperelastic",
     "Joined",
     "LowEnd",
     "MasterCurve",
     "Maxwell",
+    "MooneyRivlin",
+    "NeoHooke",
     "OutsideBand",
     "PowerLaw",
     "ReadingError",
@@ -37,6 +42,7 @@ __all__ = [
     "ShiftTable",
     "Suspect",
     "TabulatedModulus",
+    "Yeoh",
     "fit_dense",
     "fit_maxwell",
     "group_isotherms",

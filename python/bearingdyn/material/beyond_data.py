@@ -11,9 +11,23 @@ from bearingdyn.notice import BeyondData, warn
 
 
 def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, first: str = "") -> None:
-    """Warn of materials whose data do not reach a time `after`, s (inf: relaxed), at which they are asked.
+    """Warn of materials whose data do not reach the time at which they are asked.
 
-    One warning for each call: it names all layers, and the numbers of the first. `first` is the first remedy.
+    Parameters
+    ----------
+    layers
+        Name and material of each.
+    after
+        The time, s; inf: relaxed.
+    what
+        What rests on it.
+    first
+        The first remedy.
+
+    Warns
+    -----
+    BeyondData
+        Once for each call: it names all layers, and gives the numbers of the first.
     """
     found = [
         (name, material)

@@ -74,7 +74,7 @@ def _factor(owner: str, law: Law | None, temperature: float | None, T: float) ->
 
 @dataclass(frozen=True, eq=False)
 class TabulatedModulus:
-    """Complex shear modulus as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
+    """Complex modulus in shear as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ class TabulatedModulus:
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """Power law, the paper's "simple exponential function": G* = G_ref (iω/ω_ref)^α.
+    """Complex modulus by a power law, the paper's "simple exponential function": G* = G_ref (iω/ω_ref)^α.
 
     |G*| grows as ω^α and the loss factor is tan(απ/2) at all frequencies: the only causal modulus with a
     constant loss factor.
@@ -250,7 +250,7 @@ class PowerLaw:
 
 @dataclass(frozen=True)
 class FractionalZener:
-    """Fractional Zener model: G* = (G0 + G∞ (iωτ)^α)/(1 + (iωτ)^α).
+    """Complex modulus by a fractional Zener model: G* = (G0 + G∞ (iωτ)^α)/(1 + (iωτ)^α).
 
     Parameters
     ----------

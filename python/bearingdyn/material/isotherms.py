@@ -22,11 +22,23 @@ def first_unsorted(frequency: Array, labels: NDArray[np.int64]) -> int | None:
 
 
 def group_isotherms(temperature: ArrayLike, run: ArrayLike | None = None) -> NDArray[np.int64]:
-    """Number of the isotherm each temperature, °C, (n,), belongs to, 0 the coldest.
+    """Number of the isotherm that each temperature belongs to.
 
     Sorted temperatures are cut at their wide gaps; wide is what lies above the largest jump in the sizes of
-    the gaps, 0.3 K at least and 3 K at most, so that jitter of a tenth of a kelvin and drift of one kelvin do
-    no harm. Where runs are named, (n,), each has isotherms of its own.
+    the gaps, 0.3 K at least and 3 K at most. A jitter of a tenth of a kelvin and a drift of one kelvin thus
+    do no harm.
+
+    Parameters
+    ----------
+    temperature
+        (n,), °C.
+    run
+        (n,) the run of each point; each run has isotherms of its own. None: there is one run.
+
+    Returns
+    -------
+    Array
+        (n,), 0 the coldest.
     """
     T = np.asarray(temperature, dtype=float)
     if run is None:

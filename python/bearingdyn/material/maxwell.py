@@ -41,6 +41,7 @@ class Maxwell(Retunable):
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
     G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).
+    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
 
     Parameters
     ----------
@@ -70,8 +71,6 @@ class Maxwell(Retunable):
         What data say of its modulus at long times; that of the fit unless given, else of the band, if there
         is one: then the modulus is known down to its lower edge. A static answer beyond it comes with a
         warning (BeyondData). A model without fit and band is believed.
-
-    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
 
     Raises
     ------

@@ -26,7 +26,7 @@ def branch_columns(omega: Array, tau: Array) -> tuple[Array, Array]:
 
 
 def branch_slopes(omega: Array, tau: Array) -> tuple[Array, Array]:
-    """Derivatives of :func:`branch_columns` with respect to ln ω, or ln τ: (p, n) each."""
+    """Slopes of a spectrum's :func:`branch_columns` with respect to ln ω, or ln τ: (p, n) each."""
     storage, loss = branch_columns(omega, tau)
     return 2 * loss * loss, loss * (1 - 2 * storage)
 

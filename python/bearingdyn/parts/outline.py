@@ -36,7 +36,7 @@ class Outline:
 
 @runtime_checkable
 class Outlined(Protocol):
-    """A part whose surface can be drawn."""
+    """A part whose outline can be drawn."""
 
     def outline(self) -> Outline:
         """Its surface."""

@@ -39,7 +39,7 @@ from bearingdyn.fem import (
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.regions import ViscoelasticSolid
+from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
 from bearingdyn.parts.static_modulus import quasi_static
 from bearingdyn.short_repr import short
@@ -47,8 +47,6 @@ from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
 Material = Elastic | ViscoelasticSolid
-
-LOCKING = 0.45  # Poisson's ratio from which an elastic region is assembled as incompressible, lest it lock
 
 
 @dataclass(frozen=True)
@@ -259,8 +257,7 @@ class Solid:
         rubbers: list[tuple[ViscoelasticSolid, Any]] = []
         for name, elements in self.mesh.regions.items():
             material = self._materials[name]
-            soft = not isinstance(material, Elastic) or material.nu >= LOCKING
-            unit = assemble_solid(self.mesh, elements, incompressible=soft)
+            unit = assemble_solid(self.mesh, elements, incompressible=is_rubber(material))
             M = M + material.density * unit.mass
             if isinstance(material, Elastic):
                 E = E + unit.stiffness(material)

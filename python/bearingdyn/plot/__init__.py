@@ -10,7 +10,7 @@ from bearingdyn.plot.bearing_spectrum import bearing_spectrum
 from bearingdyn.plot.bearing_stiffness import bearing_stiffness
 from bearingdyn.plot.campbell import campbell
 from bearingdyn.plot.film import film
-from bearingdyn.plot.frequency_response import frequency_response, unbalance_response
+from bearingdyn.plot.frequency_response import frequency_response
 from bearingdyn.plot.isotherms import isotherms, master, shifts
 from bearingdyn.plot.layer_stiffness import layer_stiffness
 from bearingdyn.plot.load_distribution import load_distribution
@@ -22,6 +22,7 @@ from bearingdyn.plot.orders import order_spectrum, orders
 from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.time_traces import time
 from bearingdyn.plot.trade_off import trade_off
+from bearingdyn.plot.unbalance_response import unbalance_response
 from bearingdyn.plot.waterfall import waterfall
 
 __all__ = [

@@ -13,6 +13,7 @@ import numpy as np
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.ticker import Formatter
@@ -43,7 +44,7 @@ PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The style of the figures, for as long as the context is open.
+    """The style and frame of the figures, for as long as the context is open.
 
     Only these settings are put back at its end. The first figure of a session loads the backend, perhaps in
     here, and a notebook's backend then switches `interactive` on, without which it shows no further figure:
@@ -69,12 +70,12 @@ def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = N
 
 
 def halve(ax: Axes, share: float = 0.45) -> Axes:
-    """New axes that take the lower share of the room of `ax`, on the same horizontal axis."""
+    """Halve the frame of a figure: new axes take the lower share of `ax`, on the same horizontal axis."""
     return stack(ax, (1 - share, share))[1]
 
 
 def stack(ax: Axes, shares: Sequence[float]) -> list[Axes]:
-    """`ax` and new axes below it that share its room, from above, and its horizontal axis."""
+    """Stack panels in the frame of a figure: `ax` and new axes below it share its room."""
     figure = ax.figure
     spec = ax.get_subplotspec()
     panels = [ax]
@@ -124,7 +125,7 @@ def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
 
 
 def engineering(axis: Axis, values: Array, unit: str) -> str:
-    """Write the ticks of an axis in the multiple of its unit that suits the values; returns that multiple.
+    """Ticks of a figure's axis in the multiple of its unit that suits the values; returns that multiple.
 
     What is drawn stays in the unit given. A unit without prefix gets a power of ten: "10⁶", "10⁻⁸ kg". No
     factor is printed elsewhere. To be called once the scale of the axis, linear or log, is set.
@@ -172,7 +173,7 @@ def _written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> 
 
 
 def frame_log(ax: Axes, values: Array) -> None:
-    """A log axis over the measured values, whatever else is drawn, its numbers written out."""
+    """A log axis of a figure over the measured values, whatever else is drawn, its numbers written out."""
     low, high = float(values.min()), float(values.max())
     margin = max((high / low) ** 0.06, 1.05)
     ax.set_ylim(low / margin, high * margin)

@@ -1,4 +1,4 @@
-"""Figures of responses: magnitude and phase over frequency, or over the speed of the shaft."""
+"""The figure of a frequency response: magnitude, and phase below it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,7 @@ import numpy as np
 from bearingdyn.application import RATES, Channel
 from bearingdyn.plot.frame import (
     DASHES,
-    RPM,
     colour,
-    engineering,
     finish,
     halve,
     is_result,
@@ -80,7 +78,7 @@ def frequency_response(
             if wanted not in known:
                 raise ValueError(f"{label!r} has no {kind} {wanted!r}; there are {known}")
         curves[label] = data["response"].sel(output=output, input=input)
-    quantity = _one_quantity(several)
+    quantity = one_quantity(several)
     unit = _response_unit(quantity, output, input)
     with style():
         ax = ax or new_axes(height=4.8 if phase else 3.4)
@@ -92,78 +90,13 @@ def frequency_response(
             if lower is not None:
                 lower.plot(f, continuous_phase(value), **look)
         ax.set_yscale("log")
-        ax.set_ylabel(f"{'force' if _is_force(output) else quantity}, zero-to-peak, {unit}")
+        ax.set_ylabel(f"{'force' if is_force(output) else quantity}, zero-to-peak, {unit}")
         bottom = lower or ax
         bottom.set_xlabel("frequency, Hz")
         _span(bottom, *(c["frequency"].values for c in curves.values()))
         if lower is not None:
             finish_phase(lower)
         finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=not alone)
-    return ax
-
-
-def unbalance_response(
-    datasets: Mapping[str, xarray.Dataset], output: str, ax: Axes | None = None, *, phase: bool = True
-) -> Axes:
-    """Magnitude of a response by bd.unbalance_response over the speed in rpm, several by label; log axis.
-
-    With `phase` the axes are halved and the phase against the angle of the shaft stands below, unwrapped from
-    the lowest speed that moves.
-
-    Parameters
-    ----------
-    datasets
-        Results of `bd.unbalance_response` by label.
-    output
-        Channel of the response.
-    ax
-        Axes to draw into; None: those of a new figure.
-    phase
-        Draw the phase too.
-
-    Returns
-    -------
-    Axes
-        The axes of the magnitude.
-
-    Raises
-    ------
-    ValueError
-        If a label lacks the output or is no unbalance response, or if their quantities differ.
-    """
-    curves = {}
-    for label, data in some(datasets).items():
-        if "speed" not in data.coords or "output" not in data.coords:
-            hint = "; draw it with plot.frequency_response" if "frequency" in data.coords else ""
-            raise ValueError(f"{label!r} is no response over the speed, its kind is {kind_of(data)!r}{hint}")
-        known = [str(c) for c in data["output"].values]
-        if output not in known:
-            raise ValueError(f"{label!r} has no output {output!r}; there are {known}")
-        curve = data["response"].sel(output=output)
-        order = np.argsort(curve["speed"].values)
-        curves[label] = curve["speed"].values[order] * RPM, curve.values[order]
-    quantity = "force" if _is_force(output) else _one_quantity(datasets)
-    unit = str(next(iter(datasets.values()))["unit"].sel(output=output).item())
-    with style():
-        ax = ax or new_axes(height=4.8 if phase else 3.4)
-        lower = halve(ax, share=0.3) if phase else None
-        for k, (label, (rpm, value)) in enumerate(curves.items()):
-            look: dict[str, Any] = {"color": colour(k), "linestyle": DASHES[k % len(DASHES)]}
-            ax.plot(rpm, np.abs(value), label=label, **look)
-            moved = np.abs(value) > 0  # not at standstill
-            if lower is not None and moved.any():
-                lower.plot(rpm[moved], continuous_phase(value[moved]), **look)
-        ax.set_yscale("log")
-        sizes = np.concatenate([np.abs(value) for _, value in curves.values()])
-        ax.set_ylabel(f"{quantity}, zero-to-peak, {engineering(ax.yaxis, sizes, unit)}")
-        bottom = lower or ax
-        bottom.set_xlabel("speed, rpm")
-        ends = [rpm[k] for rpm, _ in curves.values() for k in (0, -1)]
-        if max(ends) > min(ends):
-            bottom.set_xlim(min(ends), max(ends))
-        if lower is not None:
-            finish_phase(lower)
-        finish(ax, f"Response at {output} to the unbalance", legend=True)
     return ax
 
 
@@ -176,14 +109,16 @@ def _span(ax: Axes, *grids: Array) -> None:
         ax.set_xlim(low, high)
 
 
-def _one_quantity(datasets: Mapping[str, xarray.Dataset]) -> str:
+def one_quantity(datasets: Mapping[str, xarray.Dataset]) -> str:
+    """The one quantity of all responses that a figure shows; ValueError where there are several."""
     quantities = {str(data.attrs["quantity"]) for data in datasets.values()}
     if len(quantities) > 1:
         raise ValueError(f"responses of {sorted(quantities)} do not go into one figure; draw one of each")
     return quantities.pop()
 
 
-def _is_force(output: str) -> bool:
+def is_force(output: str) -> bool:
+    """Whether the response that a figure shows is a force."""
     return Channel.parse(output).is_force
 
 

@@ -135,7 +135,7 @@ def van_gurp_palmen(
 
 
 def spectrum_of(materials: Mapping[str, Maxwell], ax: Axes | None = None) -> Axes:
-    """Relaxation spectra: strength against time of the branches of each model, as stems.
+    """Relaxation spectra to check a measurement's models: strength against time of the branches, as stems.
 
     Parameters
     ----------

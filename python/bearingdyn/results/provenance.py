@@ -38,7 +38,7 @@ def stamp(time: datetime | None = None) -> str:
 
 
 def inputs_of(text: str) -> dict[str, str]:
-    """Attributes that say what a result was computed from, and its hash.
+    """Attributes that say what a result was computed from, its provenance, and its hash.
 
     Parameters
     ----------

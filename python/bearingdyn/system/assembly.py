@@ -21,6 +21,15 @@ from bearingdyn.types import Array, Index
 def assemble(app: Application) -> System:
     """Assemble the system of an application: its arrays.
 
+    Parameters
+    ----------
+    app
+        The application; its parts are reduced here.
+
+    Returns
+    -------
+    System
+
     Raises
     ------
     ValueError

@@ -11,7 +11,18 @@ RANK = 1e-11
 
 
 def factor(A: Array) -> Array:
-    """Factor L (n, rank) of a positive semi-definite matrix, A = L Lᵀ; round-off is left out of the rank."""
+    """Factor L of a positive semi-definite matrix, A = L Lᵀ.
+
+    Parameters
+    ----------
+    A
+        (n, n), symmetric.
+
+    Returns
+    -------
+    Array
+        (n, rank); directions within round-off are left out.
+    """
     scale = np.sqrt(np.maximum(np.diag(A), 0.0))
     scale[scale == 0.0] = 1.0
     values, vectors = np.linalg.eigh(A / np.outer(scale, scale))

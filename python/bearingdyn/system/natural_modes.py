@@ -14,10 +14,22 @@ ROUND_OFF, SLOW_ROUND_OFF = 1e-12, 1e-13
 
 
 def natural(K: Array, M: Array) -> tuple[Array, Array]:
-    """Natural modes of a dense (K, M): ω² (n,), mass-normalised shapes (n, n); round-off becomes zero.
+    """Natural modes of a whole, dense (K, M).
 
     The ω² of a suspension at 1 Hz is 1e-12 of that of a layer's inner mode at 1 MHz. The slow modes are
     therefore solved for once more, among themselves.
+
+    Parameters
+    ----------
+    K, M
+        Stiffness and mass (n, n), symmetric.
+
+    Returns
+    -------
+    squares : Array
+        ω² (n,), rad²/s²; zero within round-off.
+    shapes : Array
+        (n, n), mass-normalised.
 
     Raises
     ------

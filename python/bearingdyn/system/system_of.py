@@ -11,7 +11,24 @@ from bearingdyn.system.system import System
 
 
 def system_of(field: str, source: object) -> System:
-    """The system of an application, or the system itself; ValueError for anything else."""
+    """The system of an application, or the system itself.
+
+    Parameters
+    ----------
+    field
+        Name of the argument in messages.
+    source
+        The application or system.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
     if isinstance(source, System):
         return source
     remedy = "it must be an Application (bd.Application()), or its system"

@@ -14,7 +14,7 @@ from bearingdyn.types import Array
 
 
 class Deflection:
-    """H = Σ K P for pressures constant on each cell (A. E. H. Love 1929), as a convolution by FFT.
+    """Elastic deflection H = Σ K P, P constant on each cell (A. E. H. Love 1929), a convolution by FFT.
 
     Parameters
     ----------

@@ -64,7 +64,7 @@ def newton(
     rate: float = 0.0,
     history: Array | float = 0.0,
 ) -> State:
-    """Solve f + rate·ρ̄H + history = 0 with P ≥ 0, and the border, from P and H0 with a positive film.
+    """Newton's method for f + rate·ρ̄H + history = 0, P ≥ 0, and the border, from a positive film.
 
     Raises
     ------

@@ -13,7 +13,7 @@ import numpy as np
 
 from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
-from bearingdyn.fem.matrix_files.matrix_checks import checked_files
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 from bearingdyn.fem.matrix_files.text_tables import Form, symmetric_from, triples
 
 ENTRIES = Form(

@@ -19,7 +19,7 @@ DIRECTIONS = ("x", "y", "z", "θx", "θy", "θz")
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FEMatrices:
-    """A finite element model read from elsewhere, in SI units.
+    """Finite element (FE) matrices read from elsewhere, in SI units.
 
     Parameters
     ----------

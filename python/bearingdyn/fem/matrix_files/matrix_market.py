@@ -14,7 +14,7 @@ import scipy.sparse
 
 from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
-from bearingdyn.fem.matrix_files.matrix_checks import checked_files
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 from bearingdyn.fem.matrix_files.text_tables import Form, both_triangles, rows_fit, table, triples
 
 BANNER = b"%%matrixmarket"
@@ -46,8 +46,12 @@ def read_matrix_market(
         Paths of the files.
     points
         Positions of the nodes, as in check_matrices.
-    check
+    **check
         Further arguments of check_matrices.
+
+    Returns
+    -------
+    FEMatrices
 
     Raises
     ------

@@ -9,7 +9,7 @@ import numpy as np
 
 from bearingdyn.checks import existing
 from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
-from bearingdyn.fem.matrix_files.matrix_checks import checked_files
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 
 
 def read_op4(

@@ -31,9 +31,13 @@ def read_matrices(
         Paths of the files.
     points
         Positions of the nodes, as in check_matrices, or the path of an .inp with *NODE blocks.
-    check
+    **check
         expected_mass, kg, units, internal, labels and sound, as in check_matrices; for .op4 also the
         matrices' names, as in read_op4.
+
+    Returns
+    -------
+    FEMatrices
 
     Raises
     ------

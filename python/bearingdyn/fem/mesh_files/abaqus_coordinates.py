@@ -64,7 +64,7 @@ def system(block: Block) -> System | None:
 
 
 def from_polar(points: Array, block: Block) -> Array:
-    """Points of *NODE, SYSTEM=R, C (r, θ, z) or S (r, θ, φ) in x, y, z; angles in degrees.
+    """Coordinates x, y, z of Abaqus' *NODE, SYSTEM=R, C (r, θ, z) or S (r, θ, φ); angles in degrees.
 
     φ of the spherical system rises from the xy plane to the pole.
     """
@@ -82,7 +82,7 @@ def from_polar(points: Array, block: Block) -> Array:
 
 
 def moved(block: Block) -> tuple[Array, Array]:
-    """Matrix (3, 3) and shift (3,) of *INSTANCE, x' = matrix x + shift.
+    """Coordinates of Abaqus' *INSTANCE: matrix (3, 3) and shift (3,), x' = matrix x + shift.
 
     The part is shifted first, then turned about the axis from a to b by an angle in degrees.
     """

@@ -41,7 +41,7 @@ class _Contents:
 
 
 def read_msh(path: Path, region_data: str | None = None) -> RawMesh:
-    """The mesh of a .msh file: solids, physical volumes as regions, physical surfaces as surfaces.
+    """The mesh of gmsh's .msh file: solids, physical volumes as regions, physical surfaces as surfaces.
 
     region_data="gmsh:geometrical" takes the entities of the drawing, by number, for the groups.
 

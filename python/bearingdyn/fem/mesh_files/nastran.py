@@ -39,7 +39,7 @@ CONTINUATIONS = 100  # of a card that is read; a brick has two
 
 
 def read_bdf(path: Path) -> RawMesh:
-    """The mesh of a file of bulk data: GRID, CTETRA, CHEXA, CPENTA, CPYRAM and shells.
+    """The mesh of Nastran's bulk data: GRID, CTETRA, CHEXA, CPENTA, CPYRAM and shells.
 
     Raises
     ------

@@ -11,9 +11,26 @@ from bearingdyn.types import Array
 
 
 def crowded(a: float, b: float, count: int) -> Array:
-    """Grid lines from a to b, crowded towards both: (a + b)/2 − (b − a)/2 cos(πi/count), i = 0...count.
+    """Grid lines from a to b, crowded towards both ends: (a + b)/2 − (b − a)/2 cos(πi/count).
 
     A soft layer bonded to something stiff has singular stresses where its free edge meets the bond.
+
+    Parameters
+    ----------
+    a, b
+        The ends, m.
+    count
+        Number of steps between them.
+
+    Returns
+    -------
+    Array
+        (count + 1,), m.
+
+    Raises
+    ------
+    ValueError
+        Unless a < b and count ≥ 1.
     """
     if not (math.isfinite(a) and math.isfinite(b) and a < b and count >= 1):
         raise ValueError(f"lines from {a} to {b} in {count} steps: they must rise, in one step or more")

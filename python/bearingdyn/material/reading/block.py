@@ -30,7 +30,7 @@ _STEP_HEAD = re.compile(r"^\[(.+)\]$")
 
 @dataclass(frozen=True)
 class Block:
-    """One header, the rows below it down to the next, and its columns.
+    """A block: one header, the rows below it down to the next, and its columns.
 
     Attributes
     ----------

@@ -118,7 +118,7 @@ class Column:
 
 
 def title_of(cell: str) -> tuple[str, str]:
-    """Name and unit of a header cell."""
+    """Title of a column: name and unit of a header cell."""
     text = cell.strip().strip('"') if cell.count('"') == 2 else cell.strip()
     text = re.sub("[’′´`]", "'", re.sub("[″”“]", '"', text)).replace("''", '"')
     bracket = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", text)
@@ -268,7 +268,7 @@ def choose(columns: Mapping[str, Column]) -> tuple[str, ...] | None:
 
 
 def names_shear(text: str) -> bool:
-    """Whether a title or another text speaks of shear: torque, plates, a cone."""
+    """Whether the title of a column, or another text, speaks of shear: torque, plates, a cone."""
     return bool(_SHEAR_SIGNS.search(text))
 
 

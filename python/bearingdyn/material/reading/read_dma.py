@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.resources
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
@@ -304,12 +303,3 @@ def _refuse_merging(table: Table, labels: NDArray[np.int64], order: Index) -> No
                 "steps; choose by step=...",
                 "step",
             )
-
-
-def sample_dma_path() -> Path:
-    """Path of the sample table shipped with the package: made from a model its header states, not
-    measured.
-
-    Returns the path of a CSV: frequency, Hz, temperature, °C, storage and loss modulus in shear, Pa.
-    """
-    return Path(str(importlib.resources.files("bearingdyn.material") / "sample_dma.csv"))

@@ -16,7 +16,7 @@ SYMMETRY = 1e-9
 
 
 def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """A read-only copy of an array. Raises ValueError, by name, for another shape or a non-finite entry."""
+    """A frozen, read-only copy of an array. Raises ValueError for another shape or a non-finite entry."""
     array = np.array(value, dtype=np.float64)
     if array.shape != shape:
         raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
@@ -27,7 +27,7 @@ def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 def frozen_sparse(name: str, value: Any, n: int, columns: int | None = None) -> scipy.sparse.csr_matrix:
-    """A checked sparse matrix (csr). Raises ValueError for another shape or a non-finite entry."""
+    """A part's sparse matrix (csr), to be frozen; ValueError for another shape or a non-finite entry."""
     matrix = scipy.sparse.csr_matrix(value, dtype=np.float64)
     shape = (n, n if columns is None else columns)
     if matrix.shape != shape:
@@ -39,7 +39,7 @@ def frozen_sparse(name: str, value: Any, n: int, columns: int | None = None) -> 
 
 
 def check_symmetry(name: str, A: Any, sign: int) -> None:
-    """Check that a dense or sparse matrix is symmetric (sign 1) or skew-symmetric (sign −1).
+    """Check that a matrix to be frozen, dense or sparse, is symmetric (sign 1) or skew-symmetric (sign −1).
 
     Raises
     ------

@@ -39,7 +39,7 @@ def check_matrices(
     expected_mass: float | None = None,
     sound: tuple[float, float] = SOUND,
 ) -> FEMatrices:
-    """Check the stiffness and mass of a body free in space, make them sparse and bring them to SI units.
+    """Check the stiffness and mass of a free body, make them sparse and bring them to SI units.
 
     K is factorised once for its pivots: some 8 s and 1.5 GB at 35 000 coordinates. Rotations with neither
     stiffness nor mass, which solids have in files of six coordinates a node, are left out.
@@ -93,7 +93,7 @@ def check_matrices(
 def checked_files(
     files: Sequence[str | Path], K: Any, M: Any, points: Points | None, **check: Any
 ) -> FEMatrices:
-    """`check_matrices` of what was read from files; its errors name them."""
+    """Check what was read from files, as `check_matrices` does; its errors name the files."""
     try:
         return check_matrices(K, M, points, **check)
     except ValueError as error:
