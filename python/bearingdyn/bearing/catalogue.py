@@ -276,15 +276,10 @@ def _listed(designation: str | int, read: Designation, balls: int | None) -> Ent
     return other
 
 
-<<<<<<< HEAD
 def bearing(
     designation: str | int, *, clearance: float | None = None, balls: int | None = None, **keywords: Any
 ) -> BallBearing:
     """BallBearing with the internal geometry of a designation.
-=======
-def bearing(designation: str | int, *, clearance: float | None = None, **keywords: Any) -> BallBearing:
-    """BallBearing from the catalogue, with the typical internal geometry of a designation.
->>>>>>> house
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ from bearingdyn.bearing.ehl.table_lookup import OMEGA
 
 ACCURACY = (0.02, 0.05, 0.1)
 """What `steady` is asked for; the next where one needs too many nodes."""
-_NODES = 70_000
+_NODES = (70_000, 70_000, 300_000)
 # C0 jumps by a per cent where the rupture passes a node: about the turn, up to this place of the load axis, a
 # round contact, which is cheap, takes the mean of grids of these shares of the accuracy.
 _ROUGH, _OTHERS = 0.45, (0.93, 0.86)
@@ -36,11 +36,11 @@ def point(M: float, L: float, D: float) -> list[float]:
     """One line of the table after its place; NaN where no grid of a bearable size resolves the film."""
     began = time.process_time()
     found: list[Steady] = []
-    for accuracy in ACCURACY:
+    for accuracy, nodes in zip(ACCURACY, _NODES, strict=True):
         try:
-            found = [steady(M, L, D, accuracy=accuracy, nodes=_NODES)]
+            found = [steady(M, L, D, accuracy=accuracy, nodes=nodes)]
             if D > 0.5 and place(np.log(M), np.log(D)) < _ROUGH:
-                found += [steady(M, L, D, accuracy=share * accuracy, nodes=2 * _NODES) for share in _OTHERS]
+                found += [steady(M, L, D, accuracy=share * accuracy, nodes=2 * nodes) for share in _OTHERS]
             break
         except (ValueError, ArithmeticError) as failure:
             print(f"M={M:g} L={L:g} D={D:g}: {failure}", file=sys.stderr, flush=True)

@@ -23,15 +23,16 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ehl import travelling_film
 from bearingdyn.bearing.ehl.steady_film import Figures
 from bearingdyn.bearing.ehl.table_places import place
-from bearingdyn.bearing.film_thickness import dimensionless_film
-from bearingdyn.checks import number, require
+from bearingdyn.bearing.film_thickness import film_formula
+from bearingdyn.checks import require
 from bearingdyn.types import Array, Complex
 
 OMEGA = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Frequencies ωa/um at which the table has K and C."""
 
-_LOADS = 32  # places on the load axis to which the lines of one L and D are brought before they are joined
+_LOADS = 56  # places on the load axis to which the lines of one L and D are brought before they are joined
 _SLACK = 1e-9  # of the ends, for round-off
+_NO_PIEZO = 1e-6  # L at which the formula of the film is that of an isoviscous oil
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class _Pieces:
     breaks: tuple[list[float], ...]
     """Left ends of the pieces along the load axis, L and ln D."""
     coefficients: Array
-    """(load, L, D, 64, quantity), highest powers first."""
+    """(load, L, D, 16, 4 × quantities): powers of load and L, then of ln D and quantities, highest first."""
 
 
 def lookup(M: float, L: float, D: float) -> Lookup:
@@ -87,12 +88,13 @@ def lookup(M: float, L: float, D: float) -> Lookup:
         Outside of the table; `steady` solves there.
     """
     pieces = _pieces()
-    log_M = math.log(number("M", M)) if M > 0 else math.nan
-    log_D = math.log(D) if D > 0 else math.nan
-    at = place(log_M, log_D), number("L", L), log_D
-    weights = []
-    where = []
-    for x, (low, high), breaks in zip(at, pieces.ends, pieces.breaks, strict=True):
+    weights, where = [], []
+    if not (M > 0 and D > 0):
+        _refuse(M, L, D)
+    log_D = math.log(D)
+    for x, (low, high), breaks in zip(
+        (place(math.log(M), log_D), L, log_D), pieces.ends, pieces.breaks, strict=True
+    ):
         if not low - _SLACK <= x <= high + _SLACK:
             _refuse(M, L, D)
         i = bisect_right(breaks, x, 1) - 1
@@ -100,9 +102,10 @@ def lookup(M: float, L: float, D: float) -> Lookup:
         where.append(i)
         weights.append((u * u * u, u * u, u, 1.0))
     first, second, third = weights
-    both = [a * b for a in first for b in second]
-    q = (np.array([a * b for a in both for b in third]) @ pieces.coefficients[tuple(where)]).tolist()
-    Hc = dimensionless_film(M, max(L, 1e-6), D) * math.exp(q[0])
+    block = pieces.coefficients[tuple(where)]
+    partly = (np.array([a * b for a in first for b in second]) @ block).reshape(4, -1)
+    q = (np.array(third) @ partly).tolist()
+    Hc = film_formula(M, L or _NO_PIEZO, D) * math.exp(q[0])
     K0, C0 = 1 / (1 + math.exp(-q[3])), math.exp(q[4])
     n = len(OMEGA)
     return Lookup(
@@ -170,6 +173,7 @@ def joined(rows: list[dict[str, float]]) -> _Pieces:
         # the pieces where the nodes were, the four powers folded into those of the axes before
         c = np.moveaxis(np.moveaxis(c, 1, 1 + along), 0, -2)
         values = c.reshape(*c.shape[:-3], -1, c.shape[-1])
+    values = values.reshape(*values.shape[:3], 16, -1)
     ends = tuple((float(axis[0]), float(axis[-1])) for axis in axes)
     return _Pieces(ends, tuple(axis[:-1].tolist() for axis in axes), np.ascontiguousarray(values))
 
@@ -177,7 +181,7 @@ def joined(rows: list[dict[str, float]]) -> _Pieces:
 def _smooth(row: dict[str, float]) -> list[float]:
     Hc = row["Hc"]
     return [
-        math.log(Hc / dimensionless_film(row["M"], max(row["L"], 1e-6), row["D"])),
+        math.log(Hc / film_formula(row["M"], row["L"] or _NO_PIEZO, row["D"])),
         math.log(row["Hmin"] / Hc),
         math.log(row["H0"] / Hc),
         math.log(row["K0"] / (1 - row["K0"])),
