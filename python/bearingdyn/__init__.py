@@ -42,8 +42,10 @@ PUBLIC = {
         "bearing": (
             "BallBearing",
             "ConstantDamping",
+            "FilmDamping",
             "LoadDamping",
             "LooseFit",
+            "OilSupply",
             "Pit",
             "TabulatedDamping",
             "Waviness",

@@ -48,13 +48,40 @@ class Lookup:
     C: tuple[float, ...]
     """Damping in the scale of C0 at `OMEGA`."""
 
+    @property
+    def Hc(self) -> float:
+        """Film at the centre, h/Rx √(E′Rx/(η0us))."""
+        return self.figures.Hc
+
+    @property
+    def Hmin(self) -> float:
+        """Least film, likewise."""
+        return self.figures.Hmin
+
+    @property
+    def H0(self) -> float:
+        """Film h0 of the force law F = κ(δ + h0)^{3/2}, likewise."""
+        return self.figures.H0
+
+    @property
+    def K0(self) -> float:
+        """Stiffness at low frequency over that of the dry contact."""
+        return self.figures.K0
+
+    @property
+    def C0(self) -> float:
+        """Damping at low frequency, c = C0 (F/δ_dry)(2a/us)."""
+        return self.figures.C0
+
     def stiffness(self, Omega: ArrayLike) -> Complex:
         """Dynamic stiffness F̂/δ̂ over that of the dry contact, at frequencies ωa/um, as `Steady.stiffness`."""
         asked = np.abs(np.asarray(Omega, dtype=float))
         require(bool(np.isfinite(asked).all()), "Omega", Omega, "frequencies ωa/um must be finite")
         K0, C0 = self.figures.K0, self.figures.C0
         nodes = np.array((0.0, *OMEGA))
-        given = np.array([K0 + 0j, *(k + 1j * x * c / 1.5 for k, c, x in zip(self.K, self.C, OMEGA, strict=True))])
+        given = np.array(
+            [K0 + 0j, *(k + 1j * x * c / 1.5 for k, c, x in zip(self.K, self.C, OMEGA, strict=True))]
+        )
         # what the film carried along leaves unsaid is small and smooth
         rest = given - travelling_film.stiffness(K0, C0, nodes)
         slope = scipy.interpolate.PchipInterpolator(nodes, np.column_stack([rest.real, rest.imag]))
@@ -115,6 +142,14 @@ def lookup(M: float, L: float, D: float) -> Lookup:
         Figures(Hc, Hc * math.exp(q[1]), Hc * math.exp(q[2]), K0, C0),
         tuple([K0 + x for x in q[5 : 5 + n]]),
         tuple([C0 * x for x in q[5 + n :]]),
+    )
+
+
+def in_table(L: float, D: float) -> bool:
+    """Whether the table holds loads for L and D."""
+    _, (L_low, L_high), (D_low, D_high) = _pieces().ends
+    return (
+        L_low - _SLACK <= L <= L_high + _SLACK and D > 0 and D_low - _SLACK <= math.log(D) <= D_high + _SLACK
     )
 
 

@@ -27,6 +27,11 @@ def loads(ratio: float) -> tuple[float, ...]:
     return (*turn, *(M for M in _LOADED if M > 1.2 * turn[-1]))
 
 
+def turning_load(ratio: float) -> float:
+    """M at which a contact of the ratio D turns from rigid bodies on a film to a Hertz contact."""
+    return 3.5 * ratio**-0.59
+
+
 def lowest(log_D: float) -> float:
     """ln M at x = 0."""
     return _LOWEST + _SLOPE * log_D
