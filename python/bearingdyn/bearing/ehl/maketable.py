@@ -14,8 +14,8 @@ import numpy as np
 
 from bearingdyn.bearing.ehl import harmonic_approach
 from bearingdyn.bearing.ehl.steady_film import Figures, Steady, steady
-from bearingdyn.bearing.ehl.table_places import HIGHEST, D, L, loads, place
 from bearingdyn.bearing.ehl.table_lookup import OMEGA
+from bearingdyn.bearing.ehl.table_places import HIGHEST, D, L, loads, place
 
 ACCURACY = (0.02, 0.05, 0.1)
 """What `steady` is asked for; the next where one needs too many nodes."""

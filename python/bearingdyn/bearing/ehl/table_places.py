@@ -29,7 +29,7 @@ def loads(ratio: float) -> tuple[float, ...]:
 
 def turning_load(ratio: float) -> float:
     """M at which a contact of the ratio D turns from rigid bodies on a film to a Hertz contact."""
-    return 3.5 * ratio**-0.59
+    return float(3.5 * ratio**-0.59)
 
 
 def lowest(log_D: float) -> float:
