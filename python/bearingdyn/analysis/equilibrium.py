@@ -267,7 +267,9 @@ def contact_angles(kernel: BearingKernel, z: Array, azimuth: float) -> Array:
     psi = azimuth + 2 * math.pi * np.arange(kernel.Z)[:, None] / kernel.Z
     phi = np.where(kernel.sine, np.sin(kernel.order * psi), np.cos(kernel.order * psi))
     axial = np.asarray(kernel.axial, dtype=bool)
-    return np.arctan2(kernel.x0 + phi[:, axial] @ z[axial], kernel.y0 + phi[:, ~axial] @ z[~axial])
+    return np.asarray(
+        np.arctan2(kernel.x0 + phi[:, axial] @ z[axial], kernel.y0 + phi[:, ~axial] @ z[~axial])
+    )
 
 
 def state_of(source: object) -> dict[str, str]:

@@ -45,7 +45,7 @@ class Lubrication:
     film_outer: float
     """Central film of the outer contact."""
     h0_inner: float
-    """Film h0 of the inner contact's force law Q = κ(δ + h0)^{3/2}; the central film where a formula gives it."""
+    """Film h0 of the inner contact's law Q = κ(δ + h0)^{3/2}; the central film where a formula gives it."""
     h0_outer: float
     """The same of the outer contact."""
     lambda_inner: float
@@ -71,11 +71,11 @@ class Lubrication:
         wet = dataclasses.replace(bearing, film=self.film, lubrication=None)
         if not damping:
             return wet
-        law = self.law
-        require(
-            law is not None, "damping", damping, "the table of contacts ends before this point: pass False"
-        )
-        return dataclasses.replace(wet, damping=law)
+        if self.law is None:
+            raise ValueError(
+                f"damping is {damping!r}; the table of contacts ends before this point: pass damping=False"
+            )
+        return dataclasses.replace(wet, damping=self.law)
 
 
 def lubricate(
@@ -106,15 +106,15 @@ def lubricate(
     load
         (6,) on the inner ring, N and N m.
     law
-        "ehl": the equations of the lubricated contact; or a formula of the film, divided by the oil's relative
-        density at the Hertz pressure, because formulas are fits of an oil that does not yield.
+        "ehl": the equations of the lubricated contact; or a formula of the film, divided by the oil's
+        relative density at the Hertz pressure, because formulas are fits of an oil that does not yield.
     method
         Where the figures of "ehl" come from: the "table", or "solve" the equations for both contacts, which
         takes some seconds and knows no limits of a table. The damping over other loads is the table's, in
         proportion.
     starvation
         Film over fully flooded film, in 0..1. Grease soon runs starved, at about half the flooded film: a
-        rule of thumb, unverified; the factor is approximate by nature. The damping is that of the flooded film.
+        rule of thumb, unverified; the factor is approximate by nature. Damping is that of the flooded film.
     roughness
         Rms roughness of race and ball, m.
 
@@ -220,7 +220,7 @@ def in_series(inner: ehl.LubricatedContact, outer: ehl.LubricatedContact) -> flo
 def _over_load(
     bearing: BallBearing, oil: Lubricant, us: float, T: float, Q: float, c: float
 ) -> FilmDamping | None:
-    """Damping of a ball over its load, by the table, in proportion so that it is c under Q; None outside of it."""
+    """Damping of a ball over its load: the table's, in proportion so that it is c under Q; else None."""
     contacts = (bearing.inner_contact, bearing.outer_contact)
     ends = [_table_ends(contact, oil, us, T) for contact in contacts]
     if math.isnan(c) or any(end is None for end in ends):

@@ -1,4 +1,4 @@
-"""What a bearing is lubricated with, and how it runs: all that its films and its damping need but the load."""
+"""What a bearing is lubricated with, and how it runs: what its films and damping need but the load."""
 
 from __future__ import annotations
 
