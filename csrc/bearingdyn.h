@@ -115,16 +115,22 @@ void bd_maxwell_stress(int n_times, int n_components, const double *rate, const 
 #define BD_DAMPING_LIST(X)                                                                         \
     X(BD_DAMPING_CONSTANT, "constant") /* c while in contact (paper section 4.1) */                \
     X(BD_DAMPING_TABLE, "table")       /* c(delta), piecewise linear, its ends held */             \
-    X(BD_DAMPING_LOAD, "load")         /* c = t_c dQ/ddelta: vanishes where contact is lost */
+    X(BD_DAMPING_LOAD, "load")         /* c = t_c dQ/ddelta: vanishes where contact is lost */     \
+    X(BD_DAMPING_FILM, "film") /* of a lubricated contact, over its load: vanishes likewise */
 
 typedef enum bd_damping_law { BD_DAMPING_LIST(BD_ENUMERATOR) } bd_damping_law;
+
+/* Of the film law, with s = delta + h0: c over w = sqrt(s)/(sqrt(s) + sqrt(scale)), which goes from 0 where contact is
+ * lost towards 1, by cubics between equidistant nodes. */
+enum { BD_FILM_CELLS = 64, BD_FILM_NODES = BD_FILM_CELLS + 1 };
 
 typedef struct bd_contact {
     double kappa, h0; /* N/m^1.5; sum of both films, m */
     bd_damping_law law;
-    double c; /* N s/m (constant) or t_c in s (load) */
+    double c; /* N s/m (constant), t_c in s (load), or scale in m (film) */
     int n_table;
-    const double *table_delta, *table_c; /* (n_table) increasing; N s/m */
+    /* (n_table) increasing, and N s/m. Film: c at the nodes and its rise per cell, N s/m; both zero at the first */
+    const double *table_delta, *table_c;
 } bd_contact;
 
 /* ---------------------------------------------------------------- ball bearing (bearing.c) */

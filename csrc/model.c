@@ -281,7 +281,8 @@ static bd_bearing_data copy_bearing(arena *a, const bd_bearing_data *from)
 {
     const size_t n_coefs = (size_t)from->n_coefs;
     const bd_contact *contact = &from->contact;
-    const size_t n_table = contact->law == BD_DAMPING_TABLE ? (size_t)contact->n_table : 0;
+    const bool tabled = contact->law == BD_DAMPING_TABLE || contact->law == BD_DAMPING_FILM;
+    const size_t n_table = tabled ? (size_t)contact->n_table : 0;
     bd_bearing_data own = *from;
     own.order = copy(a, from->order, n_coefs, sizeof *from->order);
     own.sine = copy(a, from->sine, n_coefs, sizeof *from->sine);

@@ -46,8 +46,10 @@ PUBLIC = {
         "bearing": (
             "BallBearing",
             "ConstantDamping",
+            "FilmDamping",
             "LoadDamping",
             "LooseFit",
+            "OilSupply",
             "Pit",
             "TabulatedDamping",
             "Waviness",

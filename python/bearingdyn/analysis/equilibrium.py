@@ -11,7 +11,14 @@ import numpy as np
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.static_balance import Statics, diagonal_blocks
 from bearingdyn.application import Application
-from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, check_bearing_pressure, runs_off
+from bearingdyn.bearing import (
+    OPEN_SIDE_REMEDY,
+    BallBearing,
+    BearingKernel,
+    check_bearing_pressure,
+    lubricated,
+    runs_off,
+)
 from bearingdyn.checks import one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import warn_beyond
@@ -207,6 +214,8 @@ def equilibrium(
     if state == "relaxed":
         warn_at_rest(system, math.inf if after is None else after)
     q = None if start is None else rest.T.T @ (system.M @ start.x)
+    if any(isinstance(t.bearing, BallBearing) and t.bearing.lubrication for t in system.bearings):
+        system, q = _lubricated(system, rest, angle, q)
     passage: list[dict[str, BearingState]] = []
     first, x = system, np.zeros(system.n)
     for i in range(average):
@@ -255,6 +264,44 @@ def _warn_of_strained_layers(app: Application, eq: Equilibrium) -> None:
                 f"{3.0 * HARDENING * e**2:.1%} for a small motion about it",
                 StrainedLayer,
             )
+
+
+def _lubricated(system: System, rest: Statics, angle: float, q: Array | None) -> tuple[System, Array]:
+    """The system with the films and damping of the loads that its dry bearings carry, and that state.
+
+    Films move the balance little and depend on the load little (h0 ∝ Q^−.07): one pass is enough. A bearing
+    without a loaded ball stays as it was given.
+    """
+    q, states = rest.balance(_turned(system, angle), q)
+    terms = []
+    for term in system.bearings:
+        bearing, loads = term.bearing, states[term.name].loads
+        if isinstance(bearing, BallBearing) and bearing.lubrication and (loads > PARTED).any():
+            heaviest = contact_angles(term.kernel(), states[term.name].z, bearing.angle0 + angle)
+            Q = float(loads[loads > PARTED].mean())
+            try:
+                found = lubricated(bearing, bearing.lubrication, Q, float(heaviest[int(loads.argmax())]))
+            except ValueError as error:
+                raise ValueError(f"bearing {term.name!r}: {error}") from None
+            term = replace(term, bearing=found.applied(bearing))
+        terms.append(term)
+    return replace(system, bearings=tuple(terms)), q
+
+
+def _turned(system: System, angle: float) -> tuple[BearingTerm, ...]:
+    """Its bearings with their cages at the angle, rad."""
+    return tuple(replace(t, bearing=t.bearing.turned(angle)) for t in system.bearings)
+
+
+def contact_angles(kernel: BearingKernel, z: Array, azimuth: float) -> Array:
+    """Angles of the lines between the groove centres (Z,), rad, of raceway coefficients z, the first ball at
+    the azimuth, rad; surfaces taken as smooth."""
+    psi = azimuth + 2 * math.pi * np.arange(kernel.Z)[:, None] / kernel.Z
+    phi = np.where(kernel.sine, np.sin(kernel.order * psi), np.cos(kernel.order * psi))
+    axial = np.asarray(kernel.axial, dtype=bool)
+    return np.asarray(
+        np.arctan2(kernel.x0 + phi[:, axial] @ z[axial], kernel.y0 + phi[:, ~axial] @ z[~axial])
+    )
 
 
 def state_of(source: object) -> dict[str, str]:

@@ -11,6 +11,7 @@ from bearingdyn.bearing.characteristic_frequencies import Frequencies
 from bearingdyn.bearing.contact_damping import (
     ConstantDamping,
     Damping,
+    FilmDamping,
     LoadDamping,
     TabulatedDamping,
     resultant_damping,
@@ -26,8 +27,9 @@ from bearingdyn.bearing.kernel import BearingKernel
 from bearingdyn.bearing.load_distribution import LoadDistribution, load_distribution
 from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Lubricant, Walther
-from bearingdyn.bearing.lubrication import Lubrication, lubricate
+from bearingdyn.bearing.lubrication import Lubrication, lubricate, lubricated
 from bearingdyn.bearing.mounting import Mounting, Seat
+from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
@@ -68,6 +70,7 @@ __all__ = [
     "ConstantDamping",
     "Damping",
     "Film",
+    "FilmDamping",
     "Frequencies",
     "Friction",
     "FrictionModel",
@@ -81,6 +84,7 @@ __all__ = [
     "Lubrication",
     "Mounting",
     "NoBalance",
+    "OilSupply",
     "Pair",
     "Passage",
     "Phase",
@@ -114,6 +118,7 @@ __all__ = [
     "load_cases",
     "load_distribution",
     "lubricate",
+    "lubricated",
     "minimum",
     "modified_life",
     "nijenbanning_venner_moes",

@@ -26,6 +26,7 @@ from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_defle
 from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.kernel import BearingKernel
 from bearingdyn.bearing.load_and_motion_checks import check_load, check_motion
+from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, runs_off, shoulder
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
@@ -82,7 +83,7 @@ class BallBearing:
         Central film thickness of both contacts of a ball together, h_i + h_o, m: F = κ (δ + film)^{3/2}.
     damping
         Damping of one ball, both contacts in series: a number in N s/m, or ConstantDamping, TabulatedDamping,
-        LoadDamping.
+        LoadDamping, FilmDamping.
     kappa
         Deflection coefficient of one ball, both contacts in series, instead of Hertz's, N/m^1.5.
     cage_ratio
@@ -105,6 +106,9 @@ class BallBearing:
         None. A load that presses balls onto the open side is refused.
     boundary
         (bore, outside, width), m, against which an application checks shaft and housing; None: not known.
+    lubrication
+        OilSupply: `bd.equilibrium` then puts film and damping of the loads that it finds in place of `film`
+        and `damping`. None: film and damping as given.
     overrides
         For `dataclasses.replace` only: carries kappa, cage_ratio and arm as given, so that a changed geometry
         changes what was not given.
@@ -142,6 +146,7 @@ class BallBearing:
     turning: Turning | None
     open_side: OpenSide
     boundary: tuple[float, float, float] | None
+    lubrication: OilSupply | None
     overrides: Overrides
 
     def __repr__(self) -> str:
@@ -181,6 +186,7 @@ class BallBearing:
         turning: Turning | None = None,
         open_side: OpenSide = "auto",
         boundary: tuple[float, float, float] | None = None,
+        lubrication: OilSupply | None = None,
         overrides: Overrides = Overrides(),  # noqa: B008 (immutable)
     ) -> None:
         Geometry(Z, Dw, Dpw, fi, fo, clearance, contact_angle)
@@ -205,6 +211,8 @@ class BallBearing:
         shoulder(open_side, contact_angle)
         if boundary is not None:
             boundary = _measures(boundary, Dpw, Dw)
+        remedy = "give an OilSupply(lubricant, temperature, speed), or None"
+        require(isinstance(lubrication, OilSupply | None), "lubrication", lubrication, remedy)
         waves, pits, sizes = checked(int(Z), waviness, defects, oversize)
         values = {
             "Z": int(Z),
@@ -227,6 +235,7 @@ class BallBearing:
             "turning": turning,
             "open_side": open_side,
             "boundary": boundary,
+            "lubrication": lubrication,
             "overrides": given,
         }
         for name, value in values.items():

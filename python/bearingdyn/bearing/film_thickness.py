@@ -98,6 +98,11 @@ def dimensionless_film(M: float, L: float, D: float) -> float:
     for name, value in (("M", M), ("L", L), ("D", D)):
         positive(name, value)
     require(D <= 1, "D", D, "it must be at most 1: rolling across the minor axis of the contact")
+    return film_formula(M, L, D)
+
+
+def film_formula(M: float, L: float, D: float) -> float:
+    """`dimensionless_film` of numbers that are known to be positive, D ≤ 1."""
     phi = 1 + 0.006 * math.log(D) + 0.63 * D ** (4 / 7)
     rigid_iso = 145 * (1 + 0.796 * D ** (14 / 15)) ** (-15 / 7) / (D * M**2)
     elastic_iso = 3.18 * phi ** (-14 / 25) * D ** (-1 / 15) * M ** (-2 / 15)
