@@ -234,3 +234,68 @@ done:
     Py_DECREF(keep);
     return result;
 }
+
+const char bd_py_bearing_settle_doc[] = PyDoc_STR(
+    "bearing_settle(bearing, loads, radius, angle, shaft_angle) -> z, ball_loads, outcome\n\n"
+    "Rest of one bearing under loads (m, n) on its coefficients, first steps radius (m,).");
+
+PyObject *bd_py_bearing_settle(PyObject *module, PyObject *args)
+{
+    PyObject *dict, *loads_in, *radius_in, *result = NULL;
+    double angle, shaft_angle;
+    bd_bearing_data bearing = {0};
+    (void)module;
+    if (!PyArg_ParseTuple(args, "OOOdd:bearing_settle", &dict, &loads_in, &radius_in, &angle,
+                          &shaft_angle))
+        return NULL;
+    PyObject *keep = PyList_New(0);
+    if (!keep)
+        return NULL;
+    PyObject *z = NULL, *balls = NULL, *outcome = NULL;
+    bd_settle *settle = NULL;
+    if (bd_py_parse_bearing(keep, dict, &bearing))
+        goto done;
+    bd_status status = bd_bearing_check(&bearing);
+    if (status != BD_OK) {
+        bd_py_raise(status, "bearing");
+        goto done;
+    }
+    const double *load = bd_py_doubles(keep, loads_in, "loads", 2, -1, bearing.n_coefs);
+    const npy_intp cases = load ? bd_py_rows(keep) : 0;
+    const double *radius = load ? bd_py_doubles(keep, radius_in, "radius", 1, cases, -1) : NULL;
+    if (!radius || bd_py_require_finite(&angle, 1, "angle") ||
+        bd_py_require_finite(&shaft_angle, 1, "shaft_angle"))
+        goto done;
+    z = bd_py_new_array(2, cases, bearing.n_coefs);
+    balls = bd_py_new_array(2, cases, bearing.n_balls);
+    outcome = bd_py_new_array(1, cases, 0);
+    if (!z || !balls || !outcome)
+        goto done;
+    settle = bd_settle_create(&bearing, angle, shaft_angle);
+    if (!settle) {
+        PyErr_NoMemory();
+        goto done;
+    }
+    double *z_out = bd_py_data(z), *balls_out = bd_py_data(balls),
+           *outcome_out = bd_py_data(outcome);
+    enum { CHUNK = 500 };
+    for (npy_intp first = 0; first < cases; first += CHUNK) {
+        const npy_intp end = first + CHUNK < cases ? first + CHUNK : cases;
+        Py_BEGIN_ALLOW_THREADS
+            for (npy_intp i = first; i < end; i++)
+                outcome_out[i] = (double)bd_settle_case(settle, load + i * bearing.n_coefs,
+                                                        radius[i], z_out + i * bearing.n_coefs,
+                                                        balls_out + i * bearing.n_balls);
+        Py_END_ALLOW_THREADS
+        if (PyErr_CheckSignals())
+            goto done;
+    }
+    result = PyTuple_Pack(3, z, balls, outcome);
+done:
+    bd_settle_free(settle);
+    Py_XDECREF(z);
+    Py_XDECREF(balls);
+    Py_XDECREF(outcome);
+    Py_DECREF(keep);
+    return result;
+}

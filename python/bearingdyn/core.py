@@ -24,6 +24,7 @@ LOAD_KINDS = _core.LOAD_KINDS
 CHANNEL_KINDS = _core.CHANNEL_KINDS
 WAVE_KINDS = _core.WAVE_KINDS
 PIT_KINDS = _core.PIT_KINDS
+SETTLED = _core.SETTLED
 ISAS = _core.ISAS
 ENERGIES = _core.ENERGIES
 REPORT_FIELDS = _core.REPORT_FIELDS
@@ -259,6 +260,32 @@ def bearing_force(
         g (n,) = +∇V, dg/dz (n, n), dg/dż (n, n), and the loads of the balls (Z,), N.
     """
     return _core.bearing_force(kernel.packed(), z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)
+
+
+def bearing_settle(
+    kernel: Packable, loads: Array, radius: Array, angle: float, shaft_angle: float = 0.0
+) -> tuple[Array, Array, Array]:
+    """Where a bearing comes to rest under each of many loads, its outer ring held.
+
+    Parameters
+    ----------
+    kernel
+        The bearing, as `BearingKernel` packs it.
+    loads
+        (m, n) on the coefficients of the raceways, N.
+    radius
+        (m,) of the order of the expected displacement, m, positive.
+    angle
+        Azimuth of the first ball, rad.
+    shaft_angle
+        Of the shaft, rad.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Coefficients (m, n), loads of the balls (m, Z), N, and how each case ended (m,), codes of SETTLED.
+    """
+    return _core.bearing_settle(kernel.packed(), loads, radius, angle, shaft_angle)
 
 
 def march(

@@ -72,6 +72,17 @@ class BearingWarning(Notice):
     """
 
 
+class PassedOver(Notice):
+    """A designation says something that the model of a bearing does not know.
+
+    When: `catalogue.bearing` reads a maker's name, seals, shields, a cage, a tolerance class, or a clearance
+    class beside a given clearance. The text says how the rest was read.
+
+    Remedy: none where that is what was meant; write the bare number, as "6205" or "6205 C3", to have no
+    warning.
+    """
+
+
 class UnloadedBearing(Notice):
     """Notice: a linear analysis stands on a bearing that carries nothing, and so has no stiffness.
 
@@ -91,6 +102,16 @@ class BeyondData(Notice):
 
     Remedy: ask for the state `after` a time that the data reach; fit from a lower frequency; pin the low end
     (`fit_maxwell(pin=...)`); measure longer, or warmer.
+    """
+
+
+class BeyondSweep(Notice):
+    """A rubber vibrates with more strain than its law of softening was found from.
+
+    When: a response or a march with a law of softening (`payne`) reaches a strain above the highest of the
+    strain sweep.
+
+    Remedy: measure the strain sweep further; or take the answer as an extrapolation of the law.
     """
 
 

@@ -6,6 +6,7 @@ import re
 from typing import TypeAlias
 
 from bearingdyn import core
+from bearingdyn.analysis.softening import layer_names, softening_layers
 from bearingdyn.application import COMPONENTS, QUANTITIES, Channel
 from bearingdyn.bearing import NET
 from bearingdyn.system import System
@@ -47,5 +48,12 @@ def channel_of(system: System, name: str) -> tuple[CoreChannel, str]:
         )
     if channel.quantity == "force" or re.fullmatch(r"loaded|loss|ball\d*", channel.component):
         raise ValueError(f"channel {name!r}: {channel.at!r} is no bearing; there are {bearings}")
+    if channel.component == "strain" and not channel.quantity:
+        soft = {name: k for name, k in zip(layer_names(system), softening_layers(system), strict=True)}
+        if channel.at not in soft:
+            raise ValueError(
+                f"channel {name!r}: {channel.at!r} has no law of softening; those that have: {sorted(soft)}"
+            )
+        return (core.CHANNEL_KINDS["strain"], None, 0, soft[channel.at]), "1"
     kind = core.CHANNEL_KINDS[channel.quantity or QUANTITIES[0]]
     return (kind, system.row(channel), 0, 0), channel.motion_unit()

@@ -50,6 +50,7 @@ def dissipation(
     steps: int,
     settle: int = 0,
     scheme: core.Scheme | None = None,
+    memory: float | None = None,
     progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
     """Find what an application dissipates: march as `transient`, and sum what becomes heat, and where.
@@ -57,14 +58,15 @@ def dissipation(
     Viscous damping loses ẋᵀCẋ. The shear of a viscoelastic part, "layer (shear)", loses what the dashpots of
     its branches and its η0 lose; a bearing what its contacts lose. Powers are summed by the trapezoidal rule
     over the last `steps` steps (without `settle` all but the first), as in the audit of `transient`: the
-    entries are the parts of its linear, branch and contact losses. The loss of a part whose damping turns
+    entries are the parts of its linear, branch and contact losses, and of that of the branch by which a layer
+    softens (not of what breaks in it while the amplitude grows). The loss of a part whose damping turns
     with the shaft is that of its motion in the fixed frame.
 
     Parameters
     ----------
     source
         Equilibrium, or an application, whose equilibrium is found first.
-    speed, dt, steps, settle, scheme, progress
+    speed, dt, steps, settle, scheme, memory, progress
         As in `transient`; at least one step.
 
     Returns
@@ -86,10 +88,19 @@ def dissipation(
             f"source is {given!r}; pass the application or bd.equilibrium(app): a linearised system no "
             f"longer says what its bearings lose"
         )
-    march = March.of(source, speed=speed, dt=dt, steps=steps, settle=settle, scheme=scheme, least_steps=1)
+    march = March.of(
+        source,
+        speed=speed,
+        dt=dt,
+        steps=steps,
+        settle=settle,
+        scheme=scheme,
+        memory=memory,
+        least_steps=1,
+    )
     sinks = _sinks(march.modal)
     channels = [sink.channels() for sink in sinks]
-    model = march.modal.model([channel for own in channels for channel in own])
+    model = march.model([channel for own in channels for channel in own])
     dt, sizes = march.stepping.dt, [len(own) for own in channels]
 
     state = march.start(model)

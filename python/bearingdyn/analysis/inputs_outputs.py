@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from bearingdyn.application import COMPONENTS, GROUND, QUANTITIES, Channel, Plac
 from bearingdyn.bearing import NET
 from bearingdyn.system import PartTerm, SpringTerm, System
 from bearingdyn.types import Array, Complex
+
+# G* (f, i), Pa, of rubbers that soften, by part and place among its rubbers
+Moduli: TypeAlias = Mapping[tuple[str, int], Complex]
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,7 +196,14 @@ class Output:
         return cls(name, None, tuple(parts), tuple(springs), tuple(bearings))
 
     def force(
-        self, x: Complex, omega: Array, speed: float, K: Array, C: Array, inputs: Sequence[Input]
+        self,
+        x: Complex,
+        omega: Array,
+        speed: float,
+        K: Array,
+        C: Array,
+        inputs: Sequence[Input],
+        moduli: Moduli | None = None,
     ) -> Complex:
         """Force (f, i) from the motions x (f, k, i), per unit force or ground acceleration."""
         total = np.zeros((omega.size, x.shape[2]), dtype=np.complex128)
@@ -208,7 +219,7 @@ class Output:
             return np.asarray(np.einsum("fk,fki->fi", rates, motion))
 
         for term, index in self.parts:
-            total += _balance(term, index, taken(len(term.place)), omega, speed, inputs)
+            total += _balance(term, index, taken(len(term.place)), omega, speed, inputs, moduli or {})
         for spring, share in self.springs:
             total += sprung(share * spring.stiffness, share * spring.damping, taken(len(spring.across)))
         for first, B, share in self.bearings:
@@ -229,7 +240,13 @@ def _without_quantity(name: str) -> Channel:
 
 
 def _balance(
-    term: PartTerm, k: int, x: Complex, omega: Array, speed: float, inputs: Sequence[Input]
+    term: PartTerm,
+    k: int,
+    x: Complex,
+    omega: Array,
+    speed: float,
+    inputs: Sequence[Input],
+    moduli: Moduli,
 ) -> Complex:
     """Force (f, i) that a part exerts through its coordinate k, from its motions (f, n, i)."""
     e = term.element
@@ -238,10 +255,14 @@ def _balance(
         + 1j * omega[:, None] * (e.C[k] + speed * e.G[k])
         + (e.K[k] + speed * np.asarray(e.N)[k])
     )
-    for soft in e.viscoelastic:
+    sheared = np.zeros((omega.size, x.shape[2]), dtype=np.complex128)
+    for place, soft in enumerate(e.viscoelastic):
+        if (term.name, place) in moduli:
+            sheared += 2.0 * moduli[term.name, place] * np.einsum("k,fki->fi", soft.H[k], x)
+            continue
         G = np.asarray(soft.material.complex_modulus(omega))
         D = D + 2.0 * G[:, None] * soft.H[k]
-    force = -np.einsum("fk,fki->fi", D, x)
+    force = -np.einsum("fk,fki->fi", D, x) - sheared
     for i, given in enumerate(inputs):
         if given.axis is not None:
             force[:, i] -= e.M[k] @ term.rigid[:, given.axis]
@@ -264,10 +285,12 @@ def recovered(
     power: int,
     K: Array,
     C: Array,
+    moduli: Moduli | None = None,
 ) -> Complex:
     """The outputs (f, o, i) of a harmonic analysis from the motions (f, k, i) of the `requested` rows.
 
-    power: 0, 1, 2 for displacement, velocity, acceleration.
+    power: 0, 1, 2 for displacement, velocity, acceleration. moduli: of rubbers that soften, where x is of
+    such.
     """
     response = np.zeros((omega.size, len(outputs), len(inputs)), dtype=np.complex128)
     rate = 1j * omega
@@ -281,7 +304,7 @@ def recovered(
         own = x[:, at : at + count]
         at += count
         if output.is_force:
-            response[:, k] = scale * output.force(own, omega, speed, K, C, inputs)
+            response[:, k] = scale * output.force(own, omega, speed, K, C, inputs, moduli)
             continue
         response[:, k] = scale * own[:, 0] * (rate**power)[:, None]
         for i, given in enumerate(inputs):

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core, fingerprint, runfile
-from bearingdyn.analysis.core_channels import channel_of
+from bearingdyn.analysis.core_channels import CoreChannel, channel_of
 from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.march_state import check_state, moved, system_hash
 from bearingdyn.analysis.shaft_speed import drive_of
+from bearingdyn.analysis.softening import memory_of
 from bearingdyn.analysis.step_size import warn_if_coarse
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
@@ -56,6 +57,8 @@ class March:
         Steps before the record, steps of the record, and every how many a sample is kept.
     filter
         Whether what is kept is low-passed.
+    memory
+        Time, s, over which layers that soften remember their amplitude; None where none does.
     """
 
     system: System
@@ -67,6 +70,7 @@ class March:
     steps: int
     decimate: int
     filter: bool = False
+    memory: float | None = None
 
     @classmethod
     def of(
@@ -81,6 +85,7 @@ class March:
         filter: bool = False,
         audit: bool = False,
         scheme: core.Scheme | None = None,
+        memory: float | None = None,
         least_steps: int = 0,
     ) -> March:
         """Prepare a march from an equilibrium, an application (its equilibrium is found) or a system at zero.
@@ -122,7 +127,20 @@ class March:
         warn_if_coarse(system, fastest, dt)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
-        return cls(system=system, modal=modal, T=T, x=x, stepping=stepping, filter=bool(filter), **counts)
+        return cls(
+            system=system,
+            modal=modal,
+            T=T,
+            x=x,
+            stepping=stepping,
+            filter=bool(filter),
+            memory=memory_of(system, drive, memory),
+            **counts,
+        )
+
+    def model(self, channels: list[CoreChannel]) -> core.Model:
+        """The core's model, with these channels."""
+        return self.modal.model(channels, memory=self.memory)
 
     @property
     def total(self) -> int:
@@ -218,7 +236,12 @@ class March:
         Every field of the stepping and of its scheme is in it.
         """
         return fingerprint.fingerprint(
-            {"system": system_hash(self.modal), "stepping": self.stepping, "state": state}
+            {
+                "system": system_hash(self.modal),
+                "stepping": self.stepping,
+                "state": state,
+                **({} if self.memory is None else {"memory": self.memory}),
+            }
         )
 
     def pieces(

@@ -23,7 +23,15 @@ def system_hash(system: System) -> str:
         {
             "matrices": [system.M, system.C, system.G, system.K, system.N],
             "layers": [
-                (t.L, t.material.G0, t.material.G, t.material.tau, t.material.eta0) for t in system.layers
+                (
+                    t.L,
+                    t.material.G0,
+                    t.material.G,
+                    t.material.tau,
+                    t.material.eta0,
+                    *(() if t.strain is None else (t.strain, t.material.payne)),
+                )
+                for t in system.layers
             ],
             "bearings": [(t.kernel().packed(), t.B) for t in system.bearings],
             "loads": system.loads,

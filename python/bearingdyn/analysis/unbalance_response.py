@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, requested
 from bearingdyn.analysis.linearised import linear
+from bearingdyn.analysis.softening import layer_names, moduli_of, softened, warn_of_strain
 from bearingdyn.application import QUANTITIES, Application
 from bearingdyn.checks import name_list, numbers, one_of
 from bearingdyn.system import System
@@ -44,7 +45,8 @@ def unbalance_response(
     -------
     xarray.Dataset
         response (speed, output), complex, zero-to-peak: the motion is Re(response·e^{iΩt}) while the shaft
-        stands at the angle Ωt.
+        stands at the angle Ωt. Where layers soften (`Maxwell.payne`), they do so with this motion, and strain
+        (speed, layer) is the shear strain amplitude of each.
 
     Raises
     ------
@@ -52,7 +54,12 @@ def unbalance_response(
         For negative speeds, an application without unbalance, an unknown channel or quantity, a part that
         would turn although its damping is known at rest only.
     ArithmeticError
-        Where the dynamic stiffness is singular.
+        Where the dynamic stiffness is singular, or the strain of a layer is not found.
+
+    Warns
+    -----
+    BeyondSweep
+        Where a layer's strain leaves the sweep its law of softening comes from.
     """
     given = numbers(
         "speeds", speeds, "speeds must be one or more finite values of zero or more, in rad/s", 0.0
@@ -76,33 +83,47 @@ def unbalance_response(
     # p_cos cos Ωt + p_sin sin Ωt = Re (p_cos − i p_sin) e^{iΩt}
     phase = np.tile([1.0, -1j], len(loads))
     response = np.zeros((given.size, len(outputs)), dtype=np.complex128)
+    soft, power = layer_names(system), QUANTITIES.index(quantity)
+    strain = np.zeros((given.size, len(soft), 1))
     for k, speed in enumerate(given):
         if speed > 0.0:
-            omega = np.array([speed])
-            x = state.solve(omega, force, rows, float(speed), None)
-            unit = recovered(
-                wanted, inputs, x, omega, float(speed), QUANTITIES.index(quantity), state.K, state.C
-            )
+            omega, turning = np.array([speed]), float(speed)
+            if soft:
+                drive = speed**2 * phase.reshape(1, -1, 1)  # all together make the strain
+                (found,) = softened(state, omega, force, rows, turning, [drive])
+                strain[k], x = found.strain[0], found.each
+                moduli = moduli_of(system, omega, found.change)
+            else:
+                x, moduli = state.solve(omega, force, rows, turning, None), None
+            unit = recovered(wanted, inputs, x, omega, turning, power, state.K, state.C, moduli)
             response[k] = speed**2 * (unit[0] @ phase)
+    if soft:
+        warn_of_strain(system, strain)
 
     from bearingdyn.results import dataset, inputs_of
 
     units = [o.unit(quantity) for o in wanted]
+    variables: dict[str, Any] = {
+        "response": (
+            ("speed", "output"),
+            response,
+            ", ".join(dict.fromkeys(units)),
+            f"complex {quantity}, zero-to-peak, at the frequency of the speed",
+        )
+    }
+    coords: dict[str, tuple[Any, str]] = {"speed": (given, "rad/s"), "output": (list(outputs), "")}
+    if soft:
+        meaning = "shear strain amplitude of each layer that softens"
+        variables["strain"] = (("speed", "layer"), strain[:, :, 0], "1", meaning)
+        coords["layer"] = (soft, "")
     made = dataset(
-        {
-            "response": (
-                ("speed", "output"),
-                response,
-                ", ".join(dict.fromkeys(units)),
-                f"complex {quantity}, zero-to-peak, at the frequency of the speed",
-            )
-        },
+        variables,
         {
             "analysis": "unbalance response",
             "quantity": quantity,
             **state_of(source),
             **inputs_of(system.inputs),
         },
-        {"speed": (given, "rad/s"), "output": (list(outputs), "")},
+        coords,
     )
     return made.assign_coords(unit=("output", units, {"units": "", "long_name": "unit of each output"}))

@@ -18,7 +18,6 @@ from bearingdyn.application.plan import Plan
 from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, Pair
 from bearingdyn.checks import require
-from bearingdyn.cms import Viscoelastic
 from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
@@ -435,7 +434,7 @@ class Application:
                     f"with one"
                 )
             try:
-                moved.append(Viscoelastic(at(T), term.H))
+                moved.append(replace(term, material=at(T)))
             except ValueError as error:
                 raise ValueError(f"part {part!r} at {T} °C: {error}") from None
         self.plan.parts[part] = replace(element, viscoelastic=tuple(moved))

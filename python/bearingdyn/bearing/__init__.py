@@ -31,6 +31,20 @@ from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
 from bearingdyn.bearing.random_surfaces import WavinessSpectrum, diameter_scatter
+from bearingdyn.bearing.rating import (
+    LoadCases,
+    Ratings,
+    equivalent_life,
+    equivalent_load,
+    equivalent_static_load,
+    iso_ratings,
+    life_factor,
+    life_of_loads,
+    load_cases,
+    modified_life,
+    rating_life,
+    ratings_of,
+)
 from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
 from bearingdyn.bearing.surface_damage import dent, spall
 from bearingdyn.notice import BearingWarning
@@ -50,6 +64,7 @@ __all__ = [
     "Frequencies",
     "Geometry",
     "Imperfections",
+    "LoadCases",
     "LoadDamping",
     "LoadDistribution",
     "LooseFit",
@@ -62,6 +77,7 @@ __all__ = [
     "Pit",
     "PointContact",
     "RacewaySeries",
+    "Ratings",
     "Running",
     "Seat",
     "TabulatedDamping",
@@ -73,13 +89,23 @@ __all__ = [
     "contact_modulus",
     "dent",
     "diameter_scatter",
+    "equivalent_life",
+    "equivalent_load",
+    "equivalent_static_load",
     "fault_lines",
     "hamrock_dowson",
+    "iso_ratings",
+    "life_factor",
+    "life_of_loads",
+    "load_cases",
     "load_distribution",
     "lubricate",
     "minimum",
+    "modified_life",
     "nijenbanning_venner_moes",
     "passage",
+    "rating_life",
+    "ratings_of",
     "resultant_damping",
     "resultant_deflection_coefficient",
     "runs_off",

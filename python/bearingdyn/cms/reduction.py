@@ -143,7 +143,8 @@ def project(model: FullModel, basis: Basis, *, damping: float = 0.0, held: str |
         interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(model.interfaces)},
         outputs={name: np.asarray(row @ basis.Psi) for name, row in model.outputs.items()},
         viscoelastic=tuple(
-            Viscoelastic(part.material, P.T @ basis.reduce(part.H) @ P) for part in model.viscoelastic
+            Viscoelastic(part.material, P.T @ basis.reduce(part.H) @ P, part.volume)
+            for part in model.viscoelastic
         ),
     )
 

@@ -8,8 +8,10 @@ from typing import Any, Protocol
 import numpy as np
 import scipy
 
+from bearingdyn.checks import positive
 from bearingdyn.cms.frozen_matrices import check_symmetry, frozen, frozen_sparse
 from bearingdyn.short_repr import short
+from bearingdyn.types import Array
 
 
 class ComplexModulus(Protocol):
@@ -30,10 +32,17 @@ class Viscoelastic:
     H
         (n, n) ∫BᵀT2B dV, m, dense if reduced and sparse (csr) if not; the deviatoric stiffness is 2·G*(ω)·H
         (paper (16), (23)).
+    volume
+        Of the material, m³: its mean square shear strain is 2 xᵀHx/volume. None where it is not known; a law
+        of softening needs it.
+    concentration
+        (n,) strain that counts for a law of softening over the rms one, by coordinate; None: 1.
     """
 
     material: ComplexModulus
     H: Any
+    volume: float | None = None
+    concentration: Array | None = None
 
     __repr__ = short
 
@@ -47,3 +56,7 @@ class Viscoelastic:
         H = frozen_sparse("H", self.H, n) if sparse else frozen("H", self.H, (n, n))
         check_symmetry("H", H, 1)
         object.__setattr__(self, "H", H)
+        if self.volume is not None:
+            positive("volume", self.volume, "it must be a positive volume in m³")
+        if self.concentration is not None:
+            object.__setattr__(self, "concentration", frozen("concentration", self.concentration, (n,)))

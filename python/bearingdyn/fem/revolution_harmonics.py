@@ -10,7 +10,6 @@ ch. 4), which does not lock as ν → ½. Bulk and shear modulus enter as scalar
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -135,10 +134,11 @@ class Harmonic:
         return A
 
 
-def _element_matrices(
+def _strain_operators(
     mesh: RevolutionMesh, n: int, components: tuple[int, ...]
-) -> tuple[Array, Array, Array]:
-    """Mass (m, 9, 9) of one component, volumetric and deviatoric stiffness (m, 9c, 9c) of every element."""
+) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """Of the 3×3 points q of every element m: N (q, 9), r, z, det (m, q), m³ of the order's integral over φ,
+    and B (m, q, 6, 9c), amplitudes of the strains ε_rr, ε_θθ, ε_zz, γ_rz, γ_rθ, γ_θz."""
     x, w = np.polynomial.legendre.leggauss(3)
     xi, eta = np.repeat(x, 3), np.tile(x, 3)
     N, N_xi, N_eta = shape_functions(xi, eta)
@@ -153,7 +153,6 @@ def _element_matrices(
     d_z = (r_xi / det)[:, :, None] * N_eta - (r_eta / det)[:, :, None] * N_xi
     by_r = N / r[:, :, None]
 
-    # Amplitudes of the strains ε_rr, ε_θθ, ε_zz, γ_rz, γ_rθ, γ_θz for U, V, W at each node.
     B = np.zeros((*d_r.shape[:2], 6, 9, 3))
     B[..., 0, :, 0] = d_r
     B[..., 1, :, 0], B[..., 1, :, 1] = by_r, n * by_r
@@ -162,6 +161,15 @@ def _element_matrices(
     B[..., 4, :, 0], B[..., 4, :, 1] = -n * by_r, d_r - by_r
     B[..., 5, :, 1], B[..., 5, :, 2] = d_z, -n * by_r
     B = B[..., list(components)].reshape(*d_r.shape[:2], 6, -1)
+
+    return N, r, z, det, dV, B
+
+
+def _element_matrices(
+    mesh: RevolutionMesh, n: int, components: tuple[int, ...]
+) -> tuple[Array, Array, Array]:
+    """Mass (m, 9, 9) of one component, volumetric and deviatoric stiffness (m, 9c, 9c) of every element."""
+    N, r, z, det, dV, B = _strain_operators(mesh, n, components)
 
     trace = B[:, :, :3].sum(axis=2)
     # Pressures are linear in r and z themselves: linear in ξ and η they lose an order where elements are
@@ -174,8 +182,7 @@ def _element_matrices(
     volumetric = D.transpose(0, 2, 1) @ np.linalg.solve(P, D)
 
     # e:e = Σ(ε_ii − ε_kk/3)² + ½Σγ², which is εᵀT2ε.
-    B[:, :, :3] -= trace[:, :, None] / 3
-    B[:, :, 3:] *= np.sqrt(0.5)
+    _make_deviatoric(B)
     B *= np.sqrt(dV)[:, :, None, None]
     B = B.reshape(len(B), -1, B.shape[-1])
     deviatoric = B.transpose(0, 2, 1) @ B
@@ -183,10 +190,64 @@ def _element_matrices(
     return mass, volumetric, deviatoric
 
 
-def _scatter(
-    mesh: RevolutionMesh, c: int, regions: int, blocks: Sequence[Array]
-) -> tuple[NDArray[np.intc], NDArray[np.intc], list[Array]]:
-    """Sum element matrices (m, 9c, 9c) into csc indices, indptr and data (regions, nonzeros)."""
+def _make_deviatoric(B: Array) -> None:
+    """Turn strains (m, q, 6, …) into numbers whose squares add up to e:e, in place."""
+    B[:, :, :3] -= B[:, :, :3].sum(axis=2)[:, :, None] / 3
+    B[:, :, 3:] *= np.sqrt(0.5)
+
+
+def deviatoric_strains(
+    mesh: RevolutionMesh, order: int, components: tuple[int, ...], u: Array
+) -> tuple[Array, Array]:
+    """Deviatoric strain of shapes u (n, k) at the 3×3 points of every element, and the points' volumes.
+
+    Parameters
+    ----------
+    order, components
+        Of the harmonic that u is of.
+    u
+        Shapes in its coordinates.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        (m, 9, 6, k), amplitudes whose squares add up to e:e, the first four in cos nφ, the last two in sin nφ
+        (without φ in order 0); and (m, 9), m³ per radian.
+    """
+    *_, dV, B = _strain_operators(mesh, order, components)
+    _make_deviatoric(B)
+    c = len(components)
+    local = u.reshape(-1, c, u.shape[1])[mesh.elements].reshape(len(mesh.elements), 9 * c, -1)
+    around = 2 * np.pi if order == 0 else np.pi
+    return np.einsum("eqsa,eak->eqsk", B, local, optimize=True), dV / around
+
+
+@dataclass(frozen=True, eq=False)
+class Pattern:
+    """Where element matrices (m, 9c, 9c) add up in a csc matrix.
+
+    Parameters
+    ----------
+    indices, indptr
+        Of the csc matrix.
+    place
+        (m, 81 c²) place of each entry of each element among the data.
+    """
+
+    indices: NDArray[np.intc]
+    indptr: NDArray[np.intc]
+    place: Index
+
+    def add(self, blocks: Array, region: Index) -> Array:
+        """Data (regions, nonzeros) of the sums over the elements of each region."""
+        size, regions = self.indices.size, int(region.max()) + 1
+        place = self.place + (region * size)[:, None]
+        summed = np.bincount(place.ravel(), weights=blocks.ravel(), minlength=regions * size)
+        return np.asarray(summed, dtype=np.float64).reshape(regions, -1)
+
+
+def pattern(mesh: RevolutionMesh, c: int) -> Pattern:
+    """The pattern of a mesh's elements with c components at each node."""
     nodes = mesh.r.size
     key = (
         mesh.elements[:, None, :] * nodes + mesh.elements[:, :, None]
@@ -208,13 +269,7 @@ def _scatter(
 
     # Element entry (9c, 9c) as (node i, a, node j, b); `where` runs over (element, i, j).
     place = at[where.reshape(-1, 9, 9)].transpose(0, 1, 3, 2, 4).reshape(len(mesh.elements), -1)
-    place = place + (mesh.region * indices.size)[:, None]
-    size = regions * indices.size
-    data = [
-        np.asarray(np.bincount(place.ravel(), weights=A.ravel(), minlength=size), dtype=np.float64)
-        for A in blocks
-    ]
-    return indices, indptr, [values.reshape(regions, -1) for values in data]
+    return Pattern(indices, indptr, place)
 
 
 def _kept_on_axis(mesh: RevolutionMesh, order: int, components: tuple[int, ...]) -> tuple[Index, Index]:
@@ -259,8 +314,31 @@ def assemble_harmonic(
         raise ValueError(
             f"components is {components}; orders above 0 need (0, 1, 2), order 0 takes (0, 2) or (1,) too"
         )
-    c, regions = len(components), int(mesh.region.max()) + 1
     mass, volumetric, deviatoric = _element_matrices(mesh, order, components)
+    return gathered_harmonic(mesh, order, components, mass, volumetric, deviatoric)
+
+
+def gathered_harmonic(
+    mesh: RevolutionMesh,
+    order: int,
+    components: tuple[int, ...],
+    mass: Array,
+    volumetric: Array,
+    deviatoric: Array,
+    known: Pattern | None = None,
+) -> Harmonic:
+    """A harmonic of element matrices; some are changed here, where the axis ties coordinates.
+
+    Parameters
+    ----------
+    mass
+        (m, 9, 9) of one component.
+    volumetric, deviatoric
+        (m, 9c, 9c) stiffness per unit bulk modulus and per 2G.
+    known
+        The pattern of the mesh with c components, if it is at hand.
+    """
+    c = len(components)
     mass = (mass[:, :, None, :, None] * np.eye(c)[:, None, :]).reshape(len(mass), 9 * c, 9 * c)
     free, axis = _kept_on_axis(mesh, order, components)
     blocks = [mass, volumetric, deviatoric]
@@ -271,13 +349,14 @@ def assemble_harmonic(
             A[e, :, 3 * k] -= A[e, :, 3 * k + 1]
             A[e, 3 * k + 1] = 0
             A[e, :, 3 * k + 1] = 0
-    indices, indptr, data = _scatter(mesh, c, regions, blocks)
+    where = pattern(mesh, c) if known is None else known
+    data = [where.add(A, mesh.region) for A in blocks]
     return Harmonic(
         mesh=mesh,
         order=order,
         components=components,
-        indices=indices,
-        indptr=indptr,
+        indices=where.indices,
+        indptr=where.indptr,
         mass=data[0],
         volumetric=data[1],
         deviatoric=data[2],

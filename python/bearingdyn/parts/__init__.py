@@ -9,6 +9,7 @@ from bearingdyn.parts.housing import Feet, Housing
 from bearingdyn.parts.imported import Imported
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.node_set import NodeSet, at_radius
+from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
@@ -18,6 +19,7 @@ from bearingdyn.parts.ring import Ring
 from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.parts.squeezed import Squeezed
 
 __all__ = [
     "Cylinder",
@@ -34,6 +36,7 @@ __all__ = [
     "Line",
     "MeshNodes",
     "NodeSet",
+    "ORing",
     "Outline",
     "Outlined",
     "Patch",
@@ -47,6 +50,7 @@ __all__ = [
     "Section",
     "Shaft",
     "Solid",
+    "Squeezed",
     "ViscoelasticSolid",
     "Where",
     "at_radius",

@@ -10,6 +10,8 @@ from bearingdyn.fem import Rectangle
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 
+LOCKING = 0.45  # Poisson's ratio from which an elastic region counts as rubber, lest its elements lock
+
 
 class ViscoelasticSolid(Protocol):
     """What a viscoelastic region is made of: elastic in volume and viscoelastic in shear, such as Maxwell."""
@@ -29,6 +31,11 @@ class ViscoelasticSolid(Protocol):
 def _check_material(material: object) -> None:
     if not (isinstance(material, Elastic) or callable(getattr(material, "complex_modulus", None))):
         raise ValueError(f"material is {material!r}; it must be Elastic or have complex_modulus(omega)")
+
+
+def is_rubber(material: Any) -> bool:
+    """Whether a material is nearly incompressible: viscoelastic, or elastic with ν of LOCKING or more."""
+    return not isinstance(material, Elastic) or material.nu >= LOCKING
 
 
 @dataclass(frozen=True)

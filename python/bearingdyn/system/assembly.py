@@ -10,8 +10,8 @@ import numpy as np
 from bearingdyn.application import GRAVITY, GROUND, Application, Load, LooseJoint, Place, Plan
 from bearingdyn.bearing import RIGID
 from bearingdyn.system.held import check_held
-from bearingdyn.system.matrix_factor import factor
 from bearingdyn.system.origin import noted
+from bearingdyn.system.softening_layer import softening_factor
 from bearingdyn.system.system import System
 from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
 from bearingdyn.system.unbalance_check import check_unbalance
@@ -62,7 +62,8 @@ def assemble(app: Application) -> System:
         inertia += select[part].T @ (element.M @ rigid[:, :3])
         terms.append(PartTerm(part, element, select[part], rigid, plan.sources[part]))
         for term in element.viscoelastic:
-            layers.append(LayerTerm(part, term.material, select[part].T @ factor(term.H)))
+            L, strain = softening_factor(term, part)
+            layers.append(LayerTerm(part, term.material, select[part].T @ L, strain))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
         if all(relaxed):
             deviatoric = (2.0 * G0 * t.H for G0, t in zip(relaxed, element.viscoelastic, strict=True))

@@ -20,6 +20,7 @@ from bearingdyn.checks import meant
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.system.natural_modes import natural
+from bearingdyn.system.softening_layer import marched_layer
 from bearingdyn.system.static_modulus import Modulus, static_modulus
 from bearingdyn.system.system_matrix_check import check_matrix
 from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
@@ -204,13 +205,16 @@ class System:
     def modal(self) -> tuple[System, Array]:
         """The system in modes of its relaxed stiffness and mass, block by block, and T with x = T q.
 
+        Layers that soften have there what their law leaves (`Maxwell.rest`).
+
         M is then exactly the identity and the relaxed stiffness exactly diagonal, as a long march needs.
         """
-        squares, T = self.basis()
+        moduli = self.marched_moduli()
+        squares, T = self.basis(moduli)
         modal = self.transformed(T)
         relaxed = np.zeros((self.n, self.n))
-        for layer in modal.layers:
-            relaxed += 2.0 * static_modulus(layer, "relaxed") * (layer.L @ layer.L.T)
+        for G, layer in zip(moduli, modal.layers, strict=True):
+            relaxed += 2.0 * G * (layer.L @ layer.L.T)
         # K + relaxed, formed again in `stiffness`, is diagonal to the last bit
         return replace(modal, M=np.eye(self.n), K=np.diag(squares) - relaxed), T
 
@@ -220,7 +224,19 @@ class System:
         squares, shapes = natural(K, self.M)
         return np.asarray(shapes[:, squares <= 0.0])
 
-    def model(self, channels: list[tuple[int, Array | None, int, int]], relaxed: bool = True) -> core.Model:
+    def marched_moduli(self) -> list[float]:
+        """Shear modulus, Pa, of each layer in a march: relaxed, or what a law of softening leaves."""
+        return [
+            static_modulus(layer, "relaxed") if layer.strain is None else layer.material.rest.G0
+            for layer in self.layers
+        ]
+
+    def model(
+        self,
+        channels: list[tuple[int, Array | None, int, int]],
+        relaxed: bool = True,
+        memory: float | None = None,
+    ) -> core.Model:
         """The core's model.
 
         Parameters
@@ -230,14 +246,18 @@ class System:
         relaxed
             True, for a march: K holds the layers at their G0, and branches do the rest. False, for a
             harmonic response: the whole deviatoric stiffness is left to a modulus given per frequency.
+        memory
+            Time, s, over which layers that soften remember their amplitude; needed for their march.
+
+        Raises
+        ------
+        ValueError
+            Without a memory that is needed.
         """
         C = self.viscous() if relaxed else self.C
-        K = self.stiffness("relaxed") if relaxed else self.K
+        K = self.stiffness(self.marched_moduli()) if relaxed else self.K
         empty = np.zeros(0)
-        layers = [
-            (t.L, np.asarray(t.material.G), np.asarray(t.material.tau)) if relaxed else (t.L, empty, empty)
-            for t in self.layers
-        ]
+        layers = [marched_layer(t, memory) if relaxed else (t.L, empty, empty) for t in self.layers]
         return core.Model(
             M=self.M,
             C=C,

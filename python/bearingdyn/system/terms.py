@@ -15,11 +15,16 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class LayerTerm:
-    """A layer's term in the system: its deviatoric stiffness is 2 G*(ω) L Lᵀ, L (n, rank)."""
+    """A layer's term in the system: its deviatoric stiffness is 2 G*(ω) L Lᵀ, L (n, rank).
+
+    strain: (rank,), γ² = Σ strain |Lᵀx|² is the square of the shear strain amplitude that counts for a law of
+    softening; None where the material has none.
+    """
 
     part: str
     material: Any
     L: Array
+    strain: Array | None = None
 
     __repr__ = short
 

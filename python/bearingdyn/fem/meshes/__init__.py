@@ -2,6 +2,7 @@
 
 from bearingdyn.fem.meshes.block_with_bore import block_with_bore
 from bearingdyn.fem.meshes.box_mesh import box_mesh
+from bearingdyn.fem.meshes.disc_section import disc_section
 from bearingdyn.fem.meshes.grid_lines import crowded
 from bearingdyn.fem.meshes.o_ring_mesh import o_ring_mesh
 from bearingdyn.fem.meshes.quadrilaterals import quadrilaterals
@@ -20,6 +21,7 @@ __all__ = [
     "box_mesh",
     "by_size",
     "crowded",
+    "disc_section",
     "face_shapes",
     "o_ring_mesh",
     "quadrilaterals",

@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from bearingdyn.checks import whole
+from bearingdyn.fem.meshes.disc_section import disc_section
 from bearingdyn.fem.meshes.grid_lines import crowded
-from bearingdyn.fem.meshes.patches import angles_of, extruded, joined, patch, revolved, with_kind
+from bearingdyn.fem.meshes.patches import angles_of, extruded, revolved, with_kind
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, second_order
 
 
@@ -55,21 +56,8 @@ def o_ring_mesh(
         )
     whole("across", across, 2)
     start, end = angles_of(angle, around)
-    a, half, core = 0.5 * cord, math.asin(band / cord), 0.45
-    # the section: a rectangle in the middle and four patches about it; lines crowd to the ends of the bands
-    sides = [crowded(-half, half, across), crowded(half, math.pi - half, across)]
-    sides += [arc + math.pi for arc in sides]
-    corner = core * a * np.exp(1j * np.array([-half, half, math.pi - half, math.pi + half, -half]))
-    t = np.linspace(0.0, 1.0, max(2, across // 2) + 1)[:, None]
-    share = crowded(0.0, 1.0, across)
-    patches = []
-    for k, arc in enumerate(sides):
-        inside = corner[k] + share * (corner[k + 1] - corner[k])
-        place = inside + t * (a * np.exp(1j * arc) - inside)
-        patches.append(patch(place.real, place.imag))
-    x, y = np.meshgrid((2 * share[::-1] - 1) * corner[1].real, (2 * share - 1) * corner[1].imag)
-    patches.append(patch(x, y))  # all clockwise, for (r, φ, z) is right-handed
-    plane, quads = joined(patches, 1e-9 * cord)
+    a, half = 0.5 * cord, math.asin(band / cord)  # lines crowd to the ends of the bands
+    plane, quads = disc_section(a, half, crowded(0.0, 1.0, across), max(2, across // 2))
     p, elements, ends = second_order(*extruded(plane, quads, np.linspace(start, end, around + 1)))
     skin = np.hypot(p[:, 0], p[:, 1]) > a * (1 - 1e-9)
     middle = len(p) - len(ends) + np.flatnonzero(skin[ends].all(axis=1))
