@@ -429,9 +429,9 @@ def test_pareto_of_one_aim_is_its_minimum_and_a_parameter_may_be_an_aim():
         ({}, "at least one"),
         ({"minimise": ["z"]}, "'z' is not a number"),
         ({"minimise": ["error"]}, "not a number"),
+        ({"minimise": ["a"], "maximise": ["a"]}, "named twice"),
     ],
-     ({"minimise": ["a"], "maximise": ["a"]}, "named twice")],
-)  # fmt: skip
+)
 def test_bad_aims_are_refused(aims, message):
     table = study.table([study.Case({"w": 1.0}, {"a": 1.0})])
     with pytest.raises(ValueError, match=message):
