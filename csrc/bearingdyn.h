@@ -39,7 +39,7 @@
 
 /* ---------------------------------------------------------------- status */
 
-/* 0 is success, < 0 fatal, > 0 a stop that is no error. */
+/* 0 is success, < 0 fatal, > 0 a stop that is not an error. */
 #define BD_STATUS_LIST(X)                                                                          \
     X(BD_OK, 0, "success")                                                                         \
     X(BD_INTERRUPTED, 1, "interrupted by the user")                                                \

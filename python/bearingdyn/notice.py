@@ -74,7 +74,7 @@ class BearingWarning(Notice):
 
 
 class PassedOver(Notice):
-    """A designation says something that the model of a bearing does not know.
+    """Notice: a designation says something that the model of a bearing does not know.
 
     When: `catalogue.bearing` reads a maker's name, seals, shields, a cage, a tolerance class, or a clearance
     class beside a given clearance. The text says how the rest was read.
@@ -129,7 +129,7 @@ class MeshDependent(Notice):
 
 
 class BeyondSweep(Notice):
-    """A rubber vibrates with more strain than its law of softening was found from.
+    """Notice: a rubber vibrates with more strain than its law of softening was found from.
 
     When: a response or a march with a law of softening (`payne`) reaches a strain above the highest of the
     strain sweep.

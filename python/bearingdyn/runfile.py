@@ -70,7 +70,7 @@ class Chunk:
         Raises
         ------
         ValueError
-            For bytes that are no chunk of so many channels.
+            For bytes that do not make a chunk of so many channels.
         """
         front = _CHUNK_1 if version == 1 else _CHUNK
         if len(data) < front.size:
@@ -103,7 +103,7 @@ class Chunk:
         origin, count, dt = state[:3].tolist()
         t = origin + count * dt
         if not (math.isfinite(t) and 0 <= count <= _LARGEST):
-            raise ValueError(f"its state begins with {[origin, count, dt]}, which is no time")
+            raise ValueError(f"its state begins with {[origin, count, dt]}, which cannot be a time")
         return cls(rows, state, Report(**counts, t=t, peaks=tuple(map(float, peaks))))
 
 
@@ -150,7 +150,7 @@ def _parsed(data: bytes, path: str | os.PathLike[str]) -> tuple[dict[str, Any], 
     try:
         facts = _facts(_json(header))
     except ValueError as error:
-        raise ValueError(f"{os.fspath(path)} has a header that is none of a run: {error}") from None
+        raise ValueError(f"{os.fspath(path)} does not have the header of a run: {error}") from None
     chunks: list[Chunk] = []
     while True:
         block, after = _block(data, at, version)
@@ -159,14 +159,15 @@ def _parsed(data: bytes, path: str | os.PathLike[str]) -> tuple[dict[str, Any], 
         try:
             chunks.append(Chunk.unpacked(block, len(facts["channels"]), version))
         except ValueError as error:
-            raise ValueError(f"{os.fspath(path)}: chunk {len(chunks)} is none of a run: {error}") from None
+            which = f"{os.fspath(path)}: chunk {len(chunks)}"
+            raise ValueError(f"{which} does not belong to a run: {error}") from None
         if chunks[-1].state.size != chunks[0].state.size:
             raise ValueError(f"{os.fspath(path)}: chunk {len(chunks) - 1} has a state of another size")
         at = after
 
 
 def _json(text: bytes) -> Any:
-    """What JSON says; ValueError for all that is none, however deep or long."""
+    """What JSON says; ValueError for anything that is not JSON, however deep or long."""
     try:
         return json.loads(text)
     except RecursionError:

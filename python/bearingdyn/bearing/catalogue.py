@@ -239,7 +239,7 @@ def entry(designation: str | int, *, balls: int | None = None) -> Entry:
 
 
 def _read(designation: str | int) -> Designation:
-    """The designation taken apart; the error of one that is none names the nearest listed."""
+    """The designation taken apart; the error of an unknown one names the nearest listed."""
     try:
         return read_designation(designation)
     except ValueError as error:

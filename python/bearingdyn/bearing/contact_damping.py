@@ -11,9 +11,9 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.film_thickness import film_scales
+from bearingdyn.bearing.film_thickness import moes_groups
 from bearingdyn.bearing.hertz import PointContact, resultant_deflection_coefficient
-from bearingdyn.checks import nonnegative, number, positive, require, vector
+from bearingdyn.checks import nonnegative, number, require, vector
 from bearingdyn.magnitude import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -224,26 +224,15 @@ def wijnant_damping(contact: PointContact, F: float, us: float, eta0: float, alp
 
     Parameters
     ----------
-    contact
-        Point contact with Rx ≤ Ry.
-    F
-        Load, N.
-    us
-        Sum of the surface speeds u1 + u2, m/s.
-    eta0
-        Dynamic viscosity at ambient pressure, Pa s.
-    alpha
-        Pressure–viscosity coefficient, 1/Pa.
+    contact, F, us, eta0, alpha
+        As in `nijenbanning_venner_moes`.
 
     Raises
     ------
     ValueError
         If a value is not positive, Rx > Ry, or L ≥ 58.8, where r vanishes.
     """
-    E, Rx = film_scales(contact)
-    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
-    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
-    L = positive("alpha", alpha) * E * speed**0.25
+    M, L, _ = moes_groups(contact, F, us, eta0, alpha)
     require(
         L < 58.8,
         "alpha",

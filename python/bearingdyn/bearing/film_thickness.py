@@ -69,11 +69,8 @@ def nijenbanning_venner_moes(contact: PointContact, F: float, us: float, eta0: f
     ValueError
         If a value is not positive, or Rx > Ry.
     """
-    E, Rx = film_scales(contact)
-    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
-    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
-    L = positive("alpha", alpha) * E * speed**0.25
-    return dimensionless_film(M, L, Rx / contact.Ry) * Rx * math.sqrt(speed)
+    M, L, speed = moes_groups(contact, F, us, eta0, alpha)
+    return dimensionless_film(M, L, contact.Rx / contact.Ry) * contact.Rx * math.sqrt(speed)
 
 
 def dimensionless_film(M: float, L: float, D: float) -> float:
@@ -124,3 +121,14 @@ def film_scales(contact: PointContact) -> tuple[float, float]:
         f"it must not exceed Ry, {contact.Ry!r} m: the formulas hold for rolling across the minor axis",
     )
     return 2 * contact.modulus, contact.Rx
+
+
+def moes_groups(
+    contact: PointContact, F: float, us: float, eta0: float, alpha: float
+) -> tuple[float, float, float]:
+    """Load M and lubricant L of H. Moes for the film formulas, and the speed η0 us/(E′ Rx); ValueErrors."""
+    E, Rx = film_scales(contact)
+    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
+    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
+    L = positive("alpha", alpha) * E * speed**0.25
+    return M, L, speed

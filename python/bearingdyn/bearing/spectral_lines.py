@@ -70,7 +70,7 @@ def waviness_lines(
     Raises
     ------
     ValueError
-        For an odd order of a ball, or a value that is no positive whole number.
+        For an odd order of a ball, or a value that is not a positive whole number.
     """
     instance("bearing", bearing, BallBearing, "give a BallBearing")
     _whole("multiples", multiples)

@@ -203,7 +203,9 @@ def deviatoric_strains(
 
     Parameters
     ----------
-    mesh, order, components
+    mesh
+        The section in (r, z).
+    order, components
         Of the harmonic that u is of.
     u
         Shapes in its coordinates.

@@ -211,7 +211,9 @@ class PowerLaw(Softening):
     ValueError
         If a value is outside its range or not finite.
 
-    Reference: paper §3.2.
+    References
+    ----------
+    Paper §3.2.
     """
 
     modulus: float
@@ -281,7 +283,9 @@ class FractionalZener(Softening):
     ValueError
         If a value is outside its range or not finite.
 
-    Reference: T. Pritz, J. Sound Vib. 195 (1996) 103.
+    References
+    ----------
+    T. Pritz, J. Sound Vib. 195 (1996) 103.
     """
 
     G0: float

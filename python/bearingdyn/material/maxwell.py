@@ -264,7 +264,9 @@ class Maxwell(Retunable, Softening):
         ValueError
             If a frequency is not finite.
 
-        Reference: paper eqs 17-19.
+        References
+        ----------
+        Paper eqs 17-19.
         """
         omega = np.asarray(omega, dtype=np.float64)
         if not np.all(np.isfinite(omega)):
@@ -352,7 +354,9 @@ class Maxwell(Retunable, Softening):
         ValueError
             If a step is not positive, a rate not finite, or the lengths differ.
 
-        Reference: paper eqs 7-11 with the branch stress as the state (theory, §1).
+        References
+        ----------
+        Paper eqs 7-11 with the branch stress as the state (theory, §1).
         """
         rate = np.asarray(strain_rate, dtype=np.float64)
         if rate.ndim == 0 or rate.shape[0] == 0:

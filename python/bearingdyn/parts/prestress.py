@@ -263,7 +263,7 @@ def squeeze(
     Raises
     ------
     ValueError
-        For names that are none of a face, a face that slips and is pulled, one that is left without contact.
+        For unknown names of faces, a face that slips and is pulled, one that is left without contact.
     NoBalance
         Where no balance is found: it has the share of the squeeze that was reached, and what stopped it.
     """

@@ -315,7 +315,7 @@ class Revolved:
         ------
         ValueError
             Naming the share of the squeeze that was reached, where elements turn inside out, a free surface
-            folds over the edge of a bond, or the law is not stable; for names that are no interface, a body
+            folds over the edge of a bond, or the law is not stable; for names of no interface, a body
             with raceways, or one that is squeezed already.
 
         References

@@ -184,8 +184,9 @@ def master_curve(
         If there is only one isotherm, two isotherms have the same temperature, or T_ref lies where the law
         cannot reach or more than 100 K outside the measured temperatures.
 
-    Reference: paper §3.2; M. L. Williams, R. F. Landel, J. D. Ferry,
-    J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
+    References
+    ----------
+    Paper §3.2; M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
     """
     known = ("wlf", "arrhenius", "joined", "free")
     require(law in known, "law", law, "it must be 'wlf', 'arrhenius', 'joined' or 'free'")
