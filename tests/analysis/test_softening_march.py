@@ -12,7 +12,7 @@ PLACE, STEPS = "mass.centre.z", 100  # a period
 
 
 def driven(tones, material=RUBBER, *, periods=120, kept=20, steps=STEPS, static=0.0, **more):
-    """March under forces (N at Hz) along z; their complex amplitudes in the last `kept` periods of the first."""
+    """March under forces (N at Hz) along z; their amplitudes in the last `kept` periods of the first."""
     app = mass_on_layer(material)
     for size, hz in tones:
         app.load("mass.centre", (0, 0, size, 0, 0, 0), frequency=hz)

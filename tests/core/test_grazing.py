@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from scipy.optimize import brentq
 from bearingdyn import core
 from bearingdyn.bearing import BallBearing, FilmDamping, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.contact_damping import Damping
+from bearingdyn.system import assemble
 from core_models import stepping
 
 NO_TABLE = np.zeros(0)
@@ -185,7 +187,9 @@ def test_on_oil_no_ball_of_the_spalled_bench_grazes(monkeypatch: pytest.MonkeyPa
     supply = bd.OilSupply(Lubricant(Walther.iso_vg(46)), 60.0, 188.2)
     system = assemble(app)
     oiled = tuple(
-        replace(t, bearing=replace(t.bearing, lubrication=supply)) if isinstance(t.bearing, BallBearing) else t
+        replace(t, bearing=replace(t.bearing, lubrication=supply))
+        if isinstance(t.bearing, BallBearing)
+        else t
         for t in system.bearings
     )
     state = bd.equilibrium(replace(system, bearings=oiled))

@@ -378,7 +378,9 @@ FORBIDDEN = frozenset(
 ALLOCATORS = frozenset("malloc calloc realloc aligned_alloc posix_memalign strdup free".split())
 
 # Memory is taken when something is created or set up, and by one bearing asked by itself; never in a step.
-MAY_ALLOCATE = re.compile(r"bd_(\w+_(create|free)|prepare|prepare_softened|start|work_choose|profile_take|bearing_single)$")
+MAY_ALLOCATE = re.compile(
+    r"bd_(\w+_(create|free)|prepare|prepare_softened|start|work_choose|profile_take|bearing_single)$"
+)
 
 WRITABLE = re.compile(r"\.(data|bss|tdata|tbss)(?!\.rel\.ro)|COMMON")
 

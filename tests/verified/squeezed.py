@@ -66,7 +66,7 @@ def squeezed_rings() -> list[Row]:
 
 
 def squeezed_pads() -> list[Row]:
-    """The pad r = 10, t = 5 squeezed without friction, then stuck; its reference bends it between both plates."""
+    """The pad r = 10, t = 5 squeezed without friction, then stuck; the reference bends it between plates."""
     cases = []
     table = {
         0.05: (49.640, 630.9, 58.66, 3306.9, 10219),

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.film_thickness import moes_groups
 from bearingdyn.bearing.hertz import PointContact, resultant_deflection_coefficient
-from bearingdyn.checks import nonnegative, number, require, vector
+from bearingdyn.checks import nonnegative, number, positive, require, vector
 from bearingdyn.magnitude import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array

@@ -23,7 +23,14 @@ def test_table_gives_its_own_nodes_back() -> None:
 # of D between nodes of the table, loads from the turn up, M and L between nodes
 @pytest.mark.parametrize(
     ("M", "L", "D"),
-    [(548, 7.5, 0.253), (119, 7.6, 0.02), (474, 6.1, 0.235), (62, 12.4, 0.13), (300, 17.3, 0.04), (20, 4.1, 0.6)],
+    [
+        (548, 7.5, 0.253),
+        (119, 7.6, 0.02),
+        (474, 6.1, 0.235),
+        (62, 12.4, 0.13),
+        (300, 17.3, 0.04),
+        (20, 4.1, 0.6),
+    ],
 )
 def test_table_is_within_two_per_cent_of_new_solutions(M: float, L: float, D: float) -> None:
     solved, found = ehl.steady(M, L, D, accuracy=0.02), ehl.lookup(M, L, D).figures
