@@ -6,7 +6,7 @@ from tests.analysis.test_softening import LAW, RUBBER, mass_on_layer
 
 import bearingdyn as bd
 from bearingdyn import core
-from bearingdyn.material.amplitude.rest import Rest
+from bearingdyn.material.amplitude import Rest
 
 PLACE, STEPS = "mass.centre.z", 100  # a period
 

@@ -27,6 +27,15 @@ APP = held()
 STATE = bd.equilibrium(APP)
 MODES = bd.modes(STATE)
 RUN = bd.transient(STATE, speed=10.0, dt=1e-5, steps=64, record=["r.centre.x", "r.centre.y"])
+BORNE = bd.Application()
+BORNE.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+BORNE.add("g", bd.RigidBody(4.0, (0.02, 0.02, 0.004)))
+BORNE.ground("g.centre", stiffness=[1e6] * 6)
+BORNE.bearing("b", BALL, inner="r.centre", outer="g.centre")
+BORNE.load("r.centre", (0, 0, 200.0, 0, 0, 0))
+SHEET = bd.bearing_sheet(bd.equilibrium(BORNE))
+TABLE = bd.stiffness_table(BALL, [[0, 0, 200.0, 0, 0, 0]])
+OIL = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
 RESPONSE = bd.frequency_response(STATE, [10.0], ["r.centre.y"], ["r.centre.y"])
 WRONG = [
     Pair(BALL, "DB", distance=0.015), 5, "6205", None, [], {}, RUN, RESPONSE, STATE, MODES, APP, np.zeros(3),
@@ -38,7 +47,8 @@ GOOD = {
     "outputs": ["r.centre.y"], "dt": 1e-5, "steps": 8,
     "record": ["r.centre.y"], "speeds": [0.0, 10.0], "channel": "r.centre.y", "bearing": "b", "mode": 0,
     "x": "r.centre.x", "y": "r.centre.y", "length": 2e-4, "band": (1e3, 2e4), "highest": 5.0, "orders": [1.0],
-    "surfaces": ["r.all"], "cases": [],
+    "surfaces": ["r.all"], "cases": [], "table": TABLE, "path": "table.csv", "oil": OIL,
+    "sheet": SHEET, "loads": [[0, 0, 200.0, 0, 0, 0]],
 }  # fmt: skip
 ANALYSES = [name for name in analysis.__all__ if inspect.isfunction(getattr(analysis, name))]
 

@@ -65,9 +65,9 @@ def test_starvation_and_roughness():
 
 
 def test_film_grows_with_speed_and_cold():
-    films = [lubricate(BRG, OIL, T, s, AXIAL).film for T, s in ((70, 100.0), (70, 300.0), (40, 300.0))]
+    films = [lubricate(BRG, OIL, T, s, AXIAL).film for T, s in ((70, 150.0), (70, 300.0), (40, 300.0))]
     assert films[0] < films[1] < films[2]
-    assert lubricate(BRG, OIL, 70, -100.0, AXIAL).film == films[0]
+    assert lubricate(BRG, OIL, 70, -150.0, AXIAL).film == films[0]
 
 
 def test_damping_is_that_of_both_contacts_in_series_and_vanishes_with_the_load():
@@ -88,7 +88,7 @@ def test_damping_is_that_of_both_contacts_in_series_and_vanishes_with_the_load()
     law, kappa = wet.damping, wet.kappa
     # monotone cubics between nodes of w apart by 1/64 of what the table has: .5 %
     assert law.at((found.Q / kappa) ** (2 / 3)) == pytest.approx(found.damping, rel=5e-3)
-    for Q in (0.3 * found.Q, 3 * found.Q):
+    for Q in (0.3 * found.Q, 1.2 * found.Q):
         pair = [ehl.look_up(c, OIL, Q, found.us, 70.0) for c in (BRG.inner_contact, BRG.outer_contact)]
         c = (1 / sum(1 / (p.k0 + 1j * omega * p.c0) for p in pair)).imag / omega
         assert law.at((Q / kappa) ** (2 / 3)) == pytest.approx(c, rel=5e-3)

@@ -300,6 +300,7 @@ def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
         Of the page.
     """
     names = _names(sheet)
+    instance("title", title, str, "give a text")
 
     def cells(tag: str, texts: Sequence[str]) -> str:
         return "".join(f"<{tag}>{html.escape(t)}</{tag}>" for t in texts)

@@ -136,6 +136,7 @@ def estimated_network(app: Application, ambient: float = 20.0) -> ThermalNetwork
     ValueError
         For a bearing whose bore and outside diameter are not known.
     """
+    instance("app", app, Application, "it must be an Application (bd.Application())")
     network = ThermalNetwork(ambient)
     for name, joint in app.plan.bearings.items():
         d, D, B = _measures(name, joint.bearing)

@@ -139,6 +139,7 @@ def export_stiffness(
     """
     one_of("format", format, _FORMATS)
     _check(table)
+    instance("path", path, (str, os.PathLike), "give the name of a file")
     speed, load = (
         whole(f"case[{k}]", index, 0, size - 1)
         for k, (index, size) in enumerate(zip(case, table["stiffness"].shape[:2], strict=True))

@@ -154,9 +154,27 @@ def lubricated(
     method: Method = "table",
     roughness: float = 0.0,
 ) -> Lubrication:
-    """The lubrication of a bearing whose loaded balls carry Q, N, on average at the contact angle, rad.
+    """The lubrication of a bearing whose loaded balls carry Q on average.
 
-    `roughness` is the composite rms of race and ball, m; the others as in `lubricate`.
+    Parameters
+    ----------
+    bearing
+        Its film and damping are not used.
+    supply
+        Oil, temperature, speed of the shaft and starvation.
+    Q
+        Mean load of the loaded balls, N.
+    angle
+        Contact angle, rad.
+    law, method
+        As in `lubricate`.
+    roughness
+        Composite rms roughness of race and ball, m.
+
+    Raises
+    ------
+    ValueError
+        As `lubricate`.
     """
     _check_rolling(bearing, supply)
     turns = bearing.ring_speeds

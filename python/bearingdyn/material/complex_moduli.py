@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_density, check_waves, plausible
-from bearingdyn.material.amplitude.law import Payne, Softening
+from bearingdyn.material.amplitude import Payne, Softening
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.low_end import LowEnd

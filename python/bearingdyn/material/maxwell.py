@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, number, positive, real, require, vector
 from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
-from bearingdyn.material.amplitude.law import Payne, Softening
-from bearingdyn.material.amplitude.rest import Rest, rest_of
+from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd

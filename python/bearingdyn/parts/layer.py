@@ -288,7 +288,7 @@ class Layer:
         >>> layer = bd.Layer(r_inner=0.020, r_outer=0.022, width=0.017, material=rubber)
         >>> g = layer.strain([10e-6, 0, 0, 0, 0, 0])  # 10 µm across 2 mm of rubber, radially
         >>> f"{100 * g.rms:.2f} % rms, {100 * g.logarithmic:.2f} % where the energy is"
-        '0.95 % rms, 1.45 % where the energy is'
+        '2.87 % rms, 4.36 % where the energy is'
         """
         q = np.asarray(relative)
         require(

@@ -10,9 +10,8 @@ import numpy as np
 import scipy
 
 from bearingdyn.checks import positive
-from bearingdyn.material.amplitude.law import Payne
-from bearingdyn.material.amplitude.report import PayneFit
-from bearingdyn.material.amplitude.sweep import StrainSweep, in_shear, read_strain_sweep
+from bearingdyn.material.amplitude import Payne, PayneFit
+from bearingdyn.material.reading import StrainSweep, in_shear, read_strain_sweep
 from bearingdyn.types import Array, Complex
 
 _RISE = 0.01  # of G′ from a smaller strain to a larger one: noise of an instrument, and no more
