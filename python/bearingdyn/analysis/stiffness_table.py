@@ -140,6 +140,9 @@ def export_stiffness(
     one_of("format", format, _FORMATS)
     _check(table)
     instance("path", path, (str, os.PathLike), "give the name of a file")
+    for field, pair in (("case", case), ("nodes", nodes)):
+        good = isinstance(pair, Sequence) and len(pair) == 2
+        require(good, field, pair, "it must be two whole numbers")
     speed, load = (
         whole(f"case[{k}]", index, 0, size - 1)
         for k, (index, size) in enumerate(zip(case, table["stiffness"].shape[:2], strict=True))
