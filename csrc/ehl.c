@@ -63,8 +63,8 @@ void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *r
             lanes over = c1 - c0, third = r0 + r1 - 2.0 * over, second = over - r0 - third;
             c = c0 + u * (r0 + u * (second + u * third));
             slope = r0 + u * (2.0 * second + u * (3.0 * third));
-            slope = LANES_WHERE(
-                touching, slope * ((0.5 * BD_FILM_CELLS * half) * part * part * soft) / root);
+            slope = LANES_WHERE(touching,
+                                slope * ((0.5 * BD_FILM_CELLS * half) * part * part * soft) / root);
             break;
         }
         case BD_DAMPING_TABLE:

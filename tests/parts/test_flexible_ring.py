@@ -157,7 +157,7 @@ def test_the_reduced_ring_in_rubber_answers_as_the_whole_one(frequency: float) -
 def test_rubber_around_the_ring_keeps_its_stiffness_at_every_modulus(G: float) -> None:
     rubber = bd.Maxwell(G, [], [], K=2e9, density=1200.0)
     exact = FlexibleBearing(B6305, replace(CUSHIONED, layer=replace(LAYER, material=rubber)))
-    element = CUSHIONED.superelement()
+    element = replace(CUSHIONED, layer=replace(LAYER, moduli=(2e6, 7e6))).superelement()
     K = element.K + 2 * G * element.viscoelastic[0].H
     inner = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
     flexible = np.linalg.inv(K[np.ix_(inner, inner)])

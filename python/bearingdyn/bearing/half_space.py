@@ -3,9 +3,8 @@
 A load that varies as cos ky along a half-space, and across it by a profile q(x) of unit integral, sinks it,
 on the average weighted by q, by C(k) = (1 − ν²)/(πE) ∫ |q̂(κ)|²/√(κ² + k²) dκ for a unit load per length (the
 surface flexibility 2(1 − ν²)/E|k| of Boussinesq in wave numbers). A ball's load on a race of radius R is the
-sum of
-all k. Order n has those of k R in n − ½ … n + ½: their sum is the half-space, and at high n each is that of
-the race.
+sum of all k. Order n has those of k R in n − ½ … n + ½: their sum is the half-space, and at high n each is
+that of the race.
 """
 
 from __future__ import annotations
@@ -20,8 +19,18 @@ _POINTS = 4000
 
 
 def footprint_profile(x: Array) -> Array:
-    """Share of a ball's load at x, in half-lengths of the contact ellipse: Hertz's pressure summed along the
-    rolling direction, ¾(1 − x²), of unit integral over −1…1."""
+    """Share of a ball's load across the rolling direction: Hertz's pressure summed along it, ¾(1 − x²).
+
+    Parameters
+    ----------
+    x
+        Place from the middle of the contact ellipse, in half-lengths of it.
+
+    Returns
+    -------
+    Array
+        Of unit integral over −1…1.
+    """
     return np.asarray(0.75 * np.maximum(1.0 - x * x, 0.0))
 
 
@@ -37,12 +46,19 @@ def half_space_orders(count: int, half_length: float, radius: float, ring: Elast
 
     Parameters
     ----------
+    count
+        Number of orders.
     half_length
         Semi-axis of the contact ellipse across the rolling direction, m.
     radius
         Of the race, m.
     ring
         Material.
+
+    Returns
+    -------
+    Array
+        (count,), m/N.
 
     References
     ----------

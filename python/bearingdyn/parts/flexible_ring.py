@@ -221,7 +221,7 @@ class FlexibleRing:
         >>> import bearingdyn as bd
         >>> ring = bd.FlexibleRing.of(bd.catalogue.bearing("6305", clearance=10e-6), outside="flexible")
         >>> f"{1e3 * ring.r_inner:.2f} mm at the shoulders, {1e3 * ring.depth:.2f} mm deep"
-        '25.66 mm at the shoulders, 1.84 mm deep'
+        '25.54 mm at the shoulders, 1.65 mm deep'
         """
         instance("bearing", bearing, BallBearing, "it must be a bd.BallBearing(…)")
         if bearing.boundary is None:
@@ -353,6 +353,12 @@ class FlexibleRing:
         height = self.r_outer - self.r_inner
         r_cuts = [self.r_inner + share * height for share in UNDER]
         lines, edges = self.footprint.lines(), near[[0, -1]]
+        if self.groove_radius is not None:  # the flanks of the groove, whose arcs are drawn by parabolas
+            flanks = []
+            for end, line in zip(edges, (lines[0], lines[-1]), strict=True):
+                count = max(1, math.ceil(4.0 * abs(end - line) / half))
+                flanks.append(np.linspace(end, line, count + 1)[:-1])
+            edges = np.concatenate(flanks)
         if self.layer is not None:  # cuts would be graded towards, as the rubber's edges are
             return revolution_mesh(rectangles, self.refinement, r_cuts, z_near=[*edges, *lines])
         return revolution_mesh(rectangles, self.refinement, r_cuts, lines, edges)

@@ -1,9 +1,8 @@
 """Shapes of one order of a ring, chosen by what its raceways and interfaces feel up to a frequency.
 
 From static shapes at several moduli and the answers to their inertia, and the motion at a few frequencies (a
-rational
-Krylov space), a rich basis is made. Of it the fewest shapes are kept whose receptances at the raceways,
-transmissions and dynamic stiffness at the interfaces are those of the rich one over 0…f_max.
+rational Krylov space), a rich basis is made. Of it the fewest shapes are kept whose receptances at the
+raceways, transmissions and dynamic stiffness at the interfaces are those of the rich one over 0…f_max.
 """
 
 from __future__ import annotations
