@@ -57,6 +57,7 @@ PUBLIC = {
     },
     "part": {
         "parts": (
+            "BoreShape",
             "Cylinder",
             "Disc",
             "EndFace",

@@ -100,6 +100,7 @@ from bearingdyn.material import (
     sample_dma_path,
 )
 from bearingdyn.parts import (
+    BoreShape,
     Cylinder,
     Disc,
     EndFace,
@@ -144,6 +145,7 @@ __all__ = [
     "STEEL",
     "Application",
     "BallBearing",
+    "BoreShape",
     "ConstantDamping",
     "Cylinder",
     "DMAData",

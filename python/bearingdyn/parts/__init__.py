@@ -1,6 +1,7 @@
 """Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
 
 from bearingdyn.fem import Section, quadrilaterals
+from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.damping_sample import damping_sample
 from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.flexible_bearing import FlexibleBearing
@@ -27,6 +28,7 @@ from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.strain import Strain
 
 __all__ = [
+    "BoreShape",
     "Cylinder",
     "Disc",
     "EndFace",

@@ -11,12 +11,13 @@ from typing import Any, Literal
 import numpy as np
 import scipy
 
-from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing import BallBearing, Waviness
 from bearingdyn.checks import instance, one_of, positive, require, whole
 from bearingdyn.cms import Superelement, Viscoelastic
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region
@@ -82,10 +83,8 @@ class FlexibleRing:
         taken out of it; without it a ring serves by itself, and carries no balls.
     load
         Load of a ball, N, whose contact ellipse is the footprint on the race; None: of the heaviest ball
-        under a
-        quarter of the bearing's static rating. Eight times the load, twice the ellipse, change the give by a
-        few per cent.
-
+        under a quarter of the bearing's static rating. Eight times the load, twice the ellipse, change the
+        give by a few per cent.
     outputs
         name -> point (r, z, φ), m, m, rad, whose motion (x, y, z) can be recorded, as "ring.name.x".
 
@@ -292,6 +291,47 @@ class FlexibleRing:
             radius=self.footprint.point[0],
             depth=self.wall,
             material=self.material,
+        )
+
+    def race_waves(self, bore: BoreShape) -> tuple[Waviness, ...]:
+        """Waves of the race of this ring, pressed into a bore that is not round, as the bearing takes them.
+
+        The outside follows the bore all round, without friction along it; tilts of the section and the fit
+        itself, which is the clearance's affair, are left out.
+
+        Parameters
+        ----------
+        bore
+            The shape and the interference that keeps the ring in touch with it.
+
+        Returns
+        -------
+        tuple of Waviness
+            For BallBearing(waviness=…).
+
+        Raises
+        ------
+        ValueError
+            For a ring in rubber, or an interference at which the ring parts from the bore.
+        """
+        instance("bore", bore, BoreShape, "it must be a bd.BoreShape(…)")
+        if self.layer is not None:
+            raise ValueError(
+                "layer is given; a bore's shape is known to the ring only without rubber between"
+            )
+        free = self.body if "outside" in self.body.grooves else replace(self, outside="flexible").body
+        C = {n: free.groove_compliances(n) for n in (0, *bore.waves)}
+        least, psi = bore.parted({n: float(c[2, 2]) for n, c in C.items()})
+        if not bore.interference >= least:
+            raise ValueError(
+                f"bore.interference is {bore.interference:g} m; the ring parts from the bore at "
+                f"{math.degrees(psi):.3g} degrees: make it at least {least:.3g} m on the radius"
+            )
+        return tuple(
+            Waviness("outer", n, math.hypot(a, b) * float(c[0, 2] / c[2, 2]), phase=math.atan2(-b, a))
+            for n, c in C.items()
+            if n
+            for a, b in [bore.waves[n]]
         )
 
     @property

@@ -429,18 +429,30 @@ class Revolved:
         ValueError
             In an order in which nothing holds the body.
         """
+        at = 2 * list(self.grooves).index(groove)
+        return float(direction @ self.groove_compliances(n)[at : at + 2, at : at + 2] @ direction)
+
+    def groove_compliances(self, n: int) -> Array:
+        """The same of all grooves together: (2 grooves, 2 grooves), m/N, radial and axial of each in turn.
+
+        Of order 0 of a body that nothing holds only the radial part is there, its axial one zero.
+
+        Raises
+        ------
+        ValueError
+            In an order in which nothing holds the body.
+        """
         h = assemble_harmonic(self.mesh, n, AXIAL if n == 0 else ALL_COMPONENTS)
         held = self._boundaries.held(h)[0]
+        rows = self._boundaries.averages(h, beyond=True)
         if not held.size and n == 1:
             raise ValueError("order 1 of a body that nothing holds has no static compliance")
         if not held.size and n == 0:
             # it breathes where it is; along the axis it would fly away
-            direction, held = direction * [1.0, 0.0], np.array([1], dtype=np.intp)
+            rows[1::2], held = 0.0, np.array([1], dtype=np.intp)
         inner = np.setdiff1d(h.free, held)
         K = h.stiffness(self._bulk, shape_moduli(self.regions, self.moduli)[0])[inner][:, inner]
-        at = 2 * list(self.grooves).index(groove)
-        row = direction @ self._boundaries.averages(h, beyond=True)[at : at + 2, inner]
-        return float(row @ factorise(K).solve(row))
+        return np.asarray(rows[:, inner] @ factorise(K).solve(np.asarray(rows[:, inner].T, order="F")))
 
     def carried_compliance(self, n: int, groove: str, direction: Array) -> float:
         """The same of an order that is carried, from its shapes, which have it exactly: m/N."""
