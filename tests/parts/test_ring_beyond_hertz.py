@@ -217,6 +217,44 @@ def test_lines_of_the_outside_on_a_bed(speed: float, steps: int, wanted: tuple[f
     np.testing.assert_allclose(lines(speed, steps)[: len(wanted)], wanted, rtol=0.01)
 
 
+def test_the_bed_carries_the_load_that_the_race_takes() -> None:
+    stiffness, load = 1e10, (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)
+    brg = FlexibleBearing(B6305, replace(RING, outside=RingBed(stiffness), f_max=0.0))
+    q = brg.displacement(load, 0.2)
+    psi = np.linspace(0.0, 2 * math.pi, 400, endpoint=False)
+    outside, race = brg.outside(q, psi, 0.2), brg.race(q, psi, 0.2)
+    # pressure by depth, over the ring's outside: the trapezoidal rule is exact for its orders
+    area = SIZE[1] * SIZE[2] * 2 * math.pi / psi.size
+    pressed = stiffness * area * (outside[:, 0] @ np.stack([np.cos(psi), np.sin(psi)], axis=-1))
+    np.testing.assert_allclose(pressed, load[:2], atol=1e-6 * 3000)
+    # between them is the dent of 1.5 kN by orders to 8, some 2 µm of the 200
+    np.testing.assert_allclose(race[:, 0], outside[:, 0], rtol=0, atol=0.02 * np.abs(race).max())
+    with pytest.raises(ValueError, match="outside is 'rigid'"):
+        FlexibleBearing(B6305, RING).outside(q, psi)
+    with pytest.raises(ValueError, match="azimuth"):
+        brg.race(q, [math.nan])
+
+
+def test_the_shape_of_a_ring_is_drawn() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    load, below = (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0), -0.5 * math.pi
+    brg = FlexibleBearing(B6305, replace(RING, outside=RingBed(1e11), f_max=0.0))
+    ax = bd.plot.ring_shape(brg, load, below)
+    race = ax.lines[1].get_xydata()
+    motion = 1e-3 * np.hypot(*race.T) - SIZE[0]
+    q = brg.displacement(load, below)
+    wanted = brg.race(q, np.linspace(0, 2 * math.pi, 721), below)[:, 0]
+    # drawn in one proportion to what it is
+    assert np.ptp(motion / np.abs(motion).max() - wanted / np.abs(wanted).max()) < 1e-9
+    assert f"{brg.ball_loads(q, below).max():.0f} N" in ax.lines[2].get_label()
+    with pytest.raises(ValueError, match="bearing"):
+        bd.plot.ring_shape(B6305, load)
+    import matplotlib.pyplot as plt
+
+    plt.close(ax.figure)
+
+
 def test_bad_input_names_what_would_do() -> None:
     for change, name in (
         ({"order": 6}, "order is 6; the bearing has 7 balls.*give 8"),

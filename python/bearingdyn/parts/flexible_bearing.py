@@ -12,10 +12,11 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, BearingKernel, minimum, runs_off
-from bearingdyn.checks import vector
+from bearingdyn.checks import numbers, vector
 from bearingdyn.cms import Superelement
 from bearingdyn.material import warn_beyond
 from bearingdyn.parts.flexible_ring import FlexibleRing
+from bearingdyn.parts.ring_support import waves
 from bearingdyn.types import Array
 
 
@@ -115,6 +116,36 @@ class FlexibleBearing:
     def raceway(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Displacement (n,) of the raceway, m, coefficients as in RacewaySeries.up_to(ring.order)."""
         return self._settle(q, angle).z
+
+    def race(self, q: ArrayLike, azimuth: ArrayLike, angle: float = 0.0) -> Array:
+        """Displacement (p, 2) of the race at azimuths (p,), rad: radial and axial, m, by its orders."""
+        return self._around("raceway", self._settle(q, angle).g, azimuth)
+
+    def outside(self, q: ArrayLike, azimuth: ArrayLike, angle: float = 0.0) -> Array:
+        """The same of the ring's outside, where it stands on beds or points.
+
+        A bed of stiffness k presses the ring there by k times the radial motion, Pa.
+
+        Raises
+        ------
+        ValueError
+            For a ring whose outside is kept round, or in rubber.
+        """
+        if "outside" not in self._element.raceways:
+            raise ValueError(
+                f"ring.outside is {self.ring.outside!r}; its outside does not move by orders: "
+                f"give the ring a RingBed or RingPoints"
+            )
+        return self._around("outside", self._settle(q, angle).g, azimuth)
+
+    def _around(self, name: str, g: Array, azimuth: ArrayLike) -> Array:
+        element, psi = self._element, numbers("azimuth", azimuth, "it must hold angles in rad")
+        rest = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
+        K = element.stiffness().real[np.ix_(rest, rest)]
+        x = np.linalg.solve(K, element.raceways["raceway"].rows[:, rest].T @ g)
+        found = element.raceways[name]
+        z = found.rows[:, rest] @ x
+        return np.stack([waves(found.series, psi, axial) @ z for axial in (0, 1)], axis=-1)
 
     def force(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Load (6,), N and N m, that holds the inner ring at q: +∇V, with the ring settled."""

@@ -22,7 +22,7 @@ from bearingdyn.types import Array, Complex, Index
 
 PROMISE = 1e-2  # f_max: receptances are right to this up to there
 WANTED = 4e-3  # what the choice aims at against the rich basis, which is itself not the whole
-STILL = 4e-4  # the same at rest, at any modulus
+STILL = 2e-4  # the same at rest, at any modulus
 LOSS = 0.02  # loss factor at which a part without rubber is judged: no error is told at an undamped resonance
 MOMENTS = 2  # answers to inertia, beyond the static shapes
 PATH = 24  # frequencies at which the small models are compared
@@ -304,9 +304,9 @@ class _Small:
             basis = more
 
     def _misfit(self, got: Complex, wanted: Complex, omega: float) -> float:
-        """Of what is felt; where one raceway may be held by springs, also of the stiffness between them."""
+        """Of what is felt; at rest, and where one raceway may be held by springs, also of the stiffness."""
         error = misfit(got, wanted, own_scale(self.elastic(wanted, omega), self.usual))
-        if self.several:
+        if self.several or omega == self.points[0][1]:
             stiff = np.linalg.inv(wanted)
             own = np.sqrt(np.outer(np.abs(np.diag(stiff)), np.abs(np.diag(stiff))))
             error = max(error, misfit(np.linalg.inv(got), stiff, own))
