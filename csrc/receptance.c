@@ -70,6 +70,8 @@ BD_INLINE void entry(const bd_receptance *block, const pencil *at, const double 
     }
 
 DEFINE_TILE(tile_whole, TILE)
+DEFINE_TILE(tile_three, 3)
+DEFINE_TILE(tile_two, 2)
 DEFINE_TILE(tile_one, 1)
 
 /* row[from ... to) -= sum over the i rows above it */
@@ -79,8 +81,14 @@ BD_INLINE void eliminate(int i, int from, int to, const double *left, const doub
     int j = from;
     for (; j + TILE <= to; j += TILE)
         tile_whole(i, left, stride, right + (size_t)j * PAIR, stride, row + (size_t)j * PAIR);
-    for (; j < to; j++)
-        tile_one(i, left, stride, right + (size_t)j * PAIR, stride, row + (size_t)j * PAIR);
+    right += (size_t)j * PAIR;
+    row += (size_t)j * PAIR;
+    if (to - j == 3)
+        tile_three(i, left, stride, right, stride, row);
+    else if (to - j == 2)
+        tile_two(i, left, stride, right, stride, row);
+    else if (to - j == 1)
+        tile_one(i, left, stride, right, stride, row);
 }
 
 void BD_NAMED(bd_receptance_solve)(const bd_receptance *block, const double *omega,

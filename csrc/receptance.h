@@ -17,7 +17,6 @@ typedef struct bd_receptance {
     const double *beside; /* (n x n_beside) */
 } bd_receptance;
 
-
 #ifdef BD_ISA
 /* Given:    omega (lanes), moduli (n_layers x 2 x lanes: storage, loss) of as many frequencies as a register has doubles
  * Returned: response (n_left x (n_beside - first_right) x 2 x lanes: real, imaginary); growth (lanes): sum of squares of what was taken
