@@ -2,8 +2,11 @@
  *
  * D(omega) = K + speed N - omega^2 M + i omega (C + speed G) + sum_l 2 G*_l(omega) L_l L_l^T is block-diagonal; the
  * linearised bearings join the blocks through a few coefficients y = B x alone:
- *     x = X_F - X_B g,   (I + Z B X_B) g = Z B X_F,   X_F = D^-1 F,  X_B = D^-1 B^T,  Z = K_b + i omega C_b.
- * A 3-block motor of 80 coordinates is solved three times faster so than as one. */
+ *     (D + B^T Z B) x = F,   Z = K_b + i omega C_b.
+ * Each block b is held by springs S at the coefficients that it sees, D' = D + B_b^T S B_b, and joined to the others
+ * by what they lack, h_b = Z sum_c y_c - S y_b, with y_b = B_b x:
+ *     x = X_F - sum_b X_b h_b,   (I + P Y) h = P Y_F,   X_F = D'^-1 F,  X_b = D'^-1 B_b^T,
+ * Y and Y_F the motions y of all joints under unit forces at them and under F, P v = Z sum_c v_c - S v_b. */
 #include "harmonic.h"
 
 #include <math.h>
@@ -11,9 +14,11 @@
 
 #include "kernels.h"
 
-/* D of one block into the top left of a column-major matrix of `stride` rows, at (place, place). */
+/* D of one block, with `held` (n x n or NULL), into the top left of a column-major matrix of `stride` rows, at
+ * (place, place). */
 static void form(const bd_model *model, const bd_harmonic_data *data, const bd_harmonic_work *work,
-                 const bd_block *block, int index, size_t stride, size_t place, complex_t *D)
+                 const bd_block *block, const double *held, int index, size_t stride, size_t place,
+                 complex_t *D)
 {
     const size_t n = (size_t)block->n;
     const double omega = data->omega[index];
@@ -23,6 +28,8 @@ static void form(const bd_model *model, const bd_harmonic_data *data, const bd_h
         for (size_t i = 0; i < n; i++) {
             const size_t ij = i * n + j;
             double re = of.K[ij] + data->speed * of.N[ij] - omega * omega * of.M[ij];
+            if (held)
+                re += held[ij];
             double im = omega * (of.C[ij] + data->speed * of.G[ij]);
             D[(place + j) * stride + place + i] = complex_of(re, im);
         }
@@ -45,7 +52,7 @@ static int solve_whole(const bd_model *model, const bd_harmonic_data *data, cons
     const size_t n = (size_t)model->n, m = (size_t)model->n_coefs;
     memset(work->D, 0, n * n * sizeof *work->D);
     for (int b = 0; b < model->n_blocks; b++)
-        form(model, data, work, &model->blocks[b], index, n, (size_t)model->blocks[b].first,
+        form(model, data, work, &model->blocks[b], NULL, index, n, (size_t)model->blocks[b].first,
              work->D);
     for (size_t k = 0; k < m; k++)
         for (size_t l = 0; l < m; l++) {
@@ -63,7 +70,15 @@ static int solve_whole(const bd_model *model, const bd_harmonic_data *data, cons
                             (double *)work->X);
 }
 
-/* X_F and X_B of one block, added to B X and to rows . X. */
+/* Where the answer to a force or, behind the forces, to one at a coefficient of a block stands. */
+static size_t column_of(const bd_model *model, const bd_harmonic_data *data,
+                        const bd_harmonic_work *work, int b, size_t which)
+{
+    const size_t n_in = (size_t)data->n_in, m = (size_t)model->n_coefs;
+    return which < n_in ? which : n_in + (size_t)work->joint[(size_t)b * m + which - n_in];
+}
+
+/* X_F and X_b of one block, added to the motions of joints and rows. */
 static int solve_block(const bd_model *model, const bd_harmonic_data *data, const bd_lapack *lapack,
                        bd_harmonic_work *work, int b, int index, size_t lane)
 {
@@ -73,9 +88,10 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
                  n_out = (size_t)data->n_out;
     const int *touching = work->touching + (size_t)b * (n_in + m);
     const size_t columns = (size_t)work->n_touching[b];
-    complex_t *BX = work->BX + lane * m * (n_in + m), *RX = work->RX + lane * n_out * (n_in + m);
+    const size_t joints = (size_t)work->n_joints, all = n_in + joints;
+    complex_t *BX = work->BX + lane * all * joints, *RX = work->RX + lane * all * n_out;
 
-    form(model, data, work, block, index, n, 0, work->D);
+    form(model, data, work, block, work->held + block->matrix, index, n, 0, work->D);
     for (size_t c = 0; c < columns; c++) {
         const size_t which = (size_t)touching[c];
         for (size_t i = 0; i < n; i++)
@@ -86,13 +102,17 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
                          (double *)work->X))
         return 1;
     for (size_t c = 0; c < columns; c++) {
-        const size_t which = (size_t)touching[c];
+        const size_t which = column_of(model, data, work, b, (size_t)touching[c]);
         const complex_t *X = work->X + c * n;
-        for (size_t i = 0; i < n; i++) {
-            const double *B = work->B + (first + i) * m;
-            const double re = creal(X[i]), im = cimag(X[i]);
-            for (size_t k = 0; k < m; k++)
-                BX[which * m + k] += complex_of(B[k] * re, B[k] * im);
+        for (size_t k = 0; k < m; k++) {
+            const int joint = work->joint[(size_t)b * m + k];
+            double re = 0.0, im = 0.0;
+            for (size_t i = 0; joint >= 0 && i < n; i++) {
+                re += work->B[(first + i) * m + k] * creal(X[i]);
+                im += work->B[(first + i) * m + k] * cimag(X[i]);
+            }
+            if (joint >= 0)
+                BX[which * joints + (size_t)joint] += complex_of(re, im);
         }
         for (size_t o = 0; o < n_out; o++) {
             if (!work->read[(size_t)b * n_out + o])
@@ -109,15 +129,15 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
     return 0;
 }
 
-/* Joining the blocks cancels as many digits as I + Z B X_B is large: near a resonance of a block by itself, and
- * at low frequency where a block floats. Beyond this all is solved as one. */
-static const double largest_joint = 1e6;
+/* Joining the blocks cancels as many digits as I + P Y is large: near a resonance of a block by itself, and at low
+ * frequency where one floats although its bearings' springs hold it. Beyond this all is solved as one. */
+static const double largest_joint = 1e4;
 
 /* Beyond this the fixed order of pivots has cost a digit or two, and a block is solved with rows exchanged: squared,
  * as growth is counted. */
 static const double largest_growth = 1e4;
 
-/* X_F and X_B of one block at all frequencies of a batch. Those that failed leave their lane of `whole` set. */
+/* X_F and X_b of one block at all frequencies of a batch. Those that failed leave their lane of `whole` set. */
 static void solve_lanes(const bd_model *model, const bd_harmonic_data *data,
                         const bd_lapack *lapack, bd_harmonic_work *work, int b, int first,
                         int count, bool *whole)
@@ -126,6 +146,7 @@ static void solve_lanes(const bd_model *model, const bd_harmonic_data *data,
     const bd_receptance *reduced = &work->reduced[b];
     const size_t m = (size_t)model->n_coefs, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out,
                  width = (size_t)work->kernels->width;
+    const size_t joints = (size_t)work->n_joints, all = n_in + joints;
     const int *beside = work->beside + (size_t)b * (n_out + m + n_in);
 
     if (reduced->n > 0) {
@@ -150,18 +171,18 @@ static void solve_lanes(const bd_model *model, const bd_harmonic_data *data,
             whole[lane] = solve_block(model, data, lapack, work, b, first + (int)lane, lane) != 0;
             continue;
         }
-        complex_t *BX = work->BX + lane * m * (n_in + m),
-                  *RX = work->RX + lane * n_out * (n_in + m);
+        complex_t *BX = work->BX + lane * all * joints, *RX = work->RX + lane * all * n_out;
         const double *response = work->response + lane;
         for (int p = 0; p < reduced->n_left; p++)
             for (int q = reduced->first_right; q < reduced->n_beside; q++, response += 2 * width) {
-                const size_t row = (size_t)beside[p], column = (size_t)beside[q] - n_out;
-                const size_t which = column < m ? n_in + column : column - m;
+                const size_t row = (size_t)beside[p], from = (size_t)beside[q] - n_out;
+                const size_t which =
+                    column_of(model, data, work, b, from < m ? n_in + from : from - m);
                 const complex_t value = complex_of(response[0], response[width]);
                 if (row < n_out)
                     RX[which * n_out + row] += value;
                 else
-                    BX[which * m + row - n_out] += value;
+                    BX[which * joints + (size_t)work->joint[(size_t)b * m + row - n_out]] += value;
             }
     }
 }
@@ -172,32 +193,41 @@ static int join_blocks(const bd_model *model, const bd_harmonic_data *data, cons
                        bd_harmonic_work *work, size_t lane)
 {
     const size_t m = (size_t)model->n_coefs, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out;
-    const complex_t *BX = work->BX + lane * m * (n_in + m);
-    complex_t *RX = work->RX + lane * n_out * (n_in + m);
+    const size_t joints = (size_t)work->n_joints, all = n_in + joints;
+    const complex_t *BX = work->BX + lane * all * joints;
+    complex_t *RX = work->RX + lane * all * n_out;
 
-    /* (I + Z B X_B) g = Z B X_F */
+    /* P Y_F and I + P Y, column by column */
     double largest = 0.0;
-    for (size_t c = 0; c < n_in + m; c++)
-        for (size_t k = 0; k < m; k++) {
-            complex_t sum = c == n_in + k ? 1.0 : 0.0;
-            for (size_t l = 0; l < m; l++)
-                sum += product(work->Z[k * m + l], BX[c * m + l]);
-            if (c < n_in) {
-                work->g[c * m + k] = sum;
-            } else {
-                work->A[(c - n_in) * m + k] = sum;
-                largest = fmax(largest, fabs(creal(sum)) + fabs(cimag(sum)));
-            }
+    for (size_t c = 0; c < all; c++) {
+        const complex_t *y = BX + c * joints;
+        complex_t *to = c < n_in ? work->g + c * joints : work->A + (c - n_in) * joints;
+        memset(work->ZX, 0, m * sizeof *work->ZX);
+        for (size_t j = 0; j < joints; j++) {
+            if (y[j] == 0.0)
+                continue;
+            const complex_t *Z = work->Z + (size_t)work->coef[j];
+            for (size_t k = 0; k < m; k++)
+                work->ZX[k] += product(Z[k * m], y[j]);
         }
+        for (size_t j = 0; j < joints; j++) {
+            const size_t k = (size_t)work->coef[j];
+            to[j] = work->ZX[k] - complex_of(work->S[k] * creal(y[j]), work->S[k] * cimag(y[j]));
+            if (c == n_in + j)
+                to[j] += 1.0;
+            if (c >= n_in)
+                largest = fmax(largest, fabs(creal(to[j])) + fabs(cimag(to[j])));
+        }
+    }
     if (!(largest <= largest_joint))
         return 1;
-    if (bd_solve_complex(lapack, model->n_coefs, (double *)work->A, work->pivots, data->n_in,
+    if (bd_solve_complex(lapack, work->n_joints, (double *)work->A, work->pivots, data->n_in,
                          (double *)work->g))
         return 1;
     for (size_t c = 0; c < n_in; c++)
-        for (size_t k = 0; k < m; k++)
+        for (size_t j = 0; j < joints; j++)
             for (size_t o = 0; o < n_out; o++)
-                RX[c * n_out + o] -= product(RX[(n_in + k) * n_out + o], work->g[c * m + k]);
+                RX[c * n_out + o] -= product(RX[(n_in + j) * n_out + o], work->g[c * joints + j]);
     return 0;
 }
 
@@ -227,7 +257,7 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
 {
     const size_t m = (size_t)model->n_coefs, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out;
     const int width = work->kernels->width;
-    const size_t lanes = (size_t)width, columns = n_in + m;
+    const size_t lanes = (size_t)width, joints = (size_t)work->n_joints, all = n_in + joints;
 
     for (int from = first; from < first + count; from += width) {
         const int now = first + count - from < width ? first + count - from : width;
@@ -237,13 +267,13 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
             /* at rest a block that floats is singular by itself, though held by its bearings */
             whole[lane] = work->omega[lane] == 0.0;
         }
-        memset(work->BX, 0, lanes * m * columns * sizeof *work->BX);
-        memset(work->RX, 0, lanes * n_out * columns * sizeof *work->RX);
+        memset(work->BX, 0, lanes * joints * all * sizeof *work->BX);
+        memset(work->RX, 0, lanes * n_out * all * sizeof *work->RX);
         for (int b = 0; b < model->n_blocks; b++)
             solve_lanes(model, data, lapack, work, b, from, now, whole);
 
         for (int lane = 0; lane < now; lane++) {
-            const complex_t *RX = work->RX + (size_t)lane * n_out * columns;
+            const complex_t *RX = work->RX + (size_t)lane * n_out * all;
             for (size_t kl = 0; kl < m * m; kl++)
                 work->Z[kl] = complex_of(work->Kb[kl], work->omega[lane] * work->Cb[kl]);
             if (whole[lane] || join_blocks(model, data, lapack, work, (size_t)lane)) {

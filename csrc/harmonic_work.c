@@ -18,23 +18,28 @@ static void *zeroed(size_t count, size_t size)
 /* Beyond these numbers of coordinates a block does not fit the caches, and LAPACK is faster. */
 enum { LARGEST = 96 };
 
-static double size_of(const double *modulus)
-{
-    return fabs(modulus[0]) + fabs(modulus[1]);
-}
-
-/* Coordinates of a block from stiff to soft, at the first frequency's moduli. */
-static void order_pivots(const bd_model *model, const bd_harmonic_data *data,
-                         const bd_harmonic_work *work, const bd_block *block, int *order)
+/* Coordinates of a block from stiff to soft. A layer counts as if it were as stiff as the structure, so that the order
+ * does not hang on the frequencies asked for. */
+static void order_pivots(const bd_model *model, const bd_harmonic_work *work, const bd_block *block,
+                         int *order)
 {
     const bd_matrices of = bd_matrices_of(model, block);
+    const double *held = work->held + block->matrix;
     const size_t n = (size_t)block->n;
-    double stiffness[LARGEST];
+    double stiffness[LARGEST], structure = 0.0;
     for (size_t i = 0; i < n; i++) {
-        stiffness[i] = of.K[i * n + i];
-        for (int l = block->layer; l < block->layer + block->n_layers && data->n_omega > 0; l++)
-            stiffness[i] += size_of(data->modulus + 2 * model->layers[l].source) *
-                            work->HL[work->HL_at[l] + i * n + i];
+        stiffness[i] = of.K[i * n + i] + held[i * n + i];
+        structure += stiffness[i];
+    }
+    for (int l = block->layer; l < block->layer + block->n_layers; l++) {
+        const double *H = work->HL + work->HL_at[l];
+        double trace = 0.0;
+        for (size_t i = 0; i < n; i++)
+            trace += H[i * n + i];
+        for (size_t i = 0; i < n && trace > 0.0; i++)
+            stiffness[i] += structure / trace * H[i * n + i];
+    }
+    for (size_t i = 0; i < n; i++) {
         stiffness[i] /= of.M[i * n + i];
         size_t place = i;
         for (; place > 0 && stiffness[order[place - 1]] < stiffness[i]; place--)
@@ -64,6 +69,35 @@ static bool all_symmetric(const bd_matrices *of, size_t n, double speed)
     return true;
 }
 
+/* The joints, and what holds each block in them. A block that floats between bearings is singular at low frequency,
+ * and what its bearings then make of it cancels as many digits as it moves too far. Held by springs S of the
+ * bearings' own size it does not; the springs are taken away again where blocks are joined. */
+static void hold_blocks(const bd_model *model, const bd_harmonic_data *data, bd_harmonic_work *work)
+{
+    const size_t m = (size_t)model->n_coefs, n_in = (size_t)data->n_in;
+    for (size_t k = 0; k < m; k++)
+        work->S[k] = fabs(work->Kb[k * m + k]);
+    for (int b = 0; b < model->n_blocks; b++) {
+        const bd_block *block = &model->blocks[b];
+        const size_t n = (size_t)block->n;
+        const double *B = work->B + (size_t)block->first * m;
+        double *held = work->held + block->matrix;
+        for (size_t k = 0; k < m; k++) {
+            work->joint[(size_t)b * m + k] = -1;
+            for (size_t i = 0; i < n; i++)
+                for (size_t j = 0; j < n; j++)
+                    held[i * n + j] += B[i * m + k] * work->S[k] * B[j * m + k];
+        }
+        for (int c = 0; c < work->n_touching[b]; c++) {
+            const int k = work->touching[(size_t)b * (n_in + m) + (size_t)c] - (int)n_in;
+            if (k < 0)
+                continue;
+            work->joint[b * (int)m + k] = work->n_joints;
+            work->coef[work->n_joints++] = k;
+        }
+    }
+}
+
 /* One block's pencil and columns into `pencil` and `columns`, and what its columns are into `beside`. */
 static void reduce(const bd_model *model, const bd_harmonic_data *data, bd_harmonic_work *work,
                    int b, double *pencil, double *columns, int *beside)
@@ -75,7 +109,7 @@ static void reduce(const bd_model *model, const bd_harmonic_data *data, bd_harmo
                  first = (size_t)block->first;
     bd_receptance *reduced = &work->reduced[b];
     int order[LARGEST];
-    order_pivots(model, data, work, block, order);
+    order_pivots(model, work, block, order);
     *reduced = (bd_receptance){
         .n = block->n,
         .n_layers = block->n_layers,
@@ -86,7 +120,7 @@ static void reduce(const bd_model *model, const bd_harmonic_data *data, bd_harmo
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++) {
             const size_t ij = (size_t)order[i] * n + (size_t)order[j];
-            *pencil++ = of.K[ij] + data->speed * of.N[ij];
+            *pencil++ = of.K[ij] + data->speed * of.N[ij] + work->held[block->matrix + ij];
             *pencil++ = of.M[ij];
             *pencil++ = of.C[ij] + data->speed * of.G[ij];
             for (int l = block->layer; l < block->layer + block->n_layers; l++)
@@ -116,6 +150,18 @@ static void reduce(const bd_model *model, const bd_harmonic_data *data, bd_harmo
                          : which < n_out + m ? work->B[at * m + which - n_out]
                                              : work->force[(which - n_out - m) * whole + at];
         }
+}
+
+/* Room for what the joints do to one another. Returned: whether there was memory. */
+static bool join_room(const bd_harmonic_data *data, bd_harmonic_work *work)
+{
+    const size_t joints = (size_t)work->n_joints, n_in = (size_t)data->n_in;
+    const size_t lanes = (size_t)work->kernels->width, columns = n_in + joints;
+    work->BX = zeroed(lanes * columns * joints, sizeof *work->BX);
+    work->RX = zeroed(lanes * columns * (size_t)data->n_out, sizeof *work->RX);
+    work->A = zeroed(joints * joints, sizeof *work->A);
+    work->g = zeroed(joints * n_in, sizeof *work->g);
+    return work->BX && work->RX && work->A && work->g;
 }
 
 /* Returned: whether there was memory. */
@@ -170,7 +216,9 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
 {
     const size_t n = (size_t)model->n, m = (size_t)model->n_coefs;
     const size_t n_in = (size_t)data->n_in, n_out = (size_t)data->n_out, columns = n_in + m;
-    size_t layers = 0;
+    size_t layers = 0, squares = 0;
+    for (int b = 0; b < model->n_blocks; b++)
+        squares += (size_t)model->blocks[b].n * (size_t)model->blocks[b].n;
     for (int l = 0; l < model->n_layers; l++) {
         size_t rows = (size_t)model->blocks[model->layers[l].block].n;
         layers += rows * rows;
@@ -181,7 +229,6 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
     work->kernels = bd_kernels_for(data->isa);
     if (!work->kernels)
         work->kernels = bd_kernels_for(BD_ISA_BEST);
-    const size_t width = (size_t)work->kernels->width;
     work->reduced = zeroed((size_t)model->n_blocks, sizeof *work->reduced);
     work->HL = zeroed(layers, sizeof *work->HL);
     work->HL_at = zeroed((size_t)model->n_layers, sizeof *work->HL_at);
@@ -192,19 +239,21 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
     work->Cb = zeroed(m * m, sizeof *work->Cb);
     work->D = zeroed(n * n, sizeof *work->D);
     work->X = zeroed(n * columns, sizeof *work->X);
-    work->BX = zeroed(width * m * columns, sizeof *work->BX);
+    const size_t joints = (size_t)model->n_blocks * m; /* at most */
+    work->S = zeroed(m, sizeof *work->S);
+    work->held = zeroed(squares, sizeof *work->held);
+    work->joint = zeroed(joints, sizeof *work->joint);
+    work->coef = zeroed(joints, sizeof *work->coef);
     work->Z = zeroed(m * m, sizeof *work->Z);
-    work->A = zeroed(m * m, sizeof *work->A);
-    work->g = zeroed(m * n_in, sizeof *work->g);
-    work->RX = zeroed(width * n_out * columns, sizeof *work->RX);
-    work->pivots = zeroed(n + m, sizeof *work->pivots);
+    work->ZX = zeroed(m, sizeof *work->ZX);
+    work->pivots = zeroed(n + joints, sizeof *work->pivots);
     work->touching = zeroed((size_t)model->n_blocks * columns, sizeof *work->touching);
     work->n_touching = zeroed((size_t)model->n_blocks, sizeof *work->n_touching);
     work->read = zeroed((size_t)model->n_blocks * n_out, sizeof *work->read);
     if (!work->reduced || !work->HL || !work->HL_at || !work->force || !work->row || !work->B ||
-        !work->Kb || !work->Cb || !work->D || !work->X || !work->BX || !work->Z || !work->A ||
-        !work->g || !work->RX || !work->pivots || !work->touching || !work->n_touching ||
-        !work->read) {
+        !work->Kb || !work->Cb || !work->S || !work->held || !work->joint || !work->coef ||
+        !work->D || !work->X || !work->Z || !work->ZX || !work->pivots || !work->touching ||
+        !work->n_touching || !work->read) {
         bd_harmonic_work_free(work);
         return NULL;
     }
@@ -248,7 +297,8 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
     }
     memcpy(work->Kb, data->bearing_K, m * m * sizeof *work->Kb);
     memcpy(work->Cb, data->bearing_C, m * m * sizeof *work->Cb);
-    if (!reduce_blocks(model, data, work)) {
+    hold_blocks(model, data, work);
+    if (!join_room(data, work) || !reduce_blocks(model, data, work)) {
         bd_harmonic_work_free(work);
         return NULL;
     }
@@ -262,6 +312,7 @@ void bd_harmonic_work_free(bd_harmonic_work *work)
     void *pieces[] = {work->HL,       work->HL_at,      work->force, work->row,     work->B,
                       work->Kb,       work->Cb,         work->D,     work->X,       work->BX,
                       work->Z,        work->A,          work->g,     work->RX,      work->pivots,
+                      work->S,        work->held,       work->joint, work->coef,    work->ZX,
                       work->touching, work->n_touching, work->read,  work->reduced, work->beside,
                       work->pencil,   work->columns,    work->omega, work->moduli,  work->memory,
                       work->response, work->growth};

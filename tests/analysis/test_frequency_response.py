@@ -253,9 +253,9 @@ def test_assembled_and_given_system_agree():
 def test_many_frequencies_are_the_dense_solve_to_1e_12(state: Equilibrium, speed: float):
     """Blocks are eliminated several frequencies at a time, in a fixed order of pivots: no digit may go astray.
 
-    From 10 Hz on, where the floating shaft, ω²m against bearings of 1e8 N/m, costs the last three of sixteen.
+    At 0.1 Hz the shaft floats, ω²m against bearings of 1e8 N/m: joined to blocks that are not held, nine are lost.
     """
-    f = np.geomspace(10.0, 1e4, 301)
+    f = np.geomspace(0.1, 1e4, 301)
     got = frequency_response(state, f, INPUTS, OUTPUTS, speed=speed)["response"].values
     system, K, C = state.system, state.bearing_K, state.bearing_C
     exact = np.array([dense(system, K, C, x, INPUTS, OUTPUTS, speed) for x in f])
