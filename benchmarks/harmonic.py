@@ -103,7 +103,7 @@ def measure(compiler: str) -> dict[str, float | int | list[int] | list[float]]:
         "bare_us_per_frequency": round(1e6 * bare / FREQUENCIES, 2),
         "ratio": round(ours / bare, 3),
         "target_ratio": RATIO,
-        # what the damping between modes is worth, which the loop leaves out; and that it solves this very motor
+        # worth of the damping between modes, which the loop leaves out; and that it solves this very motor
         "bare_rms_difference": round(float(np.linalg.norm(found - exact) / np.linalg.norm(exact)), 4),
         "n_frequencies": FREQUENCIES,
         "n_outputs": len(OUTPUTS),

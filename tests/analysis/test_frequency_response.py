@@ -251,9 +251,9 @@ def test_assembled_and_given_system_agree():
 
 @pytest.mark.parametrize("speed", [0.0, 500.0])
 def test_many_frequencies_are_the_dense_solve_to_1e_12(state: Equilibrium, speed: float):
-    """Blocks are eliminated several frequencies at a time, in a fixed order of pivots: no digit may go astray.
+    """Blocks are eliminated several frequencies at a time, in a fixed order of pivots: no digit is lost.
 
-    At 0.1 Hz the shaft floats, ω²m against bearings of 1e8 N/m: joined to blocks that are not held, nine are lost.
+    At 0.1 Hz the shaft floats, ω²m against bearings of 1e8 N/m, and to join it free costs nine digits.
     """
     f = np.geomspace(0.1, 1e4, 301)
     got = frequency_response(state, f, INPUTS, OUTPUTS, speed=speed)["response"].values

@@ -217,5 +217,5 @@ def test_harmonic_of_a_block_that_floats_is_the_twins() -> None:
     got = core.harmonic(model, omega, modulus, Kb, Cb, forces, rows)
     expected = twin.harmonic(system, omega, modulus, Kb, Cb, forces, rows, 0.0)
     scale = np.abs(expected).max(axis=(1, 2), keepdims=True)
-    # springs of the bearings' size hold it where blocks are joined
-    assert (np.abs(got - expected) / scale).max() < 1e-12
+    # springs of the bearings' size hold it where blocks are joined; at resonance the twin, too, loses some
+    assert (np.abs(got - expected) / scale).max() < 1e-11
