@@ -2,7 +2,7 @@
  *
  * D(omega) = K + speed N - omega^2 M + i omega (C + speed G) + sum_l 2 G*_l(omega) L_l L_l^T is block-diagonal; the
  * linearised bearings join the blocks through a few coefficients y = B x alone:
- *     x = X_F - X_B g,   (I + Z B X_B) g = Z B X_F,   X_F = D^-1 F,  X_B = D^-1 B^T,  Z = K_b + i omega C_b.
+ *     x = X_F - X_B g,   (I + Z B X_B) g = Z B X_F,   X_F = D^-1 F,  X_B = D^-1 B^T,  Z = K_b + i omega C_b + balls.
  * A 3-block motor of 80 coordinates is solved three times faster so than as one. */
 #include <complex.h>
 #include <math.h>
@@ -289,6 +289,14 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
 
         for (size_t kl = 0; kl < m * m; kl++)
             work->Z[kl] = complex_of(work->Kb[kl], omega * work->Cb[kl]);
+        for (size_t b = 0; b < (size_t)data->n_balls; b++) {
+            const double *ball = data->ball + 2 * ((size_t)index * (size_t)data->n_balls + b);
+            const double *v = data->across + b * m;
+            for (size_t kl = 0; kl < m * m; kl++) {
+                const double both = v[kl / m] * v[kl % m];
+                work->Z[kl] += complex_of(ball[0] * both, ball[1] * both);
+            }
+        }
         /* at rest a block that floats is singular by itself, though held by its bearings */
         bool whole = omega == 0.0 || model->n_blocks == 1;
         if (!whole)
