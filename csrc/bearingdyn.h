@@ -498,8 +498,11 @@ typedef struct bd_harmonic_data {
     const double *omega;   /* (n_omega) rad/s */
     const double *modulus; /* (n_omega x n_layers) complex G*, re and im interleaved */
     const double *bearing_K, *bearing_C; /* (coefs x coefs) row-major, linearised bearings */
-    const double *force;                 /* (n_in x n) */
-    const double *row;                   /* (n_out x n) */
+    int n_balls;          /* that answer by frequency besides: sum of ball v v^T is added */
+    const double *ball;   /* (n_omega x n_balls) complex, N/m */
+    const double *across; /* (n_balls x coefs) v */
+    const double *force;  /* (n_in x n) */
+    const double *row;    /* (n_out x n) */
     bd_isa isa; /* of the kernels; the best where this machine lacks it. All give the same bits */
 } bd_harmonic_data;
 

@@ -55,6 +55,8 @@ class Model:
         modulus: NDArray[np.complex128],
         bearing_K: _Array,
         bearing_C: _Array,
+        ball: NDArray[np.complex128],
+        across: _Array,
         force: _Array,
         row: _Array,
         progress: Callable[[int, int], object] | None,

@@ -339,6 +339,7 @@ def harmonic(
     row: Array,
     speed: float = 0.0,
     progress: Progress | None = None,
+    balls: tuple[Complex, Array] | None = None,
 ) -> Complex:
     """Complex response (frequencies, outputs, inputs) of the core's model to unit forces.
 
@@ -358,6 +359,9 @@ def harmonic(
         Of the shaft, rad/s, for the gyroscopic and circulatory forces.
     progress
         Told of the frequencies done and of all there are.
+    balls
+        What balls add to that by frequency: stiffness (f, balls), N/m, and the v (balls, coefficients) of
+        each, whose v vᵀ it multiplies.
 
     Returns
     -------
@@ -373,7 +377,9 @@ def harmonic(
     ----------
     Paper, eq (20).
     """
-    return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress)
+    none = np.zeros((np.size(omega), 0), dtype=np.complex128), np.zeros((0, np.size(bearing_K, -1)))
+    ball, across = none if balls is None else balls
+    return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, ball, across, force, row, progress)
 
 
 def time_of(model: Model, state: Array) -> float:
