@@ -111,8 +111,9 @@ int bd_py_parse_bearing(PyObject *keep, PyObject *dict, bd_bearing_data *bearing
 int bd_py_parse_scheme(PyObject *keep, PyObject *dict, bd_scheme *scheme);
 
 PyObject *bd_py_bearing_force(PyObject *module, PyObject *args);
+PyObject *bd_py_bearing_along(PyObject *module, PyObject *args);
 PyObject *bd_py_check_scheme(PyObject *module, PyObject *dict);
-extern const char bd_py_bearing_force_doc[], bd_py_check_scheme_doc[];
+extern const char bd_py_bearing_force_doc[], bd_py_bearing_along_doc[], bd_py_check_scheme_doc[];
 
 /* ---------------------------------------------------------------- model.c, march.c, harmonic.c: Model */
 

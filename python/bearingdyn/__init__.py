@@ -116,6 +116,7 @@ PUBLIC = {
             "shaft_angle",
             "spectrum",
             "static_summary",
+            "steady_state",
             "track_orders",
             "transient",
             "transients",

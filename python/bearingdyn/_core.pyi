@@ -73,5 +73,15 @@ def bearing_force(
     shaft_speed: float,
     /,
 ) -> tuple[_Array, _Array, _Array, _Array]: ...
+def bearing_along(
+    bearing: dict[str, object],
+    z: _Array,
+    z_rate: _Array,
+    angle: _Array,
+    speed: _Array,
+    window: float,
+    tangents: bool,
+    /,
+) -> tuple[_Array, _Array, _Array, _Array, _Array, _Array | None, _Array | None]: ...
 def check_scheme(scheme: dict[str, object], /) -> None: ...
 def status_text(status: int, /) -> str: ...

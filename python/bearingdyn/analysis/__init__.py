@@ -14,6 +14,7 @@ from bearingdyn.analysis.spectra_orders import order_spectrum, shaft_angle, trac
 from bearingdyn.analysis.spectra_time import envelope_spectrum, waterfall
 from bearingdyn.analysis.static_summary import static_summary
 from bearingdyn.analysis.statics import BearingState
+from bearingdyn.analysis.steady import steady_state
 from bearingdyn.analysis.transient import transient, transients
 from bearingdyn.analysis.unbalance import unbalance_response
 
@@ -38,6 +39,7 @@ __all__ = [
     "shaft_angle",
     "spectrum",
     "static_summary",
+    "steady_state",
     "track_orders",
     "transient",
     "transients",

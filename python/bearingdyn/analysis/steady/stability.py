@@ -1,0 +1,353 @@
+"""Stability of a periodic motion: Floquet multipliers of the structure, its branches and the balls' tangents.
+
+A small departure u from the motion obeys u̇ = A u − E (K(t) z + C(t) ż) with z and ż rows of u, A constant and
+the tangents those of the balls along the motion. Over a double step Δ the force of the balls is a parabola
+through its values at 0, Δ/2 and Δ, and what A makes of it is exact:
+
+    u(Δ) = e^{AΔ} u(0) − Σ_j W_j h_j,   h_j = K_j z_j + C_j ż_j,   z_j = Z (e^{Aτ_j} u(0) − Σ_i W_i(τ_j) h_i)
+
+so that a period is a product of matrices, of fourth order in Δ. The highest modes of the structure follow at
+once: what they give way by is kept as a flexibility.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from bearingdyn.material import Maxwell
+from bearingdyn.system import System
+from bearingdyn.types import Array, Complex, Index
+
+# modes above so many times the highest line that counts follow at once
+FOLLOWS = 3.0
+# a multiplier this near to the real axis, as a share of its size, is real
+REAL = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Chunk:
+    """One block of the structure in first order, u = (q, q̇, branches): its parts of A, and rows of z.
+
+    Parameters
+    ----------
+    A, speed_A
+        (n, n): A is A + speed·speed_A.
+    Z, V
+        Rows (m, n) of z and ż.
+    E
+        (n, m), what a force on z does to u̇.
+    touched
+        Which of all coefficients the block moves with.
+    """
+
+    A: Array
+    speed_A: Array
+    Z: Array
+    V: Array
+    E: Array
+    touched: Index
+
+
+@dataclass(frozen=True, eq=False)
+class FirstOrder:
+    """The structure in first order, block by block, and the flexibility (m, m) of what follows at once."""
+
+    chunks: tuple[Chunk, ...]
+    flexibility: Array
+
+    @property
+    def size(self) -> int:
+        """Numbers of u."""
+        return sum(len(c.A) for c in self.chunks)
+
+    @classmethod
+    def of(cls, system: System, fastest: float, band: tuple[float, float] = (1.0, 1e4)) -> FirstOrder:
+        """A system, its modes above `fastest`, rad/s, as a flexibility.
+
+        Parameters
+        ----------
+        system
+            The system; a law that is no Maxwell model is taken as its Maxwell approximation in `band`.
+        fastest
+            rad/s.
+        band
+            Hz.
+        """
+        system = maxwell_system(system, band)
+        modal, _ = system.modal()
+        squares = np.diag(modal.stiffness("relaxed"))
+        B = modal.B
+        chunks = []
+        flexibility = np.zeros((len(B), len(B)))
+        for index in modal.blocks():
+            touched = np.flatnonzero(np.abs(B[:, index]).any(axis=1))
+            if not touched.size:
+                continue
+            kept = index[squares[index] <= fastest**2]
+            fast = index[squares[index] > fastest**2]
+            flexibility += (B[:, fast] / squares[fast]) @ B[:, fast].T
+            chunks.append(_chunk(modal, kept, touched, squares))
+        return cls(tuple(chunks), flexibility)
+
+
+def maxwell_system(system: System, band: tuple[float, float]) -> System:
+    """The system with every law that has no branches replaced by its Maxwell approximation."""
+    from dataclasses import replace
+
+    if all(isinstance(t.material, Maxwell) for t in system.layers):
+        return system
+    models: dict[int, Maxwell] = {}
+    for t in system.layers:
+        if not isinstance(t.material, Maxwell):
+            models.setdefault(id(t.material), t.material.maxwell("auto", band))
+    return replace(
+        system,
+        layers=tuple(replace(t, material=models.get(id(t.material), t.material)) for t in system.layers),
+    )
+
+
+def _chunk(modal: System, kept: Index, touched: Index, squares: Array) -> Chunk:
+    """One block of a modal system in first order, with the modes kept."""
+    n = len(kept)
+    inside = np.ix_(kept, kept)
+    branches = [
+        (t.L[kept], 2.0 * G, tau)
+        for t in modal.layers
+        if np.abs(t.L[kept]).any()
+        for G, tau in zip(t.material.G, t.material.tau, strict=True)
+        if G > 0.0
+    ]
+    size = 2 * n + sum(L.shape[1] for L, _, _ in branches)
+    A, speed_A = np.zeros((size, size)), np.zeros((size, size))
+    A[:n, n : 2 * n] = np.eye(n)
+    A[n : 2 * n, :n] = -np.diag(squares[kept])
+    A[n : 2 * n, n : 2 * n] = -modal.viscous()[inside]
+    speed_A[n : 2 * n, :n] = -modal.N[inside]
+    speed_A[n : 2 * n, n : 2 * n] = -modal.G[inside]
+    at = 2 * n
+    for L, G, tau in branches:
+        own = slice(at, at + L.shape[1])
+        # s = √(2G) r: the branch's own energy is r²/2, as the modes' are
+        A[n : 2 * n, own] = -math.sqrt(G) * L
+        A[own, n : 2 * n] = math.sqrt(G) * L.T
+        A[own, own] = -np.eye(L.shape[1]) / tau
+        at += L.shape[1]
+    B = modal.B[np.ix_(touched, kept)]
+    Z, V, E = np.zeros((len(B), size)), np.zeros((len(B), size)), np.zeros((size, len(B)))
+    Z[:, :n] = B
+    V[:, n : 2 * n] = B
+    E[n : 2 * n] = B.T
+    return Chunk(A, speed_A, Z, V, E, touched)
+
+
+@dataclass(frozen=True, eq=False)
+class Propagator:
+    """A double step of the structure at one speed: u(Δ) = after u(0) − W h, and rows of z, ż on the way.
+
+    Parameters
+    ----------
+    after
+        e^{AΔ}, block by block.
+    W
+        (n, 3m) of the forces at 0, Δ/2 and Δ.
+    free
+        (6m, n) z and ż at 0, Δ/2 and Δ without forces.
+    felt
+        (6m, 3m) what they lose by the forces.
+    """
+
+    after: tuple[Array, ...]
+    W: Array
+    free: Array
+    felt: Array
+    flexibility: Array
+
+    @classmethod
+    def of(cls, model: FirstOrder, speed: float, step: float) -> Propagator:
+        """Of a double step, s, at a speed, rad/s."""
+        m, n = len(model.flexibility), model.size
+        after = []
+        W = np.zeros((n, 3, m))
+        free = np.zeros((3, 2, m, n))
+        felt = np.zeros((3, 2, m, 3, m))
+        at = 0
+        for chunk in model.chunks:
+            A = chunk.A + speed * chunk.speed_A
+            k, c = len(A), chunk.E.shape[1]
+            half, weights_half = _exponential(A, chunk.E, step, 0.5)
+            full, weights_full = half @ half, _advance(half, weights_half)
+            own = slice(at, at + k)
+            after.append(full)
+            W[own][:, :, chunk.touched] = weights_full
+            rows = np.stack([chunk.Z, chunk.V])
+            for j, (E, weights) in enumerate(
+                ((np.eye(k), np.zeros((k, 3, c))), (half, weights_half), (full, weights_full))
+            ):
+                free[j][:, chunk.touched, own] = rows @ E
+                block = (rows.reshape(2 * c, k) @ weights.reshape(k, 3 * c)).reshape(2, c, 3, c)
+                for q in range(2):
+                    for i in range(3):
+                        felt[j, q, chunk.touched[:, None], i, chunk.touched] += block[q][:, i, :]
+            at += k
+        # the highest modes give way at once, and move z alone
+        for j in range(3):
+            felt[j, 0, :, j, :] += model.flexibility
+        return cls(
+            tuple(after), W.reshape(n, 3 * m), free.reshape(6 * m, n), felt.reshape(6 * m, 3 * m), felt
+        )
+
+    def steps(self, K: Array, C: Array) -> Array:
+        """S (steps, 3m, 6m): the forces at the three places are S · free · u(0).
+
+        Parameters
+        ----------
+        K, C
+            (2·steps + 1, m, m) tangents at every place, the last that of the first.
+        """
+        m = K.shape[1]
+        count = (len(K) - 1) // 2
+        T = np.zeros((count, 3, m, 3, 2, m))
+        for j in range(3):
+            T[:, j, :, j, 0, :] = K[j : j + 2 * count : 2]
+            T[:, j, :, j, 1, :] = C[j : j + 2 * count : 2]
+        own = T.reshape(count, 3 * m, 6 * m)
+        return np.asarray(np.linalg.solve(np.eye(3 * m) + own @ self.felt, own))
+
+    def over(self, S: Array, U: Array) -> Array:
+        """U (n, k) after all steps."""
+        sizes = np.cumsum([0, *(len(a) for a in self.after)]).tolist()
+        slots = [slice(a, b) for a, b in zip(sizes, sizes[1:], strict=False)]
+        for s in S:
+            h = s @ (self.free @ U)
+            moved = self.W @ h
+            U = np.concatenate([a @ U[own] for a, own in zip(self.after, slots, strict=True)]) - moved
+        return U
+
+    def along(self, S: Array, u: Array) -> Array:
+        """z (steps, m) at the beginning of every step from u (n,), without what follows at once."""
+        m = len(self.free) // 6
+        sizes = np.cumsum([0, *(len(a) for a in self.after)]).tolist()
+        out = np.zeros((len(S), m), dtype=u.dtype)
+        for i, s in enumerate(S):
+            seen = self.free @ u
+            h = s @ seen
+            out[i] = seen[:m] - self.felt[:m] @ h
+            u = (
+                np.concatenate([a @ u[p:q] for a, p, q in zip(self.after, sizes, sizes[1:], strict=False)])
+                - self.W @ h
+            )
+        return out
+
+
+def _exponential(A: Array, E: Array, step: float, share: float) -> tuple[Array, Array]:
+    """e^{Aτ}, and weights (n, 3, m) of a parabola of forces, τ = share · step.
+
+    A chain that makes 1, s and s² drives E: one exponential gives all three (C. F. Van Loan, IEEE Trans.
+    Autom. Control 23 (1978) 395).
+    """
+    n, m = E.shape
+    F = np.zeros((n + 3 * m, n + 3 * m))
+    F[:n, :n] = A
+    F[:n, n : n + m] = E
+    eye = np.eye(m)
+    # x2′ = 2 x1/Δ, x1′ = x0/Δ
+    F[n : n + m, n + m : n + 2 * m] = 2.0 / step * eye
+    F[n + m : n + 2 * m, n + 2 * m :] = 1.0 / step * eye
+    whole = scipy.linalg.expm(F * (share * step))
+    powers = np.stack([whole[:n, n + k * m : n + (k + 1) * m] for k in range(3)], axis=1)
+    # powers: of inputs 1, 2 s, s² (s from 0 to 1 over the step)
+    powers = powers * np.array([1.0, 0.5, 1.0])[None, :, None]
+    return whole[:n, :n], _lagrange(powers)
+
+
+# parabolas that are 1 at s = 0, ½, 1, in powers of s
+LAGRANGE = np.array([[1.0, -3.0, 2.0], [0.0, 4.0, -4.0], [0.0, -1.0, 2.0]])
+
+
+def _lagrange(powers: Array) -> Array:
+    return np.asarray(np.einsum("jp,npm->njm", LAGRANGE, powers))
+
+
+def _advance(half: Array, weights: Array) -> Array:
+    """Weights of the whole step from those of its first half.
+
+    ∫₀^Δ e^{A(Δ−t)} s^p dt = half ∫₀^{Δ/2} … + ∫₀^{Δ/2} e^{A(Δ/2−t)} (s + ½)^p dt.
+    """
+    # Lagrange → powers of the half step
+    powers = np.einsum("pj,njm->npm", np.linalg.inv(LAGRANGE), weights)
+    later = np.stack(
+        [powers[:, 0], powers[:, 1] + 0.5 * powers[:, 0], powers[:, 2] + powers[:, 1] + 0.25 * powers[:, 0]],
+        axis=1,
+    )
+    n, _, m = powers.shape
+    return _lagrange((half @ powers.reshape(n, 3 * m)).reshape(n, 3, m) + later)
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Multipliers (k,) of a period, s, the largest first."""
+
+    multipliers: Complex
+    period: float
+
+    @property
+    def largest(self) -> complex:
+        """The multiplier that is largest in size."""
+        return complex(self.multipliers[0])
+
+    @property
+    def stable(self) -> bool:
+        """Whether every small departure dies away."""
+        return bool(abs(self.largest) < 1.0)
+
+    @property
+    def growth(self) -> float:
+        """Rate of growth of the fastest departure, 1/s; negative where it dies away."""
+        return math.log(max(abs(self.largest), 1e-300)) / self.period
+
+    @property
+    def loss(self) -> str:
+        """How stability is lost, or would be first: "fold", "flip" or "neimark-sacker"."""
+        return kind(self.largest)
+
+
+def kind(multiplier: complex) -> str:
+    """What a multiplier of this phase brings where it leaves the unit circle."""
+    if abs(multiplier.imag) <= REAL * abs(multiplier):
+        return "fold" if multiplier.real > 0 else "flip"
+    return "neimark-sacker"
+
+
+def floquet(
+    model: FirstOrder, speed: float, period: float, K: Array, C: Array, kept: int = 6
+) -> tuple[Stability, Complex, Propagator, Array]:
+    """Multipliers of a period from tangents (2·steps, m, m) at equal distances along it.
+
+    Returns
+    -------
+    tuple
+        The stability, the directions (n, kept) of u that go with the multipliers, the propagator and its steps.
+    """
+    count = len(K) // 2
+    propagator = Propagator.of(model, speed, period / count)
+    S = propagator.steps(np.concatenate([K, K[:1]]), np.concatenate([C, C[:1]]))
+    once = propagator.over(S, np.eye(model.size))
+    values, vectors = np.linalg.eig(once)
+    order = np.argsort(-np.abs(values))[:kept]
+    return Stability(values[order], period), vectors[:, order], propagator, S
+
+
+def pooled(blocks: Sequence[Array], m: int) -> Array:
+    """Tangents (N, n, n) of every bearing as one (N, m, m)."""
+    out = np.zeros((len(blocks[0]), m, m))
+    at = 0
+    for b in blocks:
+        n = b.shape[1]
+        out[:, at : at + n, at : at + n] = b
+        at += n
+    return out
