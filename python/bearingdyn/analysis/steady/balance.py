@@ -60,6 +60,8 @@ class Balance:
         Lines and samples.
     speed
         Of the shaft, rad/s.
+    rows
+        (k, n) motions that are asked for beside the bearings' own.
     """
 
     system: System
@@ -67,6 +69,7 @@ class Balance:
     receptances: Receptances
     lines: Lines
     speed: float
+    rows: Array | None = None
 
     @cached_property
     def omega(self) -> Array:
@@ -102,20 +105,39 @@ class Balance:
         return int(np.flatnonzero((self.lines.index == np.array(n)).all(axis=1))[0])
 
     @cached_property
+    def _above(self) -> Array:
+        B = self.receptances.B
+        return B if self.rows is None else np.vstack([B, self.rows])
+
+    @cached_property
+    def _answers(self) -> Complex:
+        """(L, m + k, m) of coefficients and rows to forces on coefficients."""
+        return self.receptances.answer(self.omega, self.speed, self._above, self.receptances.B)
+
+    @cached_property
+    def _driven(self) -> Complex:
+        out = np.zeros((self.lines.count, len(self._above)), dtype=np.complex128)
+        for line, force in self.loads:
+            omega = self.omega[line : line + 1]
+            out[line] += self.receptances.answer(omega, self.speed, self._above, force[None])[0, :, 0]
+        return out
+
+    @cached_property
     def R(self) -> Complex:
         """(L, m, m) with the reference on."""
-        B = self.receptances.B
-        return self.receptances.answer(self.omega, self.speed, B, B)
+        m = len(self.receptances.B)
+        return np.ascontiguousarray(self._answers[:, :m])
 
     @cached_property
     def driven(self) -> Complex:
         """z_F (L, m): what the loads alone would do, with the reference on."""
-        B = self.receptances.B
-        out = np.zeros((self.lines.count, len(B)), dtype=np.complex128)
-        for line, force in self.loads:
-            omega = self.omega[line : line + 1]
-            out[line] += self.receptances.answer(omega, self.speed, B, force[None])[0, :, 0]
-        return out
+        return self._driven[:, : len(self.receptances.B)]
+
+    def moved(self, z: Complex, g: Complex) -> Complex:
+        """Amplitudes (L, k) of the rows."""
+        m = len(self.receptances.B)
+        h = self.excess(z, g)
+        return np.asarray(self._driven[:, m:] - (self._answers[:, m:] @ h[:, :, None])[:, :, 0])
 
     def window(self, lines: Lines) -> float:
         """Time between samples, s; of several bases, whose samples have none, a twelfth of the fastest line's."""

@@ -76,9 +76,9 @@ class Problem:
             source, system, bases, Receptances(system, K + max(level, IDLE) * np.eye(len(rest)), C), rest
         )
 
-    def balance(self, lines: Lines, speed: float) -> Balance:
-        """Its equations on chosen lines at a speed, rad/s."""
-        return Balance(self.system, self.bases, self.receptances, lines, speed)
+    def balance(self, lines: Lines, speed: float, rows: Array | None = None) -> Balance:
+        """Its equations on chosen lines at a speed, rad/s; rows (k, n) of motions asked for beside them."""
+        return Balance(self.system, self.bases, self.receptances, lines, speed, rows)
 
     def standing(self, lines: Lines) -> Complex:
         """The motion (L, m) that stands still at the equilibrium."""

@@ -19,12 +19,13 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.material import Maxwell
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
 # modes above so many times the highest line that counts follow at once
-FOLLOWS = 3.0
+FOLLOWS = 1.5
 # a multiplier this near to the real axis, as a share of its size, is real
 REAL = 1e-6
 
@@ -323,23 +324,89 @@ def kind(multiplier: complex) -> str:
     return "neimark-sacker"
 
 
+# numbers of u up to which the whole matrix of a period is formed; above, the directions that grow most
+WHOLE = 60
+# directions that are kept, and times they go through a period from those of a neighbour, or from nothing
+DIRECTIONS, TIMES, COLD = 16, 2, 6
+
+
+@dataclass(frozen=True, eq=False)
+class Floquet:
+    """Stability of a motion, and the directions (n, k) of u that go with its multipliers."""
+
+    stability: Stability
+    directions: Array
+    vectors: Complex
+    propagator: Propagator
+    steps: Array
+
+    def antiperiodic(self, lines: Lines) -> Complex | None:
+        """Amplitudes (L, m), on lines of twice the period, of the departure whose multiplier is −1.
+
+        None where none is near.
+        """
+        values = self.stability.multipliers
+        real = [k for k, v in enumerate(values) if kind(complex(v)) == "flip"]
+        if not real:
+            return None
+        k = min(real, key=lambda k: abs(values[k] + 1.0))
+        z = self.propagator.along(self.steps, np.real(self.vectors[:, k]))
+        twice = np.concatenate([z, -z])
+        spectrum = np.fft.rfft(twice, axis=0) / len(z)
+        out = np.zeros((lines.count, z.shape[1]), dtype=np.complex128)
+        count = min(lines.count, len(spectrum))
+        out[1:count:2] = spectrum[1:count:2]
+        return out
+
+
+def band_of(highest: float) -> int:
+    """Number of the half octave, of rad/s, up to which modes are kept for lines up to `highest`."""
+    return math.ceil(2.0 * math.log2(FOLLOWS * highest))
+
+
 def floquet(
-    model: FirstOrder, speed: float, period: float, K: Array, C: Array, kept: int = 6
-) -> tuple[Stability, Complex, Propagator, Array]:
+    model: FirstOrder,
+    speed: float,
+    period: float,
+    K: Array,
+    C: Array,
+    kept: int = 6,
+    warm: Array | None = None,
+) -> Floquet:
     """Multipliers of a period from tangents (2·steps, m, m) at equal distances along it.
 
-    Returns
-    -------
-    tuple
-        The stability, the directions (n, kept) of u that go with the multipliers, the propagator and its steps.
+    Parameters
+    ----------
+    model, speed, period
+        The structure, the speed, rad/s, and the period, s.
+    K, C
+        Tangents of all bearings.
+    kept
+        Multipliers.
+    warm
+        Directions of a neighbour, from which a large model begins.
     """
     count = len(K) // 2
     propagator = Propagator.of(model, speed, period / count)
     S = propagator.steps(np.concatenate([K, K[:1]]), np.concatenate([C, C[:1]]))
-    once = propagator.over(S, np.eye(model.size))
-    values, vectors = np.linalg.eig(once)
+    n = model.size
+    if n <= WHOLE:
+        once = propagator.over(S, np.eye(n))
+        values, vectors = np.linalg.eig(once)
+        directions = np.zeros((n, 0))
+    else:
+        ready = warm is not None and warm.shape[0] == n
+        U = warm if ready else np.random.default_rng(0).standard_normal((n, DIRECTIONS))
+        assert U is not None
+        for _ in range(TIMES if ready else COLD):
+            U = np.linalg.qr(U)[0]
+            after = propagator.over(S, U)
+            before, U = U, after
+        values, inner = np.linalg.eig(before.T @ after)
+        vectors = before @ inner
+        directions = np.linalg.qr(after)[0]
     order = np.argsort(-np.abs(values))[:kept]
-    return Stability(values[order], period), vectors[:, order], propagator, S
+    return Floquet(Stability(values[order], period), directions, vectors[:, order], propagator, S)
 
 
 def pooled(blocks: Sequence[Array], m: int) -> Array:

@@ -191,7 +191,7 @@ def stability_of(
     period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
     K = pooled([a.K for a in pressed.bearings], m)
     C = pooled([a.C for a in pressed.bearings], m)
-    return floquet(model, balance.speed, period, K, C, KEPT)[0]
+    return floquet(model, balance.speed, period, K, C, KEPT).stability
 
 
 def first_order(problem: Problem, balance: Balance) -> FirstOrder:
