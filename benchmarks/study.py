@@ -54,7 +54,7 @@ def build(case: dict[str, Any]) -> bd.Application:
     rubber = bd.Maxwell(G0, [0.5 * G0, case["loss"] * G0], [1e-3, 5e-5], K=2e9, density=1150.0)
     layer = bd.Layer(bore - thickness, bore, case["width"], rubber)
     ring = bd.RigidBody.ring(motor.RING[0], bore - thickness, motor.RING[2])
-    ball = motor.bearing("6305", clearance=10e-6, damping=motor.CONTACT_DAMPING)
+    ball = motor.bearing("6305", balls=motor.BALLS, clearance=10e-6, damping=motor.CONTACT_DAMPING)
     app = bd.Application()
     app.add("shaft", shaft())
     app.free("shaft.middle")

@@ -43,7 +43,8 @@
 #define BD_STATUS_LIST(X)                                                                          \
     X(BD_OK, 0, "success")                                                                         \
     X(BD_INTERRUPTED, 1, "interrupted by the user")                                                \
-    X(BD_REFACTOR, 2, "the speed has moved away from the one the step was factored at")            \
+    X(BD_REFACTOR, 2,                                                                              \
+      "the speed, or a layer's strain, has moved from where the step was factored")                \
     X(BD_NO_MEMORY, -1, "out of memory")                                                           \
     X(BD_BAD_SHAPE, -2, "an array has the wrong shape")                                            \
     X(BD_BAD_VALUE, -3, "a value is outside its domain")                                           \
@@ -200,10 +201,25 @@ size_t bd_bearing_work_size(const bd_bearing_data *data);
 
 /* ---------------------------------------------------------------- model (model.c) */
 
+/* How a layer softens with the amplitude of its own strain (softening.c): beside the Maxwell branches stand a spring
+ * E = F - L and a branch of modulus 2 L, of the running strain amplitude,
+ *     F = D (1 + (A/gamma_c)^p)^(-m/p),   L = Lm (A/gamma_l)^p / (1 + (A/gamma_l)^p) */
+typedef struct bd_softening_data {
+    double D, gamma_c, m, Lm, gamma_l, p;
+    double memory; /* time over which the amplitude is remembered */
+    double
+        pressed; /* relaxed modulus, beyond that of K, which a layer at rest carries at the start */
+    const double *strain; /* (rank) weights of y^2 in the square of the strain amplitude */
+    int n_table;          /* frequencies, even in their logarithm from rate_first to rate_last */
+    double rate_first, rate_last;
+    const double *table; /* (2 n_table) what the branches have too much of storage, then of loss */
+} bd_softening_data;
+
 typedef struct bd_layer_data {
     int rank, n_branches;
-    const double *L;             /* (n x rank) row-major */
-    const double *modulus, *tau; /* (n_branches) */
+    const double *L;                    /* (n x rank) row-major */
+    const double *modulus, *tau;        /* (n_branches) */
+    const bd_softening_data *softening; /* NULL: the layer is linear */
 } bd_layer_data;
 
 /* Of the rotating load, an unbalance: theta is the shaft angle; the second term acts while the speed changes. */
@@ -233,7 +249,8 @@ typedef struct bd_load_data {
     X(BD_CHANNEL_BALL, "ball")                 /* load of ball `index` */                          \
     X(BD_CHANNEL_LOADED, "loaded")             /* number of loaded balls */                        \
     X(BD_CHANNEL_CONTACT_LOSS, "contact_loss") /* power that contacts turn into heat, W */         \
-    X(BD_CHANNEL_BRANCH_LOSS, "branch_loss")   /* the same of the branches of layer `index` */
+    X(BD_CHANNEL_BRANCH_LOSS, "branch_loss")   /* the same of the branches of layer `index` */     \
+    X(BD_CHANNEL_STRAIN, "strain")             /* running strain amplitude of layer `index` */
 
 typedef enum bd_channel_kind { BD_CHANNEL_LIST(BD_ENUMERATOR) } bd_channel_kind;
 
@@ -273,6 +290,7 @@ int bd_model_blocks(const bd_model *model);
 int bd_model_channels(const bd_model *model);
 int bd_model_coefs(const bd_model *model);
 int bd_model_layers(const bd_model *model);
+int bd_model_softening(const bd_model *model); /* how many layers soften */
 int bd_model_size(const bd_model *model);
 
 /* ---------------------------------------------------------------- state and march (newmark.c) */
@@ -312,7 +330,7 @@ bd_fault bd_scheme_fault(const bd_scheme *scheme);
 
 /* What the audit integrates. Turning feeds in what the cage drives the balls with and what the shaft drives its own
  * damping with:
- *   load + turning - (linear + branch + contact) = change of (kinetic + elastic + stored + indentation) */
+ *   load + turning - (linear + branch + contact + softening) = change of (kinetic + elastic + stored + indentation) */
 #define BD_ENERGY_LIST(X)                                                                          \
     /* now, J */                                                                                   \
     X(kinetic)                                                                                     \
@@ -325,13 +343,14 @@ bd_fault bd_scheme_fault(const bd_scheme *scheme);
     X(linear)                                                                                      \
     X(branch)                                                                                      \
     X(contact)                                                                                     \
+    X(softening)                                                                                   \
     /* integral of |power of loads and turning|, J */                                              \
     X(throughput)
 
 #define BD_ENERGY_FIELD(name) double name;
 typedef struct bd_energy {
     BD_ENERGY_LIST(BD_ENERGY_FIELD)
-    double power[5]; /* at the present time, in the order of the works, W */
+    double power[6]; /* at the present time, in the order of the works, W */
 } bd_energy;
 #undef BD_ENERGY_FIELD
 
@@ -344,7 +363,7 @@ typedef long long bd_count;
     X(bd_count, steps, sum)      /* done in this call */                                           \
     X(bd_count, iterations, sum) /* evaluations of the bearings */                                 \
     X(bd_count, refreshes, sum)  /* of Newton's matrix */                                          \
-    X(bd_count, refactors, sum)  /* of S, because the speed moved: counted by the caller */        \
+    X(bd_count, refactors, sum)  /* of S, as the speed or a layer moved: counted by the caller */  \
     X(bd_count, grazing, sum)    /* steps in which balls were held where their film opens */       \
     X(bd_count, open_steps, sum) /* with a ball pressed on a bearing's open side */                \
     X(double, open_t, first)     /* at the first of them, -1 without */                            \
@@ -378,7 +397,8 @@ typedef struct bd_state {
     bd_clock clock;    /* a copy; in the array it lies as doubles */
     double *x, *v, *a; /* (n_padded) */
     double *y_rate;    /* (rank_padded) layer rates L^T v */
-    double *stress;    /* branch stresses, layer by layer, branch by branch */
+    double *stress; /* branch stresses, layer by layer, branch by branch, then those of softening */
+    double *softening; /* of layers that soften: what their amplitude runs on */
     double *g;         /* (coefs_padded) bearing forces of the last step */
     double *g_before;  /* (2 coefs_padded) those of the two steps before it */
     double *inverse;   /* (coefs_padded^2) Newton's frozen inverse */
@@ -405,6 +425,14 @@ void bd_work_free(bd_work *work);               /* safe on NULL */
 bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                      double reference_speed, bd_work *work);
 
+/* The same, where only the layers' laws have changed since: blocks without layers that soften are left. */
+bd_status bd_prepare_softened(const bd_model *model, const bd_lapack *lapack, bd_work *work);
+
+/* Takes the law of every layer that softens from a state into work, before bd_prepare; with `anew` the law is first
+ * renewed at the state's running amplitude. It is kept in the state, so that a resumed march repeats every bit. */
+void bd_soften(const bd_model *model, const bd_scheme *scheme, double *flat, bool anew,
+               bd_work *work);
+
 /* The speed a state's march is factored at: of the state if it has one, else that at the end of the
  * next step; with `anew`, always the latter. It is kept in the state, so that a resumed march repeats
  * every bit. */
@@ -420,7 +448,8 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
  *           record has room for n_steps/decimate + 1 rows of n_channels
  * Returned: rows written; report
  * Notes:    allocates nothing, calls no LAPACK. On failure the state is that of the last good step.
- *           BD_REFACTOR asks for bd_prepare at bd_reference_speed(..., true); then the march goes on. */
+ *           BD_REFACTOR asks for bd_soften and bd_prepare at bd_reference_speed(..., true), both anew; then the
+ *           march goes on. */
 long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work, double *flat,
                    long long n_steps, long long decimate, double *record, bd_report *report);
 
@@ -441,7 +470,7 @@ typedef struct bd_along_data {
         *angle; /* (n) of each body by itself: the bodies need not stand as in one march */
     bd_bodies speed;
     double
-        window; /* s, over which a force that jumps where a film closes is averaged; 0: at the instant */
+        window; /* s between samples, over which a force that jumps as a film closes is spread; 0: not */
 } bd_along_data;
 
 /* What comes of it; K and C may both be NULL. */
@@ -461,6 +490,30 @@ size_t bd_bearing_along_size(const bd_bearing_data *data);
  * Notes:    the kernels of the march, so that both find the same motion */
 bd_status bd_bearing_along(const bd_bearing_data *data, const bd_along_data *motion,
                            double *scratch, bd_along *found);
+
+/* ---------------------------------------------------------------- one bearing at rest (settle.c) */
+
+/* How a search for the place of rest ended. */
+#define BD_SETTLED_LIST(X)                                                                         \
+    X(BD_SETTLED, "settled")                                                                       \
+    X(BD_SETTLED_NOT, "no equilibrium")                                                            \
+    X(BD_SETTLED_ASTRAY,                                                                           \
+      "open side") /* a ball that carries is pressed where there is no shoulder */
+
+typedef enum bd_settled { BD_SETTLED_LIST(BD_ENUMERATOR) } bd_settled;
+
+/* One bearing at one cage angle, which many loads are put on; outer ring held. */
+typedef struct bd_settle bd_settle;
+bd_settle *bd_settle_create(const bd_bearing_data *data, double angle,
+                            double shaft_angle); /* NULL: out of memory */
+void bd_settle_free(bd_settle *settle);          /* safe on NULL */
+
+/* Given:    load (n_coefs) on the coefficients, radius > 0 of the order of the expected displacement
+ * Returned: z (n_coefs), loads (n_balls)
+ * Notes:    allocates nothing. The energy is convex: regularised Newton steps from z = 0, whose length
+ *           follows what they gain. A motion that costs nothing stays at its origin. */
+bd_settled bd_settle_case(bd_settle *settle, const double *load, double radius, double *z,
+                          double *loads);
 
 /* ---------------------------------------------------------------- harmonic response (harmonic.c) */
 

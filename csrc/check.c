@@ -140,6 +140,20 @@ bd_fault bd_scheme_fault(const bd_scheme *scheme)
     return (bd_fault){NULL, NULL};
 }
 
+static bool softening_valid(const bd_softening_data *law, int rank)
+{
+    const double above_zero[] = {law->D, law->gamma_c, law->m, law->gamma_l, law->p, law->memory};
+    const int n = (int)(sizeof above_zero / sizeof above_zero[0]);
+    for (int i = 0; i < n; i++)
+        if (!(above_zero[i] > 0.0) || !isfinite(above_zero[i]))
+            return false;
+    return law->Lm >= 0.0 && isfinite(law->Lm) && isfinite(law->pressed) && law->n_table >= 0 &&
+           all_finite(law->strain, (size_t)rank) && nonnegative(law->strain, rank) &&
+           (law->n_table < 1 ||
+            (law->rate_first > 0.0 && law->rate_last > law->rate_first &&
+             isfinite(law->rate_last) && all_finite(law->table, 2 * (size_t)law->n_table)));
+}
+
 bd_status bd_model_check(const bd_model_data *data)
 {
     size_t n = (size_t)data->n;
@@ -165,6 +179,8 @@ bd_status bd_model_check(const bd_model_data *data)
         for (int i = 0; i < layer->n_branches; i++)
             if (!(layer->tau[i] > 0.0))
                 return BD_BAD_VALUE;
+        if (layer->softening && !softening_valid(layer->softening, layer->rank))
+            return BD_BAD_VALUE;
     }
     for (int b = 0; b < data->n_bearings; b++) {
         bd_status status = bd_bearing_check(&data->bearings[b]);
@@ -195,7 +211,7 @@ bd_status bd_model_check(const bd_model_data *data)
                 return BD_BAD_VALUE;
             continue;
         }
-        if (channel->kind == BD_CHANNEL_BRANCH_LOSS) {
+        if (channel->kind == BD_CHANNEL_BRANCH_LOSS || channel->kind == BD_CHANNEL_STRAIN) {
             if (channel->index < 0 || channel->index >= data->n_layers)
                 return BD_BAD_VALUE;
             continue;

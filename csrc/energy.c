@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "softening.h"
+
 /* half x^T A x of a block-diagonal matrix, and A x into `product`. */
 static double quadratic(const bd_model *model, const double *A, const double *x, double *product)
 {
@@ -45,17 +47,18 @@ static double branch_square(const bd_layer *layer, int branch, const double *str
     return square / (2.0 * layer->modulus[branch]);
 }
 
-double bd_branch_loss(const bd_layer *layer, const double *stress)
+double bd_branch_loss(const bd_layer *layer, const bd_state *state)
 {
     double loss = 0.0;
     for (int i = 0; i < layer->n_branches; i++)
-        loss += branch_square(layer, i, stress) / layer->tau[i];
+        loss += branch_square(layer, i, state->stress) / layer->tau[i];
     return loss;
 }
 
 void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state, bd_energy *energy)
 {
-    double load = 0.0, turning = 0.0, branch = 0.0, contact = 0.0, stored = 0.0, indentation = 0.0;
+    double load = 0.0, turning = 0.0, branch = 0.0, contact = 0.0, softening = 0.0;
+    double stored = 0.0, indentation = 0.0;
 
     energy->kinetic = quadratic(model, model->matrices.M, state->v, work->loss);
     energy->elastic = quadratic(model, model->matrices.K, state->x, work->loss);
@@ -82,7 +85,9 @@ void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state
         const bd_layer *layer = &model->layers[l];
         for (int i = 0; i < layer->n_branches; i++)
             stored += 0.5 * branch_square(layer, i, state->stress);
-        branch += bd_branch_loss(layer, state->stress);
+        branch += bd_branch_loss(layer, state);
+        stored += bd_softening_stored(layer, state);
+        softening += bd_softening_loss(layer, state);
     }
 
     for (int b = 0; b < model->n_bearings; b++) {
@@ -99,20 +104,21 @@ void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state
 
     energy->stored = stored;
     energy->indentation = indentation;
-    memcpy(energy->power, (double[]){load, turning, linear, branch, contact}, sizeof energy->power);
+    memcpy(energy->power, (double[]){load, turning, linear, branch, contact, softening},
+           sizeof energy->power);
 }
 
 void bd_energy_step(const bd_model *model, bd_work *work, const bd_state *state)
 {
     bd_energy *energy = state->energy;
-    double *works[] = {&energy->load, &energy->turning, &energy->linear, &energy->branch,
-                       &energy->contact};
+    double *works[] = {&energy->load,   &energy->turning, &energy->linear,
+                       &energy->branch, &energy->contact, &energy->softening};
     const double half = 0.5 * work->scheme.dt;
-    double before[5];
+    double before[6];
 
     memcpy(before, energy->power, sizeof before);
     bd_energy_rates(model, work, state, energy);
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < 6; i++)
         *works[i] += half * (before[i] + energy->power[i]);
     energy->throughput +=
         half * (fabs(before[0] + before[1]) + fabs(energy->power[0] + energy->power[1]));

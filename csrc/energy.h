@@ -5,9 +5,9 @@
 #include "work.h"
 
 /* Power that the contacts of a bearing, and the branches of a layer, turn into heat: at the state of the last
- * evaluation, and at all branch stresses of a state. */
+ * evaluation, and at a state. */
 double bd_contact_loss(const bd_bearing_data *data, const bd_bearing_work *balls);
-double bd_branch_loss(const bd_layer *layer, const double *stress);
+double bd_branch_loss(const bd_layer *layer, const bd_state *state);
 
 /* Stored energies and powers at the state, whose load factors and bearing quantities stand in work. */
 void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state,

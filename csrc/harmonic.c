@@ -37,6 +37,7 @@ struct bd_harmonic_work {
     int *pivots;
     int *touching,
         *n_touching; /* per block: which forces (0 ... n_in) and coefficients (n_in ...) act */
+    bool *read;      /* (n_blocks x n_out) whether a row reads a block's motion */
 };
 
 static void *zeroed(size_t count, size_t size)
@@ -73,9 +74,10 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
     work->pivots = zeroed(n + m, sizeof *work->pivots);
     work->touching = zeroed((size_t)model->n_blocks * columns, sizeof *work->touching);
     work->n_touching = zeroed((size_t)model->n_blocks, sizeof *work->n_touching);
+    work->read = zeroed((size_t)model->n_blocks * n_out, sizeof *work->read);
     if (!work->HL || !work->HL_at || !work->force || !work->row || !work->B || !work->Kb ||
         !work->Cb || !work->D || !work->X || !work->BX || !work->Z || !work->A || !work->g ||
-        !work->RX || !work->pivots || !work->touching || !work->n_touching) {
+        !work->RX || !work->pivots || !work->touching || !work->n_touching || !work->read) {
         bd_harmonic_work_free(work);
         return NULL;
     }
@@ -112,6 +114,10 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
             if (acts)
                 work->touching[(size_t)b * columns + (size_t)work->n_touching[b]++] = (int)c;
         }
+        for (size_t o = 0; o < n_out; o++)
+            for (size_t i = first; i < first + rows; i++)
+                if (work->row[o * n + i] != 0.0)
+                    work->read[(size_t)b * n_out + o] = true;
     }
     memcpy(work->Kb, data->bearing_K, m * m * sizeof *work->Kb);
     memcpy(work->Cb, data->bearing_C, m * m * sizeof *work->Cb);
@@ -122,10 +128,10 @@ void bd_harmonic_work_free(bd_harmonic_work *work)
 {
     if (!work)
         return;
-    void *pieces[] = {work->HL,       work->HL_at,     work->force, work->row, work->B,
-                      work->Kb,       work->Cb,        work->D,     work->X,   work->BX,
-                      work->Z,        work->A,         work->g,     work->RX,  work->pivots,
-                      work->touching, work->n_touching};
+    void *pieces[] = {work->HL,       work->HL_at,      work->force, work->row, work->B,
+                      work->Kb,       work->Cb,         work->D,     work->X,   work->BX,
+                      work->Z,        work->A,          work->g,     work->RX,  work->pivots,
+                      work->touching, work->n_touching, work->read};
     for (size_t i = 0; i < sizeof pieces / sizeof pieces[0]; i++)
         free(pieces[i]);
     free(work);
@@ -214,6 +220,8 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
                 work->BX[which * m + k] += complex_of(B[k] * re, B[k] * im);
         }
         for (size_t o = 0; o < n_out; o++) {
+            if (!work->read[(size_t)b * n_out + o])
+                continue;
             const double *row = work->row + o * whole + first;
             double re = 0.0, im = 0.0;
             for (size_t i = 0; i < n; i++) {

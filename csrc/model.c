@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "softening.h"
+
 const char *bd_status_text(bd_status status)
 {
 #define BD_STATUS_TEXT(name, value, text)                                                          \
@@ -217,6 +219,23 @@ static double *copy_factor(arena *a, const partition *parts, const bd_block *blo
     return L;
 }
 
+/* A law with arrays of its own, or NULL. */
+static const bd_softening_data *copy_softening(arena *a, const bd_layer_data *from)
+{
+    if (!from->softening)
+        return NULL;
+    bd_softening_data *own = copy(a, from->softening, 1, sizeof *own);
+    const double *strain = copy_doubles(a, from->softening->strain, (size_t)from->rank);
+    const double *table =
+        copy_doubles(a, from->softening->table, 2 * (size_t)from->softening->n_table);
+    if (own) {
+        own->strain = strain;
+        own->table = table;
+    }
+    /* while only counting there is no copy yet, but there will be one */
+    return own ? own : from->softening;
+}
+
 static void layout_layers(arena *a, bd_model *model, const bd_model_data *data,
                           const partition *parts)
 {
@@ -233,6 +252,9 @@ static void layout_layers(arena *a, bd_model *model, const bd_model_data *data,
                 .offset = model->ranks,
                 .branch = model->branches,
                 .n_branches = from->n_branches,
+                .n_stresses = from->n_branches + (from->softening ? 2 : 0),
+                .memory = model->n_softening_doubles,
+                .softening = copy_softening(a, from),
                 .stress = model->n_stress,
                 .L = copy_factor(a, parts, block, from),
                 .modulus = copy_doubles(a, from->modulus, (size_t)from->n_branches),
@@ -241,8 +263,10 @@ static void layout_layers(arena *a, bd_model *model, const bd_model_data *data,
             if (layers)
                 layers[l] = layer;
             model->ranks += layer.padded;
-            model->branches += layer.n_branches;
-            model->n_stress += (size_t)layer.padded * (size_t)layer.n_branches;
+            model->branches += layer.n_stresses;
+            model->n_stress += (size_t)layer.padded * (size_t)layer.n_stresses;
+            model->n_softening += layer.softening != NULL;
+            model->n_softening_doubles += bd_softening_size(&layer);
         }
     }
     model->n_layers = data->n_layers;
@@ -349,16 +373,27 @@ static void layout_loads(arena *a, bd_model *model, const bd_model_data *data)
     model->loads = loads;
 }
 
+/* Where the caller's layer lies among those of all blocks. */
+static int place_of_layer(const bd_model *model, int source)
+{
+    int l = 0;
+    while (model->layers && model->layers[l].source != source)
+        l++;
+    return l;
+}
+
 static void layout_channels(arena *a, bd_model *model, const bd_model_data *data)
 {
     bd_channel *channels = carve(a, (size_t)data->n_channels, sizeof *channels);
     for (int c = 0; c < data->n_channels; c++) {
         const bd_channel_data *from = &data->channels[c];
         const bool linear = from->kind <= BD_CHANNEL_ACCELERATION;
+        const bool of_layer =
+            from->kind == BD_CHANNEL_BRANCH_LOSS || from->kind == BD_CHANNEL_STRAIN;
         const bd_channel channel = {
             .kind = from->kind,
             .bearing = linear ? -1 : from->bearing,
-            .index = from->index,
+            .index = of_layer ? place_of_layer(model, from->index) : from->index,
             .row = linear ? copy_vector(a, model, from->row) : NULL,
         };
         if (channels)
@@ -462,6 +497,11 @@ int bd_model_coefs(const bd_model *model)
 int bd_model_layers(const bd_model *model)
 {
     return model->n_layers;
+}
+
+int bd_model_softening(const bd_model *model)
+{
+    return model->n_softening;
 }
 
 int bd_model_size(const bd_model *model)

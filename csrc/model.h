@@ -16,9 +16,12 @@ typedef struct bd_block {
 typedef struct bd_layer {
     int source; /* index in the caller's list */
     int block, rank, padded;
-    int offset;             /* in padded vectors of layer rates */
-    int branch, n_branches; /* the first one's place among the branches of all layers */
-    size_t stress;          /* of its first branch in a state's stress */
+    int offset;                         /* in padded vectors of layer rates */
+    int branch, n_branches;             /* the first one's place among the branches of all layers */
+    int n_stresses;                     /* branches, and two more where the layer softens */
+    size_t memory;                      /* of its deviation in a state's softening */
+    const bd_softening_data *softening; /* or NULL */
+    size_t stress;                      /* of its first branch in a state's stress */
     const double *L; /* (block n x padded rank): row j holds coordinate j's part in each rate */
     const double *modulus, *tau;
 } bd_layer;
@@ -51,10 +54,12 @@ struct bd_model {
         coefs; /* of all bearings: as counted by the caller, and padded bearing by bearing */
     int ranks; /* of all layers, padded layer by layer */
     size_t n_stress;
-    const int *order;        /* (n) the caller's index of a coordinate in block order */
-    const int *slot;         /* (n) padded position of the caller's coordinate */
-    const int *coef_slot;    /* (n_coefs) padded position of the caller's coefficient */
-    const int *bearing_slot; /* (n_bearings) padded position of a bearing's first coefficient */
+    int n_softening;            /* layers that soften */
+    size_t n_softening_doubles; /* of a state */
+    const int *order;           /* (n) the caller's index of a coordinate in block order */
+    const int *slot;            /* (n) padded position of the caller's coordinate */
+    const int *coef_slot;       /* (n_coefs) padded position of the caller's coefficient */
+    const int *bearing_slot;    /* (n_bearings) padded position of a bearing's first coefficient */
     const bd_block *blocks;
     const bd_layer *layers;
     const bd_bearing *bearings;

@@ -12,6 +12,7 @@
 #include "kernels.h"
 #include "loads.h"
 #include "newton.h"
+#include "softening.h"
 #include "state.h"
 
 /* Turns between bearings and a varying speed, and the contraction that asks for new factors. Just factored, only
@@ -95,7 +96,11 @@ static void record_row(const bd_model *model, const bd_work *work, const bd_stat
                                     &work->bearings[channel->bearing]);
             break;
         case BD_CHANNEL_BRANCH_LOSS:
-            value = bd_branch_loss(&model->layers[channel->index], state->stress);
+            value = bd_branch_loss(&model->layers[channel->index], state) +
+                    bd_softening_loss(&model->layers[channel->index], state);
+            break;
+        case BD_CHANNEL_STRAIN:
+            value = bd_softening_strain(&model->layers[channel->index], state);
             break;
         }
         row[c] = value;
@@ -151,6 +156,12 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
     }
     for (; report->steps < n_steps; report->steps++) {
         const double t = bd_clock_time(&state.clock, 1);
+        if (bd_softening_moved(model, &state)) {
+            report->status = BD_REFACTOR;
+            break;
+        }
+        if (model->n_softening > 0)
+            memcpy(work->y_before, state.y_rate, (size_t)model->ranks * sizeof *state.y_rate);
 
         /* the structure without its bearings */
         work->turn = bd_turn_at(&work->profile, t, 0.5 * dt, 0.5 * dt);
@@ -170,6 +181,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
             break;
         }
         state.clock.steps++;
+        if (model->n_softening > 0)
+            bd_softening_step(model, work, &state);
         count_open_sides(model, work, t, report);
         if (scheme->audit)
             bd_energy_step(model, work, &state);

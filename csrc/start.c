@@ -59,7 +59,7 @@ static void residual(const bd_model *model, const bd_work *work, const bd_state 
             const bd_layer *layer = &model->layers[l];
             const size_t padded = (size_t)layer->padded, rank = (size_t)layer->rank;
             const double *stress = state->stress + layer->stress;
-            for (int i = 0; i < layer->n_branches; i++, stress += padded)
+            for (int i = 0; i < layer->n_stresses; i++, stress += padded)
                 for (size_t j = 0; j < n; j++)
                     for (size_t r = 0; r < rank; r++)
                         f[j] -= layer->L[j * padded + r] * stress[r];

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "softening.h"
+
 /* ---------------------------------------------------------------- clock */
 
 /* Where the clock's parts lie at the head of a state; a flag is 1 or 0, a count a whole number. */
@@ -59,8 +61,8 @@ void bd_clock_keep(const bd_state *state)
 size_t bd_state_size(const bd_model *model)
 {
     size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
-    return BD_LANES + 3 * n + (size_t)model->ranks + model->n_stress + 3 * m + m * m +
-           (size_t)BD_PADDED(sizeof(bd_energy) / sizeof(double));
+    return BD_LANES + 3 * n + (size_t)model->ranks + model->n_stress + model->n_softening_doubles +
+           3 * m + m * m + (size_t)BD_PADDED(sizeof(bd_energy) / sizeof(double));
 }
 
 bd_state bd_state_view(const bd_model *model, double *flat)
@@ -72,7 +74,8 @@ bd_state bd_state_view(const bd_model *model, double *flat)
     state.a = state.v + n;
     state.y_rate = state.a + n;
     state.stress = state.y_rate + model->ranks;
-    state.g = state.stress + model->n_stress;
+    state.softening = state.stress + model->n_stress;
+    state.g = state.softening + model->n_softening_doubles;
     state.g_before = state.g + m;
     state.inverse = state.g_before + 2 * m;
     state.energy = (bd_energy *)(void *)(state.inverse + m * m);
@@ -88,6 +91,7 @@ void bd_state_set(const bd_model *model, double *flat, double t, const double *x
         state.x[model->slot[i]] = x[i];
         state.v[model->slot[i]] = v[i];
     }
+    bd_softening_rest(model, &state);
 }
 
 void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,

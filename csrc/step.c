@@ -48,7 +48,7 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
         for (int l = block->layer; l < block->layer + block->n_layers; l++) {
             const bd_layer *layer = &model->layers[l];
             double *history = work->history + layer->offset;
-            for (int i = 0; i < layer->n_branches; i++) {
+            for (int i = 0; i < layer->n_stresses; i++) {
                 size_t at = layer->stress + (size_t)i * (size_t)layer->padded;
                 maxwell_trial(layer->padded, *weights++, state->stress + at,
                               state->y_rate + layer->offset, work->trial + at, history);
@@ -208,7 +208,7 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
                     rate);
         /* the sum of the new stresses stands for all of them: it is not finite where one of them is not */
         double now = 0.0;
-        for (int i = 0; i < layer->n_branches; i++)
+        for (int i = 0; i < layer->n_stresses; i++)
             now += weights++->now;
         for (int r = 0; r < layer->padded; r += BD_WIDTH)
             poison += 0.0 * (LANES(work->history + layer->offset + r) + now * LANES(rate + r));
@@ -232,7 +232,7 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
     weights = work->weights;
     for (int l = 0; l < model->n_layers; l++) {
         const bd_layer *layer = &model->layers[l];
-        for (int i = 0; i < layer->n_branches; i++) {
+        for (int i = 0; i < layer->n_stresses; i++) {
             size_t at = layer->stress + (size_t)i * (size_t)layer->padded;
             maxwell_commit(layer->padded, *weights++, work->trial + at,
                            state->y_rate + layer->offset, state->stress + at);

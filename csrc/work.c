@@ -46,6 +46,8 @@ bd_work *bd_work_create(const bd_model *model)
         {&work->history, (size_t)model->ranks},
         {&work->trial, model->n_stress},
         {&work->y_rate, (size_t)model->ranks},
+        {&work->y_before, (size_t)model->ranks},
+        {&work->forget, (size_t)model->n_layers},
         {&work->z_linear, m},
         {&work->z_rate_linear, m},
         {&work->z, m},
@@ -164,7 +166,7 @@ static void form_damping(const bd_model *model, const bd_block *block, const bd_
     for (int l = block->layer; l < block->layer + block->n_layers; l++) {
         const bd_layer *layer = &model->layers[l];
         double now = 0.0;
-        for (int i = 0; i < layer->n_branches; i++)
+        for (int i = 0; i < layer->n_stresses; i++)
             now += work->weights[layer->branch + i].now;
         for (size_t i = 0; i < n; i++)
             for (size_t j = 0; j < n; j++) {
@@ -276,8 +278,18 @@ static void place_block(const bd_model *model, int b, bd_work *work, const block
         move_columns(2 * n, n, column, padded, drift);
 }
 
-/* S^-1 times all right-hand sides, block by block. */
-static bd_status factor_blocks(const bd_model *model, const bd_lapack *lapack, bd_work *work)
+/* Whether a block has a layer that softens. */
+static bool softens(const bd_model *model, const bd_block *block)
+{
+    for (int l = block->layer; l < block->layer + block->n_layers; l++)
+        if (model->layers[l].softening)
+            return true;
+    return false;
+}
+
+/* S^-1 times all right-hand sides, block by block, or only of those that soften. */
+static bd_status factor_blocks(const bd_model *model, const bd_lapack *lapack, bool only_soft,
+                               bd_work *work)
 {
     const size_t largest = (size_t)model->largest;
     size_t widest = 0;
@@ -296,12 +308,14 @@ static bd_status factor_blocks(const bd_model *model, const bd_lapack *lapack, b
     double *drift = work->drift;
     for (int b = 0; b < model->n_blocks && status == BD_OK; b++) {
         const bd_block *block = &model->blocks[b];
-        form_block(model, block, work, &system);
-        if (bd_solve_real(lapack, block->n, system.S, system.pivots,
-                          (int)right_columns(model, work, block), system.rhs))
-            status = BD_SINGULAR;
-        else
-            place_block(model, b, work, &system, drift);
+        if (!only_soft || softens(model, block)) {
+            form_block(model, block, work, &system);
+            if (bd_solve_real(lapack, block->n, system.S, system.pivots,
+                              (int)right_columns(model, work, block), system.rhs))
+                status = BD_SINGULAR;
+            else
+                place_block(model, b, work, &system, drift);
+        }
         if (drift)
             drift += 2 * (size_t)block->n * (size_t)block->padded;
     }
@@ -340,7 +354,15 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
             work->weights[layer->branch + i] =
                 bd_maxwell_weights(scheme->dt, layer->tau[i], layer->modulus[i]);
     }
-    status = factor_blocks(model, lapack, work);
+    status = factor_blocks(model, lapack, false, work);
+    if (status == BD_OK)
+        join_bearings(model, work);
+    return status;
+}
+
+bd_status bd_prepare_softened(const bd_model *model, const bd_lapack *lapack, bd_work *work)
+{
+    const bd_status status = factor_blocks(model, lapack, true, work);
     if (status == BD_OK)
         join_bearings(model, work);
     return status;

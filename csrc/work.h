@@ -35,6 +35,8 @@ struct bd_work {
     double *x_new, *v_new;   /* without the bearings */
     double *history, *trial; /* (ranks), (n_stress) */
     double *y_rate;          /* (ranks) at the new time */
+    double *y_before;        /* (ranks) at the old time, where layers soften */
+    double *forget;          /* (n_layers) share of a running amplitude that a step replaces */
     double *z_linear, *z_rate_linear, *z, *z_rate, *Wg; /* (coefs) */
     double *force, *guess, *change;                     /* (coefs) */
     double *K, *C, *J, *inverse;                        /* (coefs x coefs) */

@@ -47,10 +47,6 @@ nitpicky = True
 # types of other packages, and letters of a type alias, are not looked up: no network
 nitpick_ignore_regex = [("py:.*", r".*")]
 
-# Rooms whose docstrings still mix styles: docs/docstrings.py puts them into a form Sphinx reads. The others
-# are in NumPy's style and go to napoleon. When the list is empty, all of docstrings.py but `escaped` can go.
-mixed_docstrings = ("analysis", "application", "cms", "core", "fem", "material", "parts", "system")
-
 # ---- looks
 html_theme = "furo"
 html_title = "bearingdyn"
@@ -60,8 +56,7 @@ html_copy_source = False
 
 
 def setup(app: Sphinx) -> None:
-    """Pictures are drawn, and docstrings are put into the form Sphinx reads, at build time."""
+    """Pictures are drawn, and marks in docstrings escaped, at build time."""
     generated.make()
-    app.add_config_value("mixed_docstrings", (), "env")
     app.connect("autodoc-process-signature", docstrings.shorten)
     app.connect("autodoc-process-docstring", docstrings.process, priority=400)

@@ -44,7 +44,7 @@ print(
 # ## The bearing it is compared with
 
 # %%
-ball = bearing("6305", clearance=10e-6)
+ball = bearing("6305", balls=7, clearance=10e-6)
 state = ball.displacement((0, -load, 90, 0, 0, 0))
 k_bearing = ball.stiffness(state)[1, 1]
 print(f"6305 under {load / 1e3:g} kN: {-state[1] * 1e6:.1f} µm, {k_bearing / 1e6:.0f} N/µm along the load")

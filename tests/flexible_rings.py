@@ -15,7 +15,7 @@ from bearingdyn.parts import FlexibleRing, Layer, RigidBody
 
 MM = 1e-3
 RUBBER = bd.Maxwell(G0=2e6, G=[2e6, 3e6], tau=[1e-3, 1e-5], K=2e9, density=1200.0)
-B6305 = bearing("6305", clearance=10e-6, damping=30.0)
+B6305 = bearing("6305", balls=7, clearance=10e-6, damping=30.0)
 SIZE = (27.5 * MM, 31 * MM, 17 * MM)
 LAYER = Layer(31 * MM, 35 * MM, 17 * MM, RUBBER)
 RING = FlexibleRing(*SIZE, arm=B6305.arm)

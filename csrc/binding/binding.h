@@ -40,7 +40,7 @@ typedef struct bd_py_word {
 } bd_py_word;
 
 extern const bd_py_word bd_py_isas[], bd_py_damping_laws[], bd_py_load_kinds[],
-    bd_py_channel_kinds[], bd_py_wave_kinds[], bd_py_pit_kinds[];
+    bd_py_channel_kinds[], bd_py_wave_kinds[], bd_py_pit_kinds[], bd_py_settled[];
 
 /* The code of a word, or a code itself. Returned: 0, or -1 with an exception that lists the words. */
 int bd_py_parse_word(PyObject *object, const char *what, const bd_py_word *words, int *code);
@@ -111,9 +111,14 @@ int bd_py_parse_bearing(PyObject *keep, PyObject *dict, bd_bearing_data *bearing
 int bd_py_parse_scheme(PyObject *keep, PyObject *dict, bd_scheme *scheme);
 
 PyObject *bd_py_bearing_force(PyObject *module, PyObject *args);
-PyObject *bd_py_bearing_along(PyObject *module, PyObject *args);
+PyObject *bd_py_bearing_settle(PyObject *module, PyObject *args);
 PyObject *bd_py_check_scheme(PyObject *module, PyObject *dict);
-extern const char bd_py_bearing_force_doc[], bd_py_bearing_along_doc[], bd_py_check_scheme_doc[];
+extern const char bd_py_bearing_force_doc[], bd_py_bearing_settle_doc[], bd_py_check_scheme_doc[];
+
+/* ---------------------------------------------------------------- along.c */
+
+PyObject *bd_py_bearing_along(PyObject *module, PyObject *args);
+extern const char bd_py_bearing_along_doc[];
 
 /* ---------------------------------------------------------------- model.c, march.c, harmonic.c: Model */
 

@@ -62,6 +62,7 @@ PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
     double *flat = bd_py_data(state), *rows = bd_py_data(record);
     bd_status status = BD_OK;
     Py_BEGIN_ALLOW_THREADS
+        bd_soften(model, &scheme, flat, false, work);
         if (start)
             status = bd_start(model, &scheme, &module->lapack, work, flat);
         if (status == BD_OK)
@@ -88,10 +89,14 @@ PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
         const double took = bd_py_seconds() - began;
 
         bd_py_report_add(&total, &part);
-        if (part.status == BD_REFACTOR) { /* the speed has moved on: factor where it is now */
+        if (part.status ==
+            BD_REFACTOR) { /* speed or strain have moved on: factor where they are now */
             Py_BEGIN_ALLOW_THREADS
-                total.status = bd_prepare(model, &scheme, &module->lapack,
-                                          bd_reference_speed(model, &scheme, flat, true), work);
+                bd_soften(model, &scheme, flat, true, work);
+                const double speed = bd_reference_speed(model, &scheme, flat, true);
+                total.status = scheme.speed.n == 1
+                                   ? bd_prepare_softened(model, &module->lapack, work)
+                                   : bd_prepare(model, &scheme, &module->lapack, speed, work);
             Py_END_ALLOW_THREADS
             total.refactors++;
         }

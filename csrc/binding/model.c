@@ -37,11 +37,34 @@ static PyObject *sequence(PyObject *keep, PyObject *object, const char *name)
     return failed ? NULL : items;
 }
 
+/* How a layer softens, or NULL with an exception. */
+static const bd_softening_data *parse_softening(PyObject *keep, PyObject *tuple, npy_intp rank)
+{
+    PyObject *strain_in, *table_in;
+    bd_softening_data *law = bd_py_scratch(keep, 1, sizeof *law);
+    if (!law || !PyTuple_Check(tuple)) {
+        if (law)
+            PyErr_SetString(PyExc_TypeError, "a layer's softening must be a tuple");
+        return NULL;
+    }
+    if (!PyArg_ParseTuple(tuple, "ddddddddOddO:softening", &law->D, &law->gamma_c, &law->m,
+                          &law->Lm, &law->gamma_l, &law->p, &law->memory, &law->pressed, &strain_in,
+                          &law->rate_first, &law->rate_last, &table_in))
+        return NULL;
+    law->strain = bd_py_doubles(keep, strain_in, "softening strain", 1, rank, -1);
+    law->table = law->strain ? bd_py_doubles(keep, table_in, "softening table", 2, 2, -1) : NULL;
+    if (!law->table)
+        return NULL;
+    law->n_table = (int)Py_MIN(bd_py_columns(keep), INT_MAX);
+    return law;
+}
+
 static int parse_layers(PyObject *keep, PyObject *items, npy_intp n, bd_layer_data *layers)
 {
     for (Py_ssize_t l = 0; l < PyTuple_GET_SIZE(items); l++) {
-        PyObject *L_in, *modulus_in, *tau_in;
-        if (!PyArg_ParseTuple(PyTuple_GET_ITEM(items, l), "OOO:layer", &L_in, &modulus_in, &tau_in))
+        PyObject *L_in, *modulus_in, *tau_in, *softening_in = Py_None;
+        if (!PyArg_ParseTuple(PyTuple_GET_ITEM(items, l), "OOO|O:layer", &L_in, &modulus_in,
+                              &tau_in, &softening_in))
             return -1;
         layers[l].L = bd_py_doubles(keep, L_in, "layer L", 2, n, -1);
         if (!layers[l].L)
@@ -56,6 +79,10 @@ static int parse_layers(PyObject *keep, PyObject *items, npy_intp n, bd_layer_da
             return -1;
         layers[l].rank = (int)Py_MIN(rank, INT_MAX);
         layers[l].n_branches = (int)Py_MIN(branches, INT_MAX);
+        layers[l].softening = NULL;
+        if (softening_in != Py_None &&
+            !(layers[l].softening = parse_softening(keep, softening_in, rank)))
+            return -1;
     }
     return 0;
 }
@@ -124,7 +151,9 @@ static int parse_channels(PyObject *keep, PyObject *items, npy_intp n, bd_channe
 PyDoc_STRVAR(
     model_doc,
     "Model(M, C, G, K, N, layers, bearings, loads, channels)\n\n"
-    "Immutable; arrays are copied. layers: (L, modulus, tau); bearings: (dict, B), see\n"
+    "Immutable; arrays are copied. layers: (L, modulus, tau), and softening where a layer "
+    "softens,\n"
+    "a tuple of bd_softening_data's fields; bearings: (dict, B), see\n"
     "BearingKernel.packed; loads: (kind, omega, p_cos, p_sin, time, value); channels: (kind, row,\n"
     "bearing, index), their kinds words or codes of LOAD_KINDS and CHANNEL_KINDS.\n"
     "See bd_model_data in bearingdyn.h.");

@@ -11,6 +11,7 @@ const bd_py_word bd_py_load_kinds[] = TABLE(BD_LOAD_LIST);
 const bd_py_word bd_py_channel_kinds[] = TABLE(BD_CHANNEL_LIST);
 const bd_py_word bd_py_wave_kinds[] = TABLE(BD_WAVE_LIST);
 const bd_py_word bd_py_pit_kinds[] = TABLE(BD_PIT_LIST);
+const bd_py_word bd_py_settled[] = TABLE(BD_SETTLED_LIST);
 
 /* Enumerators without their prefix BD_. */
 #define STATUS(name, value, text) {&#name[3], value},
@@ -93,6 +94,7 @@ int bd_py_add_words(PyObject *module)
         {"CHANNEL_KINDS", bd_py_channel_kinds},
         {"WAVE_KINDS", bd_py_wave_kinds},
         {"PIT_KINDS", bd_py_pit_kinds},
+        {"SETTLED", bd_py_settled},
         {"STATUSES", statuses},
     };
     for (size_t i = 0; i < Py_ARRAY_LENGTH(tables); i++)

@@ -12,6 +12,7 @@ LOAD_KINDS: Final[Mapping[str, int]]
 CHANNEL_KINDS: Final[Mapping[str, int]]
 WAVE_KINDS: Final[Mapping[str, int]]
 PIT_KINDS: Final[Mapping[str, int]]
+SETTLED: Final[Mapping[str, int]]
 STATUSES: Final[Mapping[str, int]]
 REPORT_FIELDS: Final[Mapping[str, str]]
 ENERGIES: Final[tuple[str, ...]]
@@ -83,5 +84,8 @@ def bearing_along(
     tangents: bool,
     /,
 ) -> tuple[_Array, _Array, _Array, _Array, _Array, _Array | None, _Array | None]: ...
+def bearing_settle(
+    bearing: dict[str, object], loads: _Array, radius: _Array, angle: float, shaft_angle: float, /
+) -> tuple[_Array, _Array, _Array]: ...
 def check_scheme(scheme: dict[str, object], /) -> None: ...
 def status_text(status: int, /) -> str: ...

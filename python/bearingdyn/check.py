@@ -28,7 +28,7 @@ CLOSED = "closed form"
 
 @dataclass(frozen=True)
 class Check:
-    """One comparison. `tolerance` is for the relative error; a case that raised has NaN and its error."""
+    """One check of the installed package. `tolerance` is of the relative error; NaN where the case raised."""
 
     case: str
     source: str
@@ -49,7 +49,7 @@ class Check:
 
 
 def hertz() -> Iterator[Check]:
-    """Three rows of Harris' table of the point contact; its last digits, and those of its F(ρ)."""
+    """Check of the installed package: three rows of Harris' table of the point contact; its last digits."""
     for F, *printed in ((0.4795, 1.4556, 0.7278, 0.9429), (0.90999, 3.233, 0.4499, 0.6636),
                         (0.9989156, 17.974, 0.18822, 0.2106)):  # fmt: skip
         contact = PointContact(Rx=1.0, Ry=(1 + F) / (1 - F), modulus=1.0)
@@ -59,7 +59,7 @@ def hertz() -> Iterator[Check]:
 
 
 def iso() -> Iterator[Check]:
-    """A single bearing of ISO/TS 16281; the digits given."""
+    """Check of the installed package: a single bearing of ISO/TS 16281; the digits given."""
 
     def brg(clearance: float) -> BallBearing:
         return BallBearing(7, 11.5e-3, 43.5e-3, 0.52, 0.53, clearance=clearance)
@@ -72,7 +72,7 @@ def iso() -> Iterator[Check]:
 
 
 def catalogue() -> Iterator[Check]:
-    """Ball pass of a catalogue bearing, and an oil's viscosity between its two given ones."""
+    """Check of the installed package: ball pass of a catalogue bearing, an oil's viscosity."""
     passes = bearing("6205", clearance=1e-5).frequencies(1797 * RPM).BPFO
     source = "Case Western Reserve University, bearing data"
     yield Check("6205, ball pass of the outer race at 1797 rpm, Hz", source, 107.36, passes, 5e-5)
@@ -85,7 +85,7 @@ def catalogue() -> Iterator[Check]:
 
 
 def maxwell() -> Iterator[Check]:
-    """Branch stress under a strain that grows at a constant rate, exact at any step; round-off."""
+    """Check of the installed package: branch stress under a strain at a constant rate; round-off."""
     G, tau = 1e6, 2e-3
     material = Maxwell(0.0, [G], [tau], K=2e9, density=1200.0)
     for ratio in (1e-4, 1.0, 30.0):
@@ -96,7 +96,7 @@ def maxwell() -> Iterator[Check]:
 
 
 def layers() -> Iterator[Check]:
-    """Torsion of a bonded ring, 4π G L a²b²/(b² − a²); a mesh of third order."""
+    """Check of the installed package: torsion of a bonded ring, 4π G L a²b²/(b² − a²), by third order."""
     a, b, L, G = 0.026, 0.028, 0.016, 1.5e6
     K = Layer(a, b, L, Elastic(2 * G * 1.49, 0.49, 1200.0)).stiffness()
     exact = 4 * math.pi * G * L * a**2 * b**2 / (b**2 - a**2)
@@ -104,7 +104,7 @@ def layers() -> Iterator[Check]:
 
 
 def rotors() -> Iterator[Check]:
-    """Whirl of a rigid rotor on springs, exact; a flexible one with two discs, of four or five digits."""
+    """Check of the installed package: whirl of a rigid rotor, exact; of one with two discs, 4 to 5 digits."""
     m, It, Ip, k, a, speed = 5.0, 0.02, 0.03, 1e6, 0.1, 700.0
     app = Application()
     app.add("rotor", RigidBody(m, (It, It, Ip), rotating=True))
@@ -138,7 +138,7 @@ def rotors() -> Iterator[Check]:
 
 
 def responses() -> Iterator[Check]:
-    """One mass on a spring and a damper: harmonic response, and a march against the scheme's own response."""
+    """Check of the installed package: one mass on spring and damper, harmonic, and marched by the scheme."""
     m, k, c, f, dt = 2.0, 2e5, 120.0, 80.0, 2e-4
     app = Application()
     app.add("mass", RigidBody(m, (1e-3, 1e-3, 1e-3)))
@@ -166,7 +166,7 @@ FAMILIES: tuple[Callable[[], Iterator[Check]], ...] = (
 
 
 def check(progress: Progress | None = None) -> list[Check]:
-    """Compute every case; one that raises an exception is a row that does not hold.
+    """Check the installed package: every case; one that raises an exception is a row that does not hold.
 
     Parameters
     ----------

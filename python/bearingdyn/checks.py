@@ -16,13 +16,13 @@ from bearingdyn.types import Array
 
 
 def require(ok: bool, field: str, value: object, remedy: str) -> None:
-    """Raise a ValueError naming field, value and remedy unless `ok`."""
+    """Check a condition: raise a ValueError naming field, value and remedy unless `ok`."""
     if not ok:
         raise ValueError(f"{field} is {value!r}; {remedy}")
 
 
 def number(field: str, value: object, remedy: str = "give one finite number") -> float:
-    """The value as a finite float; ValueError if it is anything else."""
+    """Check a number: the value as a finite float; ValueError if it is anything else."""
     # True is no length, and an array of one entry no number
     other = isinstance(value, (str, bytes, bool, np.bool_)) or np.ndim(value) > 0  # type: ignore[arg-type]
     try:
@@ -34,21 +34,21 @@ def number(field: str, value: object, remedy: str = "give one finite number") ->
 
 
 def positive(field: str, value: object, remedy: str = "it must be positive and finite") -> float:
-    """The value as a float > 0; ValueError if it is anything else."""
+    """Check a positive number: the value as a float > 0; ValueError if it is anything else."""
     x = number(field, value, remedy)
     require(x > 0, field, value, remedy)
     return x
 
 
 def nonnegative(field: str, value: object, remedy: str = "it must be zero or positive, and finite") -> float:
-    """The value as a float ≥ 0; ValueError if it is anything else."""
+    """Check a number that is zero or more: the value as a float ≥ 0; ValueError if it is anything else."""
     x = number(field, value, remedy)
     require(x >= 0, field, value, remedy)
     return x
 
 
 def numbers(field: str, value: ArrayLike, remedy: str, least: float = -math.inf) -> Array:
-    """One or more finite numbers ≥ `least` as an array (n,); ValueError if they are anything else."""
+    """Check one or more finite numbers ≥ `least`, as an array (n,); ValueError if they are anything else."""
     try:
         x = np.atleast_1d(real(value))
     except (TypeError, ValueError):
@@ -59,7 +59,7 @@ def numbers(field: str, value: ArrayLike, remedy: str, least: float = -math.inf)
 
 
 def real(value: ArrayLike) -> Array:
-    """A new array of real numbers; TypeError or ValueError for texts, truths, None and ragged lists."""
+    """Check real numbers, as a new array; TypeError or ValueError for text, bools, None and ragged lists."""
     found = np.asarray(value)
     if found.dtype.kind not in "iuf" and found.size:
         # numbers of another kind, as Fraction, come as objects
@@ -72,7 +72,7 @@ def real(value: ArrayLike) -> Array:
 
 
 def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> Array:
-    """The value as a finite float array of the given shape; ValueError if it is anything else."""
+    """Check a vector: a finite float array of the given shape; ValueError if it is anything else."""
     try:
         x = real(value)
     except (TypeError, ValueError):
@@ -85,7 +85,7 @@ def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> 
 
 
 def name_list(field: str, value: object, what: str = "channels") -> list[str]:
-    """The value as a list of names; ValueError for one name alone, or an entry that is no text."""
+    """Check a list of names; ValueError for one name alone, or an entry that is not text."""
     if isinstance(value, str):
         raise ValueError(f"{field} is {value!r}; give a list of {what}, [{value!r}]")
     try:
@@ -99,7 +99,7 @@ def name_list(field: str, value: object, what: str = "channels") -> list[str]:
 
 
 def items(field: str, value: object, remedy: str) -> list[Any]:
-    """The entries of a list, tuple or array; ValueError for a text, a mapping and what has no entries."""
+    """Check a list, tuple or array, as a list; ValueError for a text, a mapping and what has no entries."""
     try:
         require(not isinstance(value, str | bytes | Mapping), field, value, remedy)
         return list(value)  # type: ignore[call-overload, no-any-return]
@@ -108,12 +108,12 @@ def items(field: str, value: object, remedy: str) -> list[Any]:
 
 
 def instance(field: str, value: object, kinds: type | tuple[type, ...], remedy: str) -> None:
-    """Raise ValueError unless the value is one of the kinds."""
+    """Check that the value is an instance of one of the kinds, else raise ValueError."""
     require(isinstance(value, kinds), field, value, remedy)
 
 
 def named(field: str, value: object, remedy: str) -> dict[str, Any]:
-    """A mapping with names as keys, as a dict; ValueError for anything else."""
+    """Check a mapping with names as keys, as a dict; ValueError for anything else."""
     require(isinstance(value, Mapping), field, value, remedy)
     found = dict(cast(Mapping[str, Any], value))
     require(all(isinstance(name, str) and name for name in found), field, value, remedy)
@@ -121,7 +121,7 @@ def named(field: str, value: object, remedy: str) -> dict[str, Any]:
 
 
 def whole(field: str, value: object, least: int, most: int | None = None, remedy: str = "") -> int:
-    """The value as a whole number in least … most; ValueError if it is anything else."""
+    """Check a whole number in least … most; ValueError if it is anything else."""
     limit = f"of at least {least}" if most is None else f"in {least}...{most}"
     remedy = remedy or f"it must be a whole number {limit}"
     x = number(field, value, remedy)
@@ -130,13 +130,13 @@ def whole(field: str, value: object, least: int, most: int | None = None, remedy
 
 
 def meant(name: str, known: Collection[str]) -> str:
-    """The end of a message that a name is not known: the nearest that is, and all there are."""
+    """The end of a check's message that a name is not known: the nearest that is, and all there are."""
     near = difflib.get_close_matches(name, known, n=1)
     return (f"did you mean {near[0]!r}? " if near else "") + f"there are {sorted(known)}"
 
 
 def existing(path: str | os.PathLike[str], what: str = "file") -> Path:
-    """The path of a file that is there.
+    """Check that a file is there: its path.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def existing(path: str | os.PathLike[str], what: str = "file") -> Path:
 
 
 def one_of(field: str, value: object, choices: Sequence[object]) -> None:
-    """Raise ValueError unless the value is one of the choices."""
+    """Check that the value is one of the choices, else raise ValueError."""
     require(
         isinstance(value, str | int | float | None) and value in choices,
         field,

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import _core
 from bearingdyn.progress import Progress as Progress
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 Model = _core.Model
@@ -24,6 +24,7 @@ LOAD_KINDS = _core.LOAD_KINDS
 CHANNEL_KINDS = _core.CHANNEL_KINDS
 WAVE_KINDS = _core.WAVE_KINDS
 PIT_KINDS = _core.PIT_KINDS
+SETTLED = _core.SETTLED
 ISAS = _core.ISAS
 ENERGIES = _core.ENERGIES
 REPORT_FIELDS = _core.REPORT_FIELDS
@@ -39,7 +40,7 @@ class Packable(Protocol):
 
 
 class SolverError(RuntimeError):
-    """A march that could not go on.
+    """A march in the core that could not go on.
 
     Attributes
     ----------
@@ -59,7 +60,7 @@ class SolverError(RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """A march ended by the user.
+    """A march in the core ended by the user.
 
     Attributes
     ----------
@@ -77,7 +78,7 @@ class Interrupted(KeyboardInterrupt):
 
 @dataclass(frozen=True, kw_only=True)
 class Scheme:
-    """Newmark's scheme, and how exactly the bearing forces are found in it.
+    """The core's scheme, Newmark's, and how exactly the bearing forces are found in it.
 
     The step, the speed and the audit are arguments of the analysis that marches.
 
@@ -164,7 +165,7 @@ class Stepping:
 
 @dataclass(frozen=True)
 class Report:
-    """Where and how a march ended (bd_report); the sum of two is that of one march after the other.
+    """The core's report of where and how a march ended (bd_report); the sum of two is of one after the other.
 
     The fields are those of REPORT_FIELDS, which says of each whether it adds, or the first or last counts.
     """
@@ -204,7 +205,7 @@ class Report:
 
 
 def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Array, tau: Array) -> Array:
-    """Deviatoric stress (nt, m) of a material point under a strain rate (nt, m) linear between samples.
+    """Deviatoric stress (nt, m) by the core's history update, the strain rate (nt, m) linear between samples.
 
     It starts from e = 0 and S = 0.
 
@@ -241,7 +242,7 @@ def bearing_force(
     shaft_angle: float = 0.0,
     shaft_speed: float = 0.0,
 ) -> tuple[Array, Array, Array, Array]:
-    """Force of a bearing on its raceways' coefficients, its tangents, and the load of each ball.
+    """Force of a bearing by the core: on its raceways' coefficients, tangents, and the load of each ball.
 
     Parameters
     ----------
@@ -260,6 +261,32 @@ def bearing_force(
         g (n,) = +∇V, dg/dz (n, n), dg/dż (n, n), and the loads of the balls (Z,), N.
     """
     return _core.bearing_force(kernel.packed(), z, z_rate, angle, cage_speed, shaft_angle, shaft_speed)
+
+
+def bearing_settle(
+    kernel: Packable, loads: Array, radius: Array, angle: float, shaft_angle: float = 0.0
+) -> tuple[Array, Array, Array]:
+    """Where a bearing comes to rest under each of many loads, its outer ring held.
+
+    Parameters
+    ----------
+    kernel
+        The bearing, as `BearingKernel` packs it.
+    loads
+        (m, n) on the coefficients of the raceways, N.
+    radius
+        (m,) of the order of the expected displacement, m, positive.
+    angle
+        Azimuth of the first ball, rad.
+    shaft_angle
+        Of the shaft, rad.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Coefficients (m, n), loads of the balls (m, Z), N, and how each case ended (m,), codes of SETTLED.
+    """
+    return _core.bearing_settle(kernel.packed(), loads, radius, angle, shaft_angle)
 
 
 @dataclass(frozen=True, eq=False)
@@ -323,9 +350,11 @@ def bearing_along(
     ArithmeticError
         Where a force is not finite.
     """
-    *found, K, C = _core.bearing_along(kernel.packed(), z, z_rate, angle, speed, window, tangents)
+    g, loads, heat, pressing, turning, K, C = _core.bearing_along(
+        kernel.packed(), z, z_rate, angle, speed, window, tangents
+    )
     none = np.zeros((0, 0, 0))
-    return Along(*found, K=none if K is None else K, C=none if C is None else C)
+    return Along(g, loads, heat, pressing, turning, none if K is None else K, none if C is None else C)
 
 
 def march(
@@ -338,7 +367,7 @@ def march(
     start: bool = False,
     progress: Progress | None = None,
 ) -> tuple[Array, Array, Report]:
-    """March a state, and say how far it came, whatever the status.
+    """March a state in the core, and say how far it came, whatever the status.
 
     Parameters
     ----------
@@ -375,7 +404,7 @@ def harmonic(
     speed: float = 0.0,
     progress: Progress | None = None,
 ) -> Complex:
-    """Complex response (frequencies, outputs, inputs) to unit forces.
+    """Complex response (frequencies, outputs, inputs) of the core's model to unit forces.
 
     Parameters
     ----------
@@ -412,7 +441,7 @@ def harmonic(
 
 
 def time_of(model: Model, state: Array) -> float:
-    """Time of a state, s.
+    """Time of a state of the core, s.
 
     Parameters
     ----------
@@ -423,7 +452,7 @@ def time_of(model: Model, state: Array) -> float:
 
 
 def energies(model: Model, state: Array) -> dict[str, float]:
-    """What the audit of a march integrated, J, by the names of ENERGIES.
+    """What the audit of a march in the core integrated, J, by the names of ENERGIES.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ DT, STEPS, SETTLE = 2.5e-6, 40_000, 200_000
 
 
 def motor(rubber: Maxwell | None) -> Application:
-    """A shaft in two 6203 bearings, each in a pedestal, with a layer of rubber around the rings or none."""
+    """The demo's motor: a shaft in two 6203 bearings, each in a pedestal, with a layer of rubber or none."""
     app = Application()
     app.add(
         "shaft",
@@ -59,7 +59,7 @@ def motor(rubber: Maxwell | None) -> Application:
 
 
 def demo(folder: Path, tell: Callable[[str], object] = lambda _: None) -> dict[str, Any]:
-    """Compute the motor without and with its layer; write result.nc and response.png to the folder.
+    """The demo: the motor without and with its layer; writes result.nc and response.png to the folder.
 
     Parameters
     ----------

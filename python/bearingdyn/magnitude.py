@@ -19,7 +19,7 @@ __all__ = ["MAGNITUDES", "Magnitude", "UnusualMagnitude", "check_bulk", "check_d
 
 
 class Slip(NamedTuple):
-    """A unit that is often given instead: SI = scale × number + shift."""
+    """A slip of magnitude: a unit that is often given instead, SI = scale × number + shift."""
 
     unit: str
     scale: float
@@ -28,7 +28,7 @@ class Slip(NamedTuple):
 
 @dataclass(frozen=True)
 class Magnitude:
-    """What one quantity can be.
+    """What magnitudes one quantity can have.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ LARGEST_BODY = MAGNITUDES["length"].possible[1]
 
 
 def plausible(kind: str, field: str, value: object, remedy: str = "") -> float:
-    """The value as a float that can be meant.
+    """The value as a float of a magnitude that can be meant.
 
     Parameters
     ----------
@@ -332,7 +332,7 @@ def plausible(kind: str, field: str, value: object, remedy: str = "") -> float:
 
 
 def check_density(field: str, density: float) -> None:
-    """Raise ValueError for a density, kg/m³, that no solid has; 1e-4 to 0.1 mean a body without inertia."""
+    """Check the magnitude of a density, kg/m³; 1e-4 to 0.1 mean a body without inertia. Raises ValueError."""
     if not (LIGHTEST <= density <= HEAVIEST or MASSLESS[0] <= density <= MASSLESS[1]):
         raise ValueError(
             f"{field} is {density!r} kg/m³; it must be {LIGHTEST:g} to {HEAVIEST:g} kg/m³, as solids are; is "
@@ -342,7 +342,7 @@ def check_density(field: str, density: float) -> None:
 
 
 def check_bulk(field: str, K: float, G: float) -> None:
-    """Raise ValueError for a bulk modulus K that with the shear modulus G, both Pa, gives ν < 0."""
+    """Check the magnitude of a bulk modulus K: with the shear modulus G, both Pa, ν must not be negative."""
     if not K >= 2 / 3 * G:  # ν = (3K − 2G)/(6K + 2G)
         raise ValueError(
             f"{field} is {K:g} Pa, below 2/3 of the shear modulus, {G:.4g} Pa: Poisson's ratio would be "
@@ -351,7 +351,7 @@ def check_bulk(field: str, K: float, G: float) -> None:
 
 
 def check_waves(field: str, modulus: float, density: float) -> None:
-    """Raise ValueError for a modulus, Pa, and a density, kg/m³, in which sound runs slower than in any solid.
+    """Check the magnitude of a modulus, Pa, and a density, kg/m³, by the speed of sound. Raises ValueError.
 
     The kind of slip: steel of E = 210e3, in MPa, with 7850 kg/m³ has √(E/ρ) = 5.2 m/s.
     """
@@ -366,13 +366,13 @@ def check_waves(field: str, modulus: float, density: float) -> None:
 
 
 def check_speed_value(field: str, speed: float, pitch: float) -> None:
-    """Check a shaft's speed, rad/s, against the pitch diameter, m, of a bearing on it: n·dm."""
+    """Check the magnitude of a shaft's speed, rad/s, with the pitch diameter, m, of a bearing on it: n·dm."""
     value = abs(speed) * 30 / math.pi * pitch * 1e3
     plausible("speed value n·dm", f"{field} is {speed:.6g} rad/s; n·dm", value)
 
 
 def check_gyration(field: str, inertia: float, mass: float) -> None:
-    """Check a moment of inertia, kg m², against a mass, kg: its radius of gyration lies within the part.
+    """Check the magnitude of a moment of inertia, kg m², for a mass, kg: its radius of gyration.
 
     Beside the row's own limits, √(I/m) is compared with the side of a steel cube of that mass: a shell, a rod
     or a wheel reach some ten sides, an inertia in kg mm² is a thousand times further out.

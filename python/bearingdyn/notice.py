@@ -17,7 +17,7 @@ class Notice(UserWarning):
 
 
 class CoarseStep(Notice):
-    """The time step does not follow something that drives the march.
+    """Notice: the time step does not follow something that drives the march.
 
     When: a wave of a bearing, the passage of its balls, a pit, an unbalance, a harmonic or a sampled load has
     fewer than twenty steps a period, at the highest speed of the profile.
@@ -28,7 +28,7 @@ class CoarseStep(Notice):
 
 
 class FitWarning(Notice):
-    """Two neighbours at one interface hardly fit, by the radii and widths that are known of them.
+    """Notice: two neighbours at one interface hardly fit, by the radii and widths that are known of them.
 
     When: radii 1 to 5 % apart (above, they are refused); a bearing or a bonded layer that has less than nine
     tenths of its width on its seat; two interfaces joined that both face outwards, or both inwards.
@@ -39,7 +39,7 @@ class FitWarning(Notice):
 
 
 class OpenSideWarning(Notice):
-    """In a march, balls were pressed onto the side of an angular contact bearing that has no shoulder.
+    """Notice: a march pressed balls onto the side of an angular contact bearing that has no shoulder.
 
     The motion computed from then on is that of a bearing with two shoulders.
 
@@ -52,7 +52,7 @@ class OpenSideWarning(Notice):
 
 
 class UnusualMagnitude(Notice):
-    """An input is larger or smaller than machines have it; it was probably given in another unit.
+    """Notice: an input is larger or smaller than machines have it; it was probably given in another unit.
 
     When: a number lies outside the usual range of its row in `bearingdyn.magnitude.MAGNITUDES`, where it is
     given or where what it is compared with becomes known.
@@ -63,7 +63,7 @@ class UnusualMagnitude(Notice):
 
 
 class BearingWarning(Notice):
-    """A bearing is asked for more than its parts bear, or than its model covers.
+    """Notice: a bearing is asked for more than its parts bear, or than its model covers.
 
     When: a contact pressure exceeds 4.2 GPa (ISO 76), the static rating, in any analysis; or a shoulder cuts
     a contact ellipse.
@@ -72,8 +72,19 @@ class BearingWarning(Notice):
     """
 
 
+class PassedOver(Notice):
+    """A designation says something that the model of a bearing does not know.
+
+    When: `catalogue.bearing` reads a maker's name, seals, shields, a cage, a tolerance class, or a clearance
+    class beside a given clearance. The text says how the rest was read.
+
+    Remedy: none where that is what was meant; write the bare number, as "6205" or "6205 C3", to have no
+    warning.
+    """
+
+
 class UnloadedBearing(Notice):
-    """A linear analysis stands on a bearing that carries nothing, and so has no stiffness.
+    """Notice: a linear analysis stands on a bearing that carries nothing, and so has no stiffness.
 
     When: modes, a response or a Campbell diagram start from an equilibrium in which no ball of a bearing is
     pressed.
@@ -84,7 +95,7 @@ class UnloadedBearing(Notice):
 
 
 class BeyondData(Notice):
-    """A static answer rests on a modulus at longer times than the rubber's data speak of.
+    """Notice: a static answer rests on a modulus at longer times than the rubber's data speak of.
 
     When: `equilibrium`, a response at 0 Hz or a stiffness at rest takes the modulus of a layer relaxed, or
     `after` a time more than twice the longest that its fit reaches, and the data show no plateau there.
@@ -94,8 +105,18 @@ class BeyondData(Notice):
     """
 
 
+class BeyondSweep(Notice):
+    """A rubber vibrates with more strain than its law of softening was found from.
+
+    When: a response or a march with a law of softening (`payne`) reaches a strain above the highest of the
+    strain sweep.
+
+    Remedy: measure the strain sweep further; or take the answer as an extrapolation of the law.
+    """
+
+
 class OutsideIsotherms(Notice):
-    """A shift law is used at a temperature at which nothing was measured.
+    """Notice: a shift law is used at a temperature at which nothing was measured.
 
     When: a material is moved to (`at`, `Application.temperature`), or a master curve referred to, a
     temperature outside the isotherms its law was found from.
@@ -105,7 +126,7 @@ class OutsideIsotherms(Notice):
 
 
 class PoorLaw(Notice):
-    """A shift law renders the shifts of the isotherms far worse than they are known.
+    """Notice: a shift law renders the shifts of the isotherms far worse than they are known.
 
     When: `master_curve` fits a law that misses the shifts by 0.3 decade rms, or by ten times their own
     standard errors, or that doubles the misfit of the moduli.
@@ -115,7 +136,7 @@ class PoorLaw(Notice):
 
 
 class UnevenShifts(Notice):
-    """The shifts of neighbouring isotherms zigzag, or rise with temperature, as no polymer's do.
+    """Notice: the shifts of neighbouring isotherms zigzag, or rise with temperature, as no polymer's do.
 
     When: a step of `master_curve`'s shifts, per kelvin, is below half the smaller, or above twice the
     larger, of its neighbours by 0.15 decade or more, or has the other sign.
@@ -125,7 +146,7 @@ class UnevenShifts(Notice):
 
 
 class MixedRuns(Notice):
-    """One curve is made of several runs (specimens), whose levels may differ by more than the fit's errors.
+    """Notice: a curve is made of several runs, whose levels may differ by more than the fit's errors.
 
     When: `master_curve` gets points of several runs, as a column of the table names them, that nobody chose.
 
@@ -134,7 +155,7 @@ class MixedRuns(Notice):
 
 
 class CutFile(Notice):
-    """A file ends inside a character: it was cut off in copying, and its last line is left out.
+    """Notice: a file ends inside a character: it was cut off in copying, and its last line is left out.
 
     When: `read_dma` reads a UTF-16 text of an odd number of bytes.
 
@@ -143,7 +164,7 @@ class CutFile(Notice):
 
 
 class OutsideBand(Notice):
-    """A material model is used at a frequency it was not fitted at.
+    """Notice: a material model is used at a frequency it was not fitted at.
 
     When: a Maxwell model that knows its band is asked for its modulus outside it, in a response, in damped
     modes or by `complex_modulus`; or `fit_maxwell` is given a band that reaches beyond the master curve.
@@ -154,7 +175,7 @@ class OutsideBand(Notice):
 
 
 class AssumedMeaning(Notice):
-    """A file does not say what a number means, and the usual is taken.
+    """Notice: a file does not say what a number means, and the usual is taken.
 
     When: `read_dma` finds no unit for a frequency or a temperature, an angular frequency in a unit of
     frequency, moduli of which only the words around them tell shear from tension, or a temperature only in
@@ -165,7 +186,7 @@ class AssumedMeaning(Notice):
 
 
 class LeftOut(Notice):
-    """Something of a measurement is not used.
+    """Notice: something of a measurement is not used.
 
     When: `read_dma` leaves out rows that are not valid or stand behind the table; `master_curve` leaves out
     points that no passive material could give, such as a resonance of the fixture.
@@ -176,7 +197,7 @@ class LeftOut(Notice):
 
 
 class UnlikelyModulus(Notice):
-    """A measured modulus is far from what gels, elastomers and polymers have; its unit is likely wrong.
+    """Notice: a measured modulus is far from what gels, elastomers and polymers have; a wrong unit, likely.
 
     When: the median of the storage moduli that `read_dma` read lies outside 100 Pa to 20 GPa, or no storage
     modulus is as large as a rubber's.
@@ -186,7 +207,7 @@ class UnlikelyModulus(Notice):
 
 
 class ThinIsotherm(Notice):
-    """A shift rests on a single point.
+    """Notice: a shift rests on a single point.
 
     When: `master_curve` meets an isotherm with one frequency only.
 
@@ -195,7 +216,7 @@ class ThinIsotherm(Notice):
 
 
 class CoarseModel(Notice):
-    """No number of branches tried renders the measurement within the tolerance.
+    """Notice: no number of branches tried renders the measurement within the tolerance.
 
     When: `fit_maxwell(n="auto")` has tried all it may.
 
@@ -205,7 +226,7 @@ class CoarseModel(Notice):
 
 
 class TensionAsShear(Notice):
-    """Moduli measured in tension are turned into shear by the bulk modulus alone.
+    """Notice: moduli measured in tension are turned into shear by the bulk modulus alone.
 
     When: `fit_maxwell` is given a master curve in tension.
 
@@ -214,7 +235,7 @@ class TensionAsShear(Notice):
 
 
 class UnfinishedLine(Notice):
-    """The last number of a text file may have been cut.
+    """Notice: the last number of a text file may have been cut.
 
     When: the file's last line has no line end, which programs write and a copy that broke off lacks.
 
@@ -223,7 +244,7 @@ class UnfinishedLine(Notice):
 
 
 def warn(text: str, category: type[Notice]) -> None:
-    """Warn at the nearest caller that is not of this package.
+    """Issue a warning at the nearest caller that is not of this package.
 
     The caller is known by its module's name, not its file: the `__init__` of a dataclass has no file.
     """

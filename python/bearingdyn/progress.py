@@ -10,14 +10,17 @@ from contextlib import contextmanager
 from typing import TypeAlias
 
 Progress: TypeAlias = Callable[[int, int], object]
+
+
 """Called with what is done and what there is to do."""
+
 
 DELAY = 1.0  # s, after which a bar that nobody asked for appears
 
 
 @contextmanager
 def told(progress: Progress | bool | None, unit: str) -> Iterator[Progress | None]:
-    """The function to be told of progress, or None, for as long as the work lasts.
+    """The function to be told of the progress, or None, for as long as the work lasts.
 
     Parameters
     ----------
@@ -69,3 +72,10 @@ def _watched() -> bool:
         and threading.current_thread() is threading.main_thread()
         and multiprocessing.parent_process() is None
     )
+
+
+def part_of(progress: Progress | None, done: int, total: int) -> Callable[[int, int], object] | None:
+    """Progress of one piece as progress of the whole."""
+    if progress is None:
+        return None
+    return lambda piece, _: progress(done + piece, total)

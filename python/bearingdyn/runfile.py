@@ -49,7 +49,7 @@ _LARGEST = 2**53  # of a count of steps: beyond, doubles no longer tell one from
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """Rows (n, channels) recorded, the state after them, and the report; of that the counts are kept."""
+    """A chunk of a run file: rows (n, channels) recorded, the state after them, and the report's counts."""
 
     rows: Array
     state: Array
@@ -101,7 +101,7 @@ class Chunk:
 
 
 def report_of(chunks: Sequence[Chunk]) -> Report:
-    """The report of all chunks together, one or more."""
+    """The report of all chunks of a run file together, one or more."""
     return sum((chunk.report for chunk in chunks[1:]), chunks[0].report)
 
 
@@ -122,7 +122,7 @@ def _version(data: bytes) -> int:
 
 
 def read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[Chunk], int]:
-    """Header, every finished chunk, and where the last of them ends, in bytes.
+    """Read a run file: header, every finished chunk, and where the last of them ends, in bytes.
 
     Raises
     ------

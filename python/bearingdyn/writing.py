@@ -18,7 +18,7 @@ KINDS = (
 
 
 def write_whole(path: str | os.PathLike[str], data: bytes | memoryview) -> None:
-    """Write a file under another name beside it, wait until it is on the disk, and move it into place.
+    """Write a file whole or not at all: under another name, wait for the disk, and move it into place.
 
     A link keeps pointing where it does: the file behind it is replaced. A file that was there keeps its
     permissions.
@@ -48,7 +48,7 @@ def write_whole(path: str | os.PathLike[str], data: bytes | memoryview) -> None:
 
 
 def check_target(path: str | os.PathLike[str]) -> int | None:
-    """Permissions of the file at a place, None where there is none yet; OSError where none can be written."""
+    """Check that a file can be written: its permissions, None where there is none yet; OSError otherwise."""
     target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
         raise _named(

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from bearingdyn.analysis import Equilibrium, equilibrium, frequency_response, modes, transient
-from bearingdyn.analysis.statics import lost
+from bearingdyn.analysis.static_balance import lost
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, Pit, Waviness
 from bearingdyn.parts import Layer, RigidBody

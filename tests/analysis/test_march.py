@@ -12,7 +12,8 @@ import xarray
 
 import bearingdyn as bd
 from bearingdyn import core
-from bearingdyn.analysis.march import March, system_hash
+from bearingdyn.analysis.march import March
+from bearingdyn.analysis.march_state import system_hash
 from rotors import motor, oscillator
 
 ARGUMENTS = {"speed": 300.0, "dt": 1e-5, "steps": 50, "record": ["shaft.end.y"]}

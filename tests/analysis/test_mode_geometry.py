@@ -17,7 +17,7 @@ mpl.use("Agg")
 from bearingdyn import plot
 from bearingdyn.analysis import equilibrium, mode_shapes, mode_surfaces, modes
 from bearingdyn.application import Application
-from bearingdyn.application.rigid import rigid_shapes
+from bearingdyn.application.free_motions import rigid_shapes
 from bearingdyn.fem import Section, SolidMesh, rigid_motion
 from bearingdyn.fem.meshes.solid_mesh import second_order
 from bearingdyn.material import STEEL

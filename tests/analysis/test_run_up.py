@@ -14,7 +14,7 @@ from bearingdyn import core
 from bearingdyn.analysis import transient
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
-from bearingdyn.bearing.excitation import Pit, Waviness
+from bearingdyn.bearing.imperfections import Pit, Waviness
 from bearingdyn.fem import Section
 from bearingdyn.material import Elastic
 from bearingdyn.parts import Disc, Shaft

@@ -20,7 +20,7 @@ from bearingdyn.analysis import (
     transient,
     unbalance_response,
 )
-from bearingdyn.analysis.channels import channel_of
+from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.steady import balance
 from bearingdyn.application import Application

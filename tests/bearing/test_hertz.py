@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bearingdyn.bearing.contact_damping import resultant_damping
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.hertz import (
     PointContact,
     contact_modulus,
     ellipticity,
     race_contact,
-    resultant_damping,
     resultant_deflection_coefficient,
 )
 from bearingdyn.material import STEEL, Elastic

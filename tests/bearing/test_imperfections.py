@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from bearingdyn import _core, core
 from bearingdyn.bearing import BallBearing, BearingKernel
-from bearingdyn.bearing.excitation import Pit, Waviness
+from bearingdyn.bearing.imperfections import Pit, Waviness
 from core_models import KERNEL, replaced
 from twins import bearing_twin
 

@@ -6,17 +6,10 @@ import math
 
 import pytest
 
+from bearingdyn.bearing.film_thickness import dimensionless_film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.bearing.lubricant import (
-    Lubricant,
-    Walther,
-    barus,
-    dimensionless_film,
-    hamrock_dowson,
-    nijenbanning_venner_moes,
-    roelands,
-    roelands_exponent,
-)
+from bearingdyn.bearing.lubricant import Lubricant, Walther
+from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent
 
 CONTACT = PointContact(Rx=4e-3, Ry=80e-3, modulus=115e9)
 

@@ -10,10 +10,10 @@ import pytest
 
 from bearingdyn.bearing import BallBearing, Lubricant, Walther, lubricate
 from bearingdyn.bearing.catalogue import bearing
-from bearingdyn.bearing.lubricant import wijnant_damping
+from bearingdyn.bearing.contact_damping import wijnant_damping
 
 OIL = Lubricant(Walther.iso_vg(32), density=870.0, alpha=2e-8)
-BRG = bearing("6305", clearance=10e-6)
+BRG = bearing("6305", balls=7, clearance=10e-6)
 AXIAL = (0, 0, 300.0, 0, 0, 0)
 SPEED = 150.0
 

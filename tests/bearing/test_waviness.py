@@ -13,7 +13,7 @@ from scipy import signal
 from bearingdyn.analysis import equilibrium, transient
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing
-from bearingdyn.bearing.excitation import Pit, Waviness
+from bearingdyn.bearing.imperfections import Pit, Waviness
 from bearingdyn.parts import RigidBody
 
 # Dw/Dpw = 1/4 and cos α = 0.8: γ = 0.2, cage 0.4, spin (1 − γ²)·2 = 1.92 of the shaft's speed, so that every

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from bearingdyn import core
 from bearingdyn.bearing import BallBearing, LoadDamping, TabulatedDamping
-from bearingdyn.bearing.kernel import Damping
+from bearingdyn.bearing.contact_damping import Damping
 from core_models import stepping
 
 NO_TABLE = np.zeros(0)

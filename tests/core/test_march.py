@@ -9,7 +9,7 @@ import pytest
 
 from bearingdyn import core
 from bearingdyn.bearing import BallBearing, BearingKernel, LoadDamping, TabulatedDamping
-from bearingdyn.bearing.excitation import Pit, Waviness
+from bearingdyn.bearing.imperfections import Pit, Waviness
 from core_models import stepping
 from twins import march_twin as twin
 

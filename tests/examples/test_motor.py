@@ -282,7 +282,7 @@ def test_contact_statistics_tell_of_the_loaded_balls_what_the_march_counts(side:
     assert found["loaded"].values == pytest.approx(share, abs=1e-12)  # two counts of the same samples
     assert (1 - found["free"].values).sum() == pytest.approx(counted.mean(), rel=1e-12)
     # in two turns of the cage every ball leaves the loaded zone twice, and is loaded as long as any other
-    turn = 2 * np.pi / (motor.bearing("6305", clearance=10e-6).cage_ratio * motor.SPEED)
+    turn = 2 * np.pi / (motor.bearing("6305", balls=motor.BALLS, clearance=10e-6).cage_ratio * motor.SPEED)
     assert 2 * turn == pytest.approx(26_000 * motor.STEP, rel=0.01)
     assert (found["losses"].values >= 2).all()
     # the record ends within 1 % of two turns

@@ -21,7 +21,7 @@ import pytest
 
 import bearingdyn
 from bearingdyn import _core, core
-from bearingdyn.bearing import excitation, kernel
+from bearingdyn.bearing import contact_damping, imperfections
 
 ROOT = Path(__file__).resolve().parents[2]
 CSRC = ROOT / "csrc"
@@ -31,8 +31,8 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 
 # A room may import the rooms of earlier rows, and nothing beside or after it. "" is bearingdyn/__init__.py.
 ORDER: tuple[tuple[str, ...], ...] = (
-    ("progress", "short", "types"),
-    ("checks", "core", "inputs", "notice", "writing"),
+    ("progress", "short_repr", "types"),
+    ("checks", "core", "fingerprint", "notice", "writing"),
     ("magnitude",),
     ("material",),
     ("bearing", "fem"),
@@ -281,11 +281,11 @@ C_WORDS = {
 # Tables that name words of C for a meaning that C does not know: (module, list of words): the reason.
 MAY_NAME_WORDS = {
     (
-        "bearingdyn.application.place",
+        "bearingdyn.application.channel",
         "CHANNEL_KINDS",
     ): "what the place of a structure can be asked for, and its units",
     (
-        "bearingdyn.analysis.harmonic",
+        "bearingdyn.analysis.frequency_response",
         "CHANNEL_KINDS",
     ): "the units of a response",
     ("bearingdyn.bearing.ball_bearing", "PIT_KINDS"): "how far each body turns as the balls go round",
@@ -293,7 +293,7 @@ MAY_NAME_WORDS = {
 }
 
 # Types that spell words out for the type checker; they must be all words of a list.
-WORD_TYPES = {"DAMPING_LAWS": kernel.Law, "PIT_KINDS": excitation.Body}
+WORD_TYPES = {"DAMPING_LAWS": contact_damping.Law, "PIT_KINDS": imperfections.Body}
 
 
 def word_tables(tree: ast.AST) -> Iterator[tuple[int, str]]:

@@ -15,9 +15,9 @@ FOUND = re.compile(r"^from bearingdyn\.material\.(\w+)(\.\w+)? import (.+?)$", r
 
 # A room may import those of earlier rows, by their doors.
 ORDER = (
-    ("low_end",),
-    ("creep", "dma", "elastic", "fit_report", "retuning", "shift_laws", "spectrum"),
-    ("maxwell", "relaxation"),
+    ("isotherms", "low_end", "shear_from_tension"),
+    ("beyond_data", "creep", "dma", "elastic", "fit_report", "relaxation_spectrum", "retuning", "shift_laws"),
+    ("maxwell", "relaxation_data"),
     ("reading", "superposition"),
     ("identification",),
     ("complex_moduli", "export"),

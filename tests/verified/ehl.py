@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.bearing import ehl
-from bearingdyn.bearing.ehl.groups import scales
+from bearingdyn.bearing.ehl.dimensionless_groups import scales
 from bearingdyn.bearing.hertz import PointContact
 from verified.row import INDEPENDENT, Row, rows
 

@@ -1,22 +1,25 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
+from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.campbell import campbell
-from bearingdyn.analysis.contact import ball_channels, contact_statistics
+from bearingdyn.analysis.dissipation import dissipation
+from bearingdyn.analysis.energy_shares import energy_shares
+from bearingdyn.analysis.envelope import envelope_spectrum
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
-from bearingdyn.analysis.harmonic import frequency_response
-from bearingdyn.analysis.losses import dissipation
+from bearingdyn.analysis.frequency_response import frequency_response
+from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.modes import modes
-from bearingdyn.analysis.radiation import radiated_power
-from bearingdyn.analysis.shapes import MovedSurface, mode_shapes, mode_surfaces
-from bearingdyn.analysis.shares import energy_shares
-from bearingdyn.analysis.spectra import orbit, spectrum
-from bearingdyn.analysis.spectra_orders import order_spectrum, shaft_angle, track_orders
-from bearingdyn.analysis.spectra_time import envelope_spectrum, waterfall
+from bearingdyn.analysis.orbit import orbit
+from bearingdyn.analysis.orders import order_spectrum, track_orders
+from bearingdyn.analysis.radiated_power import radiated_power
+from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
+from bearingdyn.analysis.shaft_speed import shaft_angle
+from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.static_summary import static_summary
-from bearingdyn.analysis.statics import BearingState
 from bearingdyn.analysis.steady import steady_state
 from bearingdyn.analysis.transient import transient, transients
-from bearingdyn.analysis.unbalance import unbalance_response
+from bearingdyn.analysis.unbalance_response import unbalance_response
+from bearingdyn.analysis.waterfall import waterfall
 
 __all__ = [
     "BearingState",

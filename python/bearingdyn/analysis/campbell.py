@@ -8,12 +8,13 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import ArrayLike
 
-from bearingdyn.analysis.directions import directions
-from bearingdyn.analysis.equilibrium import Equilibrium, state_of, system_of
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
+from bearingdyn.analysis.mode_directions import directions
+from bearingdyn.analysis.mode_whirl import whirl
 from bearingdyn.analysis.modes import modes
-from bearingdyn.application import Application, Place
+from bearingdyn.application import Application
 from bearingdyn.checks import numbers, whole
-from bearingdyn.system import System
+from bearingdyn.system import System, system_of
 from bearingdyn.types import Array, Complex
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 MARGIN = 12
 # what an octave between two frequencies costs of the modes' assurance: it decides where shapes do not
 OCTAVE = 0.1
-# kinetic energy of the lateral motion, of the whole: below it a mode does not whirl, it turns or stretches
-LATERAL = 1e-8
 
 
 def campbell(
@@ -36,7 +35,7 @@ def campbell(
     damped: bool = True,
     modulus: str = "relaxed",
 ) -> xarray.Dataset:
-    """Find the modes at each speed, and follow each from speed to speed by its shape.
+    """Find the Campbell diagram: the modes at each speed, followed from speed to speed by their shapes.
 
     The bearings keep the tangents of the equilibrium. Modes that are double at standstill are distinct at
     speed, where gyroscopic forces part them: they are therefore followed from the highest speed down, by the
@@ -142,31 +141,6 @@ def campbell(
         },
         {"speed": (given, "rad/s")},
     )
-
-
-def whirl(system: System, shapes: Complex) -> Array:
-    """Whirl (m,), −1 … 1, of the parts that turn, in shapes (m, n) e^{λt} with Im λ > 0.
-
-    It is 2 Σ Im(x y*)/Σ(|x|² + |y|²) over the interfaces and outputs of those parts. Where they do not move
-    sideways, as a rigid body that tilts about its centre, their tilts θx, θy take the place of x, y.
-    """
-    turning = set(system.turning)
-    rows = [r for name, r in system.outputs.items() if not turning or Place.parse(name).part in turning]
-    mass = np.abs(np.einsum("mi,ij,mj->m", shapes.conj(), system.M, shapes))
-    found = np.zeros(len(shapes))
-    for first, heavy in ((3, _tilting(system)), (0, float(np.abs(system.M).max()))):
-        both = [np.array([r[k] for r in rows if len(r) > k]) for k in (first, first + 1)]
-        x, y = (r.reshape(-1, system.n) @ shapes.T for r in both)
-        size = (np.abs(x) ** 2 + np.abs(y) ** 2).sum(axis=0)
-        turns = 2.0 * (x * y.conj()).imag.sum(axis=0)
-        np.divide(turns, size, out=found, where=size * heavy > LATERAL * mass)
-    return found
-
-
-def _tilting(system: System) -> float:
-    """The largest moment of inertia of a part about x or y of its first interface, kg m²; 0 if unknown."""
-    inertia = [np.einsum("ik,ij,jk->k", t.rigid[:, 3:5], t.element.M, t.rigid[:, 3:5]) for t in system.parts]
-    return float(np.nanmax(inertia, initial=0.0)) if inertia else 0.0
 
 
 def _assurance(M: Array, a: Complex, b: Complex) -> Array:

@@ -15,13 +15,13 @@ TRANSITION = (STOP - PASS) / 2  # cycles per kept sample
 
 
 def half_length(every: int) -> int:
-    """Steps that a kept sample looks back, and ahead; Kaiser's (A − 7.95)/(14.36 Δf) taps in all."""
+    """Steps that the decimation filter looks back, and ahead; Kaiser's (A − 7.95)/(14.36 Δf) taps in all."""
     return math.ceil((ATTENUATION - 7.95) / (14.36 * TRANSITION) * every / 2)
 
 
 @cache
 def taps(every: int) -> Array:
-    """Weights (half_length + 1,) of a step and of the pairs around it: a sinc under a Kaiser window."""
+    """Weights (half_length + 1,) of the decimation filter from its middle: a sinc under Kaiser's window."""
     half = half_length(every)
     k = np.arange(half + 1)
     cutoff = (PASS + STOP) / 2 / every  # of the old Nyquist frequency
@@ -33,7 +33,7 @@ def taps(every: int) -> Array:
 
 
 class Decimator:
-    """Takes the rows of all steps and gives every n-th, filtered; the same bits however the rows are cut.
+    """Keeps every n-th step of a march, low-passed; the same bits however the rows are cut.
 
     Parameters
     ----------

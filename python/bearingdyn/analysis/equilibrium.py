@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import cast
 
 import numpy as np
 
-from bearingdyn.analysis.statics import BearingState, Statics, diagonal_blocks
+from bearingdyn.analysis.bearing_state import BearingState
+from bearingdyn.analysis.static_balance import Statics, diagonal_blocks
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, check_bearing_pressure, runs_off
 from bearingdyn.checks import one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import warn_beyond
 from bearingdyn.notice import UnloadedBearing, warn
-from bearingdyn.system import BearingTerm, LoadTerm, System, assemble
+from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
 from bearingdyn.types import Array
 
 PARTED = 1e-9
@@ -25,7 +25,7 @@ PARTED = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A static state, from which every other analysis starts.
+    """The static equilibrium, from which every other analysis starts.
 
     The free spin of shafts about z is left at zero.
 
@@ -130,7 +130,7 @@ def equilibrium(
     after: float | None = None,
     average: int = 1,
 ) -> Equilibrium:
-    """Find the nonlinear static state under the constant loads, with the cages at `angle`.
+    """Find the static equilibrium under the constant loads, with the cages at `angle`.
 
     The energy of the structure and of the balls is convex. Newton steps in a trust region find its one
     minimum from any start, whether clearances are open or closed.
@@ -226,13 +226,13 @@ def equilibrium(
 
 
 def state_of(source: object) -> dict[str, str]:
-    """Attribute of a result that says which state of the layers it started from."""
+    """Attribute of a result that says which state of the layers its equilibrium has."""
     layered = isinstance(source, Equilibrium) and source.system.layers
     return {"layers": source.layers} if isinstance(source, Equilibrium) and layered else {}
 
 
 def warn_at_rest(system: System, time: float) -> None:
-    """Warn of layers whose data do not speak of a time, s, after loading; inf: relaxed (BeyondData)."""
+    """Warn of an equilibrium at a time, s, that a layer's data do not cover; inf: relaxed (BeyondData)."""
     warn_beyond(
         [(layer.part, layer.material) for layer in system.layers],
         time,
@@ -251,15 +251,6 @@ def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, Bear
             raise ValueError(f"bearing {term.name!r} is loaded by ({force}) N; {astray}; {OPEN_SIDE_REMEDY}")
 
 
-def system_of(field: str, source: object) -> System:
-    """The system of an application, or the system itself; ValueError for anything else."""
-    if isinstance(source, System):
-        return source
-    remedy = "it must be an Application (bd.Application()), or its system"
-    require(isinstance(source, Application), field, source, remedy)
-    return assemble(cast(Application, source))
-
-
 def with_loads(system: System, loads: tuple[LoadTerm, ...]) -> System:
-    """The system under other loads."""
+    """The system of an equilibrium under other loads."""
     return replace(system, loads=loads)

@@ -3,37 +3,40 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn import core, inputs, runfile
-from bearingdyn.analysis.channels import channel_of
-from bearingdyn.analysis.coarseness import warn_if_coarse
+from bearingdyn import core, fingerprint, runfile
+from bearingdyn.analysis.core_channels import CoreChannel, channel_of
 from bearingdyn.analysis.decimation import Decimator, half_length
-from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, system_of
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
+from bearingdyn.analysis.march_state import check_state, moved, system_hash
+from bearingdyn.analysis.shaft_speed import drive_of
+from bearingdyn.analysis.softening import memory_of
+from bearingdyn.analysis.step_size import warn_if_coarse
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
-from bearingdyn.checks import number, numbers, positive, require, whole
+from bearingdyn.checks import positive, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.notice import OpenSideWarning, warn
+from bearingdyn.progress import part_of
 from bearingdyn.results import inputs_of
-from bearingdyn.system import System
+from bearingdyn.system import System, system_of
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
+
 
 # words of a state: steps since its clock began, and their size (csrc/state.c)
 STEPS, STEP = 1, 2
 NEVER = 2**62  # a decimation that keeps nothing
 # steps between two chunks on the disk: a tenth of a second or so, which a kill may cost
 CHUNK_STEPS = 50_000
-# a number of a state beyond this belongs to no machine in SI units, and its cube would still be finite
-ABSURD = 1e100
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -54,6 +57,8 @@ class March:
         Steps before the record, steps of the record, and every how many a sample is kept.
     filter
         Whether what is kept is low-passed.
+    memory
+        Time, s, over which layers that soften remember their amplitude; None where none does.
     """
 
     system: System
@@ -65,6 +70,7 @@ class March:
     steps: int
     decimate: int
     filter: bool = False
+    memory: float | None = None
 
     @classmethod
     def of(
@@ -79,6 +85,7 @@ class March:
         filter: bool = False,
         audit: bool = False,
         scheme: core.Scheme | None = None,
+        memory: float | None = None,
         least_steps: int = 0,
     ) -> March:
         """Prepare a march from an equilibrium, an application (its equilibrium is found) or a system at zero.
@@ -120,7 +127,20 @@ class March:
         warn_if_coarse(system, fastest, dt)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
-        return cls(system=system, modal=modal, T=T, x=x, stepping=stepping, filter=bool(filter), **counts)
+        return cls(
+            system=system,
+            modal=modal,
+            T=T,
+            x=x,
+            stepping=stepping,
+            filter=bool(filter),
+            memory=memory_of(system, drive, memory),
+            **counts,
+        )
+
+    def model(self, channels: list[CoreChannel]) -> core.Model:
+        """The core's model, with these channels."""
+        return self.modal.model(channels, memory=self.memory)
 
     @property
     def total(self) -> int:
@@ -215,8 +235,13 @@ class March:
 
         Every field of the stepping and of its scheme is in it.
         """
-        return inputs.fingerprint(
-            {"system": system_hash(self.modal), "stepping": self.stepping, "state": state}
+        return fingerprint.fingerprint(
+            {
+                "system": system_hash(self.modal),
+                "stepping": self.stepping,
+                "state": state,
+                **({} if self.memory is None else {"memory": self.memory}),
+            }
         )
 
     def pieces(
@@ -438,87 +463,3 @@ class March:
                 result,
             )
         return result
-
-
-def system_hash(system: System) -> str:
-    """Fingerprint (32 hexadecimal digits) of what a state's numbers mean: matrices and all terms."""
-    return inputs.fingerprint(
-        {
-            "matrices": [system.M, system.C, system.G, system.K, system.N],
-            "layers": [
-                (t.L, t.material.G0, t.material.G, t.material.tau, t.material.eta0) for t in system.layers
-            ],
-            "bearings": [(t.kernel().packed(), t.B) for t in system.bearings],
-            "loads": system.loads,
-        }
-    )
-
-
-def drive_of(speed: float | tuple[ArrayLike, ArrayLike]) -> float | tuple[Array, Array]:
-    """The speed of the shaft as one number, rad/s, or as times in s and speeds in rad/s, (n,) each.
-
-    Raises
-    ------
-    ValueError
-        For anything else, and for times that do not increase.
-    """
-    either = "give one finite number in rad/s, or (times in s, speeds in rad/s)"
-    if not isinstance(speed, tuple):
-        return number("speed", speed, either)
-    if len(speed) != 2:
-        raise ValueError(f"speed has {len(speed)} parts; {either}")
-    try:
-        times, speeds = (np.atleast_1d(np.array(part, dtype=np.float64)) for part in speed)
-    except (TypeError, ValueError):
-        raise ValueError(f"speed is {speed!r}; {either}") from None
-    if times.shape != speeds.shape or times.ndim != 1 or times.size < 2:
-        raise ValueError(
-            f"speed has {times.size} times and {speeds.size} speeds; give two or more of each, or one number"
-        )
-    if not (np.isfinite(times).all() and np.isfinite(speeds).all() and (np.diff(times) > 0).all()):
-        raise ValueError("speed: times must increase and all numbers be finite, in s and rad/s")
-    return times, speeds
-
-
-def check_state(field: str, state: Array) -> None:
-    """Refuse a state with a number that is not finite, or that no march in SI units reaches: ValueError."""
-    beyond = np.flatnonzero(~(np.abs(state) < ABSURD))
-    if beyond.size:
-        raise ValueError(
-            f"{field} holds a state whose number {beyond[0]} is {state[beyond[0]]:g}; every number must be "
-            f"finite and below {ABSURD:g}: the march had diverged, start anew with a smaller dt"
-        )
-
-
-def moved(system: System, x: Array, initial: Mapping[str, ArrayLike]) -> Array:
-    """Coordinates nearest to x (n,) that put every place where it is wanted.
-
-    Raises
-    ------
-    ValueError
-        For a place that does not exist, a displacement that is not finite, or places that cannot make these
-        motions together.
-    """
-    given = {}
-    for name, target in initial.items():
-        count = len(system.rows(name))
-        field, remedy = f"initial[{name!r}]", f"it must be {count} finite numbers, m and rad"
-        given[name] = numbers(field, target, remedy)
-        require(given[name].shape == (count,), field, target, remedy)
-        for k, x_k in enumerate(given[name].tolist()):
-            plausible("displacement" if k < 3 else "tilt", f"{field}[{k}]", x_k)
-    rows = np.vstack([system.rows(name) for name in given])
-    wanted = np.concatenate(list(given.values()))
-    x = x + np.linalg.pinv(rows) @ (wanted - rows @ x)
-    if np.abs(rows @ x - wanted).max() > 1e-9 * np.abs(wanted).max(initial=1e-9):
-        raise ValueError(
-            f"initial gives {sorted(initial)} motions that they cannot make together; leave one of them out"
-        )
-    return x
-
-
-def part_of(progress: core.Progress | None, done: int, total: int) -> Callable[[int, int], object] | None:
-    """Progress of one piece as progress of the whole."""
-    if progress is None:
-        return None
-    return lambda piece, _: progress(done + piece, total)

@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
-from bearingdyn.analysis.harmonic import linear
+from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import Application
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
@@ -51,16 +51,16 @@ def modes(
         Over "mode": frequency (Hz), damping_ratio, eigenvalue (rad/s, complex), and shape (mode, coordinate),
         complex, in the coordinates of the system; the motion of a place is rows(place) @ shape.
 
-    Warns
-    -----
-    UnloadedBearing
-        Where a bearing of the equilibrium carries nothing, and so has no stiffness.
-
     Raises
     ------
     ValueError
         For bearings without an equilibrium, and for a part that would turn although its damping is known at
         rest only.
+
+    Warns
+    -----
+    UnloadedBearing
+        Where a bearing of the equilibrium carries nothing, and so has no stiffness.
 
     Examples
     --------

@@ -8,6 +8,7 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.shaft_speed import angle_turned
 from bearingdyn.bearing import STATIC_PRESSURE, BallBearing
 from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.types import Array
@@ -16,7 +17,7 @@ from bearingdyn.types import Array
 def warn_of_overload(
     march: March, model: core.Model, state: Array, record: Sequence[str], rows: Array
 ) -> None:
-    """Warn of every bearing whose contacts went over 4.2 GPa (ISO 76).
+    """Warn of every bearing that a march overloaded: contacts over 4.2 GPa (ISO 76).
 
     Known are its balls' loads in the last state, those recorded, and, of a recorded force F along an axis,
     that one ball of Z bears F/Z or more. The pressures of the first state were checked with the equilibrium.
@@ -35,7 +36,7 @@ def warn_of_overload(
     """
     finite = bool(np.isfinite(state).all())  # energies overflow before displacements do
     t, x = model.unpack(state)[:2] if finite else (0.0, np.zeros(0))
-    turned = shaft_angle(march.stepping, t)
+    turned = angle_turned(march.stepping, t)
     for term in march.modal.bearings:
         bearing = term.bearing
         if not isinstance(bearing, BallBearing):
@@ -59,10 +60,3 @@ def warn_of_overload(
                 f"{bearing.static_rating:.3g} N: are the loads, the unbalance and the speed in SI units?",
                 BearingWarning,
             )
-
-
-def shaft_angle(stepping: core.Stepping, t: float) -> float:
-    """Angle, rad, through which the shaft has turned from 0 to t, s."""
-    times, speeds = stepping.profile
-    knots = np.unique(np.concatenate([[0.0, t], times[(times > 0.0) & (times < t)]]))
-    return float(np.trapezoid(np.interp(knots, times, speeds), knots))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
-from bearingdyn.analysis.statics import Statics
+from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def static_summary(eq: Equilibrium) -> xarray.Dataset:
-    """Deflection, strain, modulus, time and temperature of every layer in an equilibrium.
+    """Static summary of the layers: deflection, strain, modulus, time and temperature in an equilibrium.
 
     Parameters
     ----------

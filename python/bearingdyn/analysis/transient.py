@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.channels import channel_of
-from bearingdyn.analysis.coarseness import STEP_ERROR_MADE, step_error
+from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.overload import warn_of_overload
-from bearingdyn.analysis.room import check_room
+from bearingdyn.analysis.record_memory import check_room
+from bearingdyn.analysis.step_size import STEP_ERROR_MADE, step_error
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, whole
 from bearingdyn.progress import Progress, told
@@ -42,9 +42,10 @@ def transient(
     audit: bool = False,
     check_step: bool = False,
     scheme: core.Scheme | None = None,
+    memory: float | None = None,
     progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
-    """March an application from its equilibrium, at constant speed or through a run-up.
+    """Find a transient: march an application from its equilibrium, at constant speed or through a run-up.
 
     Parameters
     ----------
@@ -65,7 +66,8 @@ def transient(
         Channels: "shaft.left.y" (displacement), "shaft.left.y.velocity", "….acceleration"; of a bearing:
         "left.loaded" (number of loaded balls), "left.ball3" (load of one ball, counted from 1),
         "left.force.x" (force of the inner ring on the balls, x, y or z), "left.loss" (power that its
-        contacts turn into heat). Motions are relative to the ground where `Application.base_motion` moves it.
+        contacts turn into heat); of a part that softens "layer.strain", its running strain amplitude.
+        Motions are relative to the ground where `Application.base_motion` moves it.
     decimate
         Every how many steps a sample is kept.
     filter
@@ -97,6 +99,11 @@ def transient(
         count; what had built up before it does not.
     scheme
         β, γ, tolerance, iterations and instruction set.
+    memory
+        Time, s, over which layers with a law of softening (`Maxwell.payne`) remember the amplitude of their
+        strain: one to ten periods of the slowest motion that counts. None: five of the slowest of shaft and
+        harmonic loads. A lasting load does not count as amplitude; under strong vibration it sags, as the
+        spring that bears a part of it breaks.
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
@@ -160,10 +167,11 @@ def transient(
         filter=filter,
         audit=audit,
         scheme=scheme,
+        memory=memory,
     )
     check_room(march.steps // march.decimate, record)
     found = [channel_of(march.modal, name) for name in record]
-    model = march.modal.model([channel for channel, _ in found])
+    model = march.model([channel for channel, _ in found])
     state = march.start(model, initial) if resume is None else march.resumed(model, resume)
     facts = march.facts(record, [unit for _, unit in found])
     with told(progress, "step") as tell:
@@ -191,7 +199,7 @@ def transient(
 
 
 def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -> list[xarray.Dataset]:
-    """Many marches at once over threads.
+    """Many transients at once over threads.
 
     The marches share nothing and hold no lock.
 

@@ -1,11 +1,13 @@
 """An application: parts joined at rigid interfaces, bearings hung between them, loads applied."""
 
-from bearingdyn.application.builder import Application
+from bearingdyn.application.application import Application
+from bearingdyn.application.channel import COMPONENTS, GROUND, QUANTITIES, RATES, Channel
+from bearingdyn.application.free_motions import arm
 from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
 from bearingdyn.application.loads import ConstantLoad, CoreLoad, HarmonicLoad, Load, SampledLoad, Unbalance
-from bearingdyn.application.place import COMPONENTS, GRAVITY, GROUND, QUANTITIES, RATES, Channel, Place
-from bearingdyn.application.plan import Part, Plan
-from bearingdyn.application.rigid import arm
+from bearingdyn.application.part import Part
+from bearingdyn.application.place import GRAVITY, Place
+from bearingdyn.application.plan import Plan
 
 __all__ = [
     "COMPONENTS",

@@ -11,13 +11,13 @@ from bearingdyn.application.place import Place
 from bearingdyn.bearing import BallBearing, LooseFit, Pair, catalogue
 from bearingdyn.checks import require, vector
 from bearingdyn.magnitude import plausible
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 
 @dataclass(frozen=True)
 class Connection:
-    """Two interfaces that move as one.
+    """A rigid joint: two interfaces that move as one.
 
     Raises
     ------
@@ -37,7 +37,7 @@ class Connection:
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """An interface that the ground holds: rigidly, or by six springs and six dampers.
+    """A joint to the ground: rigid, or six springs and six dampers.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Support:
 
 @dataclass(frozen=True, eq=False)
 class Bush:
-    """Six springs and six dampers between two interfaces, on x_a − x_b − offset.
+    """A springy joint: six springs and six dampers between two interfaces, on x_a − x_b − offset.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class Bush:
 
 @dataclass(frozen=True)
 class BearingJoint:
-    """A bearing between two interfaces.
+    """A joint by a bearing between two interfaces.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class BearingJoint:
 
 @dataclass(frozen=True)
 class LooseJoint:
-    """A flexible ring that sits loosely in a bore.
+    """A loose joint: a flexible ring that sits with clearance in a bore.
 
     Parameters
     ----------

@@ -10,10 +10,11 @@ from typing import ClassVar, TypedDict, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.application.place import GRAVITY, GROUND, Place
+from bearingdyn.application.channel import GROUND
+from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.checks import nonnegative, positive, real, require, vector
 from bearingdyn.magnitude import plausible
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 FORCE = "six numbers (Fx, Fy, Fz, Mx, My, Mz) in N and N m"
@@ -33,7 +34,7 @@ class CoreLoad(TypedDict):
 
 @dataclass(frozen=True, eq=False)
 class Load(ABC):
-    """What acts at a place, or on all parts together.
+    """A load: what acts at a place, or on all parts together.
 
     Parameters
     ----------
@@ -216,7 +217,7 @@ class SampledLoad(DirectedLoad):
 
 @dataclass(frozen=True, eq=False)
 class Unbalance(Load):
-    """A mass off the axis that turns with the shaft: force Ω² u (cos(Ωt + φ), sin(Ωt + φ)) in (x, y).
+    """The load of a mass off the axis that turns with the shaft: Ω² u (cos(Ωt + φ), sin(Ωt + φ)) in (x, y).
 
     Parameters
     ----------

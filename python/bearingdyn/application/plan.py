@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 import numpy as np
 
+from bearingdyn.application.channel import GROUND
+from bearingdyn.application.free_motions import arm, rigid_shapes
 from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
 from bearingdyn.application.loads import Load
-from bearingdyn.application.place import GRAVITY, GROUND, Place
-from bearingdyn.application.rigid import arm, rigid_shapes
+from bearingdyn.application.part import Part
+from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.cms import Raceway, Superelement
 from bearingdyn.parts import HasRoundFaces, RoundFace
 from bearingdyn.types import Array
 
 
-class Part(Protocol):
-    """Anything that becomes a superelement."""
-
-    def superelement(self) -> Superelement:
-        """The part's reduced matrices."""
-
-
 class Plan:
-    """Parts, joints, bearings and loads by name.
+    """The plan of an application: parts, joints, bearings and loads by name.
 
     `Application` writes it and checks what it writes; `bearingdyn.system.assemble` makes matrices of it.
 

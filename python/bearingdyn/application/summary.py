@@ -6,14 +6,15 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from bearingdyn.application.place import GROUND, Place
+from bearingdyn.application.channel import GROUND
+from bearingdyn.application.free_motions import free_motions
+from bearingdyn.application.place import Place
 from bearingdyn.application.plan import Plan
-from bearingdyn.application.rigid import free_motions
 from bearingdyn.types import Array
 
 
 def summary(plan: Plan) -> str:
-    """Parts with masses, joints, bearings, loads and free motions, one to a line."""
+    """Summary of an application: parts, masses, joints, bearings, loads, free motions, one to a line."""
     lines = ["parts"]
     for name, element in plan.parts.items():
         mass, T = plan.mass(name), plan.temperatures.get(name)

@@ -7,27 +7,46 @@ from bearingdyn.bearing import catalogue
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Balls, Running
 from bearingdyn.bearing.ball_passage import Passage, passage, without_spin
-from bearingdyn.bearing.contact_loads import LoadDistribution, load_distribution
-from bearingdyn.bearing.energy_minimum import NoBalance, minimum
-from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness
-from bearingdyn.bearing.geometry import Frequencies, Geometry
-from bearingdyn.bearing.hertz import (
-    PointContact,
-    contact_modulus,
+from bearingdyn.bearing.characteristic_frequencies import Frequencies
+from bearingdyn.bearing.contact_damping import (
+    ConstantDamping,
+    Damping,
+    LoadDamping,
+    TabulatedDamping,
     resultant_damping,
-    resultant_deflection_coefficient,
 )
-from bearingdyn.bearing.kernel import BearingKernel, ConstantDamping, Damping, LoadDamping, TabulatedDamping
+from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure
+from bearingdyn.bearing.energy_minimum import NoBalance, minimum
+from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.geometry import Geometry
+from bearingdyn.bearing.hertz import PointContact, contact_modulus, resultant_deflection_coefficient
+from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness
+from bearingdyn.bearing.kernel import BearingKernel
+from bearingdyn.bearing.load_distribution import LoadDistribution, load_distribution
 from bearingdyn.bearing.loose_fit import LooseFit
-from bearingdyn.bearing.lubricant import Film, Lubricant, Walther, hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.lubricant import Lubricant, Walther
 from bearingdyn.bearing.lubrication import Lubrication, lubricate
 from bearingdyn.bearing.mounting import Mounting, Seat
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.bearing.pairs import Pair
-from bearingdyn.bearing.pressure import STATIC_PRESSURE, check_bearing_pressure
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
+from bearingdyn.bearing.random_surfaces import WavinessSpectrum, diameter_scatter
+from bearingdyn.bearing.rating import (
+    LoadCases,
+    Ratings,
+    equivalent_life,
+    equivalent_load,
+    equivalent_static_load,
+    iso_ratings,
+    life_factor,
+    life_of_loads,
+    load_cases,
+    modified_life,
+    rating_life,
+    ratings_of,
+)
 from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
-from bearingdyn.bearing.surface_generation import WavinessSpectrum, dent, diameter_scatter, spall
+from bearingdyn.bearing.surface_damage import dent, spall
 from bearingdyn.notice import BearingWarning
 
 __all__ = [
@@ -45,6 +64,7 @@ __all__ = [
     "Frequencies",
     "Geometry",
     "Imperfections",
+    "LoadCases",
     "LoadDamping",
     "LoadDistribution",
     "LooseFit",
@@ -57,6 +77,7 @@ __all__ = [
     "Pit",
     "PointContact",
     "RacewaySeries",
+    "Ratings",
     "Running",
     "Seat",
     "TabulatedDamping",
@@ -68,13 +89,23 @@ __all__ = [
     "contact_modulus",
     "dent",
     "diameter_scatter",
+    "equivalent_life",
+    "equivalent_load",
+    "equivalent_static_load",
     "fault_lines",
     "hamrock_dowson",
+    "iso_ratings",
+    "life_factor",
+    "life_of_loads",
+    "load_cases",
     "load_distribution",
     "lubricate",
     "minimum",
+    "modified_life",
     "nijenbanning_venner_moes",
     "passage",
+    "rating_life",
+    "ratings_of",
     "resultant_damping",
     "resultant_deflection_coefficient",
     "runs_off",

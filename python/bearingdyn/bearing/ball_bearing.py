@@ -17,15 +17,18 @@ from typing import NamedTuple, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.bearing.characteristic_frequencies import Frequencies
+from bearingdyn.bearing.contact_damping import Damping, as_damping
+from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure
 from bearingdyn.bearing.energy_minimum import minimum
-from bearingdyn.bearing.excitation import Imperfections, Pit, Waviness, checked
-from bearingdyn.bearing.geometry import Frequencies, Geometry
+from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
-from bearingdyn.bearing.kernel import BearingKernel, Damping, as_damping
+from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness, checked
+from bearingdyn.bearing.kernel import BearingKernel
+from bearingdyn.bearing.load_and_motion_checks import check_load, check_motion
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, runs_off, shoulder
-from bearingdyn.bearing.pressure import STATIC_PRESSURE, check_bearing_pressure, check_load, check_motion
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
-from bearingdyn.bearing.turning import Turning, ring_speeds
+from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
 from bearingdyn.checks import nonnegative, number, positive, require, vector
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import STEEL, Elastic
@@ -36,7 +39,7 @@ _MOTION = "(x, y, z, θx, θy, θz) of the inner ring relative to the outer ring
 
 
 class Overrides(NamedTuple):
-    """Values given instead of those the geometry would have; None where the geometry decides."""
+    """Values given to a BallBearing instead of those its geometry has; None where the geometry decides."""
 
     kappa: float | None = None
     cage_ratio: float | None = None

@@ -37,7 +37,7 @@ _ROUNDING = 8 * float(np.finfo(float).eps)
 
 
 class Balls(NamedTuple):
-    """Balls of a turning bearing, in the order of their azimuth; all (Z,)."""
+    """Balls of a turning bearing with their inertia loads, in the order of their azimuth; all (Z,)."""
 
     azimuth: Array
     """rad, from x towards y."""

@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.checks import require
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """Equilibria under one load while the cage turns by one ball spacing."""
+    """The passage of one ball: equilibria under one load while the cage turns by one ball spacing."""
 
     angle: Array
     """(n,) cage angle, rad."""
@@ -40,7 +40,7 @@ class Passage:
 
 
 def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Passage:
-    """Equilibria under a load (6,), N and N m, at n cage angles over one ball spacing.
+    """Equilibria under a load (6,), N and N m, at n cage angles over the passage of one ball.
 
     The mean of equally spaced values of a periodic function: it converges fast unless balls come and go.
 
@@ -72,7 +72,7 @@ def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Pas
 
 
 def without_spin(stiffness: ArrayLike) -> Array:
-    """(…, 5, 5) over (x, y, z, θx, θy) of a stiffness (…, 6, 6): a bearing holds no rotation about its axis.
+    """(…, 5, 5) over (x, y, z, θx, θy) of a passage's stiffness (…, 6, 6): about its axis none is held.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ _PARTED = 1e-20
 
 
 class NoBalance(ArithmeticError):
-    """No equilibrium was found; z (n,) is where the search ended."""
+    """No minimum of the energy was found; z (n,) is where the search ended."""
 
     def __init__(self, message: str, z: Array) -> None:
         super().__init__(message)
@@ -37,7 +37,7 @@ class NoBalance(ArithmeticError):
 
 
 def minimum(law: Law, load: Array, radius: float, start: Array | None = None) -> Array:
-    """Coefficients z (n,) at which the gradient of the stored energy balances `load` (n,).
+    """Coefficients z (n,) that minimise the energy less load·z: its gradient balances `load` (n,).
 
     Where the energy is flat (a ring that rests on one or two balls) the coordinate stays where it is.
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
+from bearingdyn.bearing.characteristic_frequencies import Frequencies
 from bearingdyn.checks import nonnegative, number, positive, require
 from bearingdyn.magnitude import plausible
 
@@ -20,22 +20,9 @@ PRELOADED = (
 )
 
 
-class Frequencies(NamedTuple):
-    """Characteristic frequencies of a bearing, Hz (all ≥ 0)."""
-
-    FTF: float
-    """Fundamental train frequency: cage |ω_c|/2π."""
-    BPFO: float
-    """Ball-pass frequency of the outer race."""
-    BPFI: float
-    """Ball-pass frequency of the inner race."""
-    BSF: float
-    """Ball spin frequency |ω_b|/2π; a spot on a ball meets a race at twice this."""
-
-
 @dataclass(frozen=True)
 class Geometry:
-    """Balls and grooves of a single-row ball bearing.
+    """Internal geometry: balls and grooves of a single-row ball bearing.
 
     Parameters
     ----------

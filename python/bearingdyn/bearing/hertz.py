@@ -20,7 +20,7 @@ from bearingdyn.material import Elastic
 
 
 def contact_modulus(first: Elastic, second: Elastic) -> float:
-    """Contact modulus E* of two elastic bodies, 1/E* = Σ(1 − ν²)/E, Pa.
+    """Hertz' contact modulus E* of two elastic bodies, 1/E* = Σ(1 − ν²)/E, Pa.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def contact_modulus(first: Elastic, second: Elastic) -> float:
 
 
 def resultant_deflection_coefficient(*kappa: float) -> float:
-    """Contacts in series, κ_res = (Σ κ^{−2/3})^{−3/2}, N/m^1.5 (paper eq. 2).
+    """Hertz contacts in series, κ_res = (Σ κ^{−2/3})^{−3/2}, N/m^1.5 (paper eq. 2).
 
     Parameters
     ----------
@@ -49,30 +49,8 @@ def resultant_deflection_coefficient(*kappa: float) -> float:
     return math.pow(math.fsum(math.pow(positive("kappa", k), -2 / 3) for k in kappa), -1.5)
 
 
-def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) -> float:
-    """Damping of one ball from its two contacts, each a pair (κ in N/m^1.5, c in N s/m), N s/m.
-
-    Spring and damper pairs in series, c = k²(c_i/k_i² + c_o/k_o²) with k ∝ κ^{2/3} under one force, as long
-    as the dampers carry little of it (ω ≪ k/c).
-
-    Parameters
-    ----------
-    inner
-        (κ, c) of the inner contact, N/m^1.5 and N s/m.
-    outer
-        (κ, c) of the outer contact.
-
-    Raises
-    ------
-    ValueError
-        If κ is not positive or c negative.
-    """
-    kappa = resultant_deflection_coefficient(inner[0], outer[0])
-    return math.fsum(nonnegative("c", c) * math.pow(kappa / k, 4 / 3) for k, c in (inner, outer))
-
-
 def ellipticity(F: float) -> float:
-    """Ratio χ = a/b ≥ 1 of the contact ellipse's semi-axes from the curvature difference F(ρ), 0 ≤ F < 1.
+    """Hertz' ellipticity χ = a/b ≥ 1 of the contact from the curvature difference F(ρ), 0 ≤ F < 1.
 
     Parameters
     ----------
@@ -113,7 +91,7 @@ def _ellipticity(complement: float) -> float:
 
 @dataclass(frozen=True)
 class PointContact:
-    """Two elastic bodies touching in a point.
+    """Hertz' point contact of two elastic bodies.
 
     Parameters
     ----------
@@ -207,7 +185,7 @@ class PointContact:
 def race_contact(
     geometry: Geometry, race: Literal["inner", "outer"], ring: Elastic, ball: Elastic
 ) -> PointContact:
-    """Contact of a ball with one race: Rx = (D/2)(1 ∓ γ) (inner −, outer +), Ry = f D/(2f − 1).
+    """Hertz' contact of a ball with a race: Rx = (D/2)(1 ∓ γ) (inner −, outer +), Ry = f D/(2f − 1).
 
     Parameters
     ----------

@@ -1,126 +1,17 @@
-"""What the contact kernel is told about a bearing, and the laws of contact damping."""
+"""What the contact kernel is told about a bearing."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from bearingdyn.bearing.excitation import Imperfections
-from bearingdyn.checks import nonnegative, number, require, vector
-from bearingdyn.magnitude import plausible
-from bearingdyn.short import short
+from bearingdyn.bearing.contact_damping import Law
+from bearingdyn.bearing.imperfections import Imperfections
+from bearingdyn.checks import require
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
-
-Law: TypeAlias = Literal["constant", "table", "load"]
-KernelFields: TypeAlias = tuple[Law, float, Array]
-
-
-@dataclass(frozen=True)
-class ConstantDamping:
-    """c(δ) = c, N s/m: the paper's harmonic case (30 N s/m). The force jumps where contact is lost.
-
-    At the edge of the film, δ + h0 = 0, the law is taken in its set-valued sense: F is any force in
-    [0, c dδ/dt] there, and a step of a march that ends in the jump finds the one that balances. A table with
-    c > 0 at that place is treated likewise.
-
-    Raises
-    ------
-    ValueError
-        If c is negative or not finite.
-    """
-
-    c: float
-
-    def __post_init__(self) -> None:
-        c = nonnegative("damping.c", self.c, "the damping of one ball in N s/m must be zero or positive")
-        plausible("contact damping", "damping.c", c)
-
-    def kernel_fields(self) -> KernelFields:
-        """Law, constant and table as the kernel takes them."""
-        return "constant", float(self.c), np.zeros((0, 2))
-
-
-@dataclass(frozen=True, eq=False)
-class TabulatedDamping:
-    """c(δ) linear between table points, end values held outside.
-
-    At an inner table point the slope is that of the interval below it.
-
-    Parameters
-    ----------
-    delta
-        (n,) contact indentations δ (film not included), m, strictly increasing, n ≥ 2.
-    c
-        (n,) damping of one ball, N s/m, ≥ 0.
-
-    Raises
-    ------
-    ValueError
-        If the table is unsorted, ragged, too short, negative or not finite.
-    """
-
-    delta: Array
-    c: Array
-
-    __repr__ = short
-
-    def __init__(self, delta: ArrayLike, c: ArrayLike) -> None:
-        n = np.size(delta)
-        require(n >= 2, "damping.delta", delta, "a table needs two points or more (else ConstantDamping)")
-        x = vector("damping.delta", delta, (n,), "indentations in metres")
-        y = vector("damping.c", c, (n,), "one damping in N s/m for each delta")
-        require(bool((np.diff(x) > 0).all()), "damping.delta", delta, "it must be strictly increasing")
-        require(bool((y >= 0).all()), "damping.c", c, "it must be zero or positive")
-        plausible("contact damping", "the largest damping.c", float(y.max()))
-        plausible("offset", "the largest damping.delta", float(np.abs(x).max()))
-        for array in (x, y):
-            array.flags.writeable = False
-        object.__setattr__(self, "delta", x)
-        object.__setattr__(self, "c", y)
-
-    def kernel_fields(self) -> KernelFields:
-        """Law, constant and table as the kernel takes them."""
-        return "table", 0.0, np.column_stack([self.delta, self.c])
-
-
-@dataclass(frozen=True)
-class LoadDamping:
-    """c(δ) = time × linearised stiffness, time·(3/2)κ√(δ + h0): vanishes where contact is lost.
-
-    Values of (0.25–2.5)e-5 s are quoted for lubricated contacts; unverified here.
-
-    Raises
-    ------
-    ValueError
-        If `time` (s) is negative or not finite.
-    """
-
-    time: float
-
-    def __post_init__(self) -> None:
-        remedy = "the damping time in seconds must be zero or positive"
-        plausible("contact damping time", "damping.time", nonnegative("damping.time", self.time, remedy))
-
-    def kernel_fields(self) -> KernelFields:
-        """Law, constant and table as the kernel takes them."""
-        return "load", float(self.time), np.zeros((0, 2))
-
-
-Damping: TypeAlias = ConstantDamping | TabulatedDamping | LoadDamping
-
-
-def as_damping(damping: object) -> Damping:
-    """The damping law itself, or a plain number of N s/m as ConstantDamping; ValueError otherwise."""
-    if isinstance(damping, ConstantDamping | TabulatedDamping | LoadDamping):
-        return damping
-    remedy = (
-        "give the damping of one ball in N s/m, zero or positive, "
-        "or ConstantDamping, TabulatedDamping or LoadDamping"
-    )
-    return ConstantDamping(nonnegative("damping", number("damping", damping, remedy), remedy))
 
 
 @dataclass(frozen=True, eq=False)

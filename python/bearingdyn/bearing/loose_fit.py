@@ -17,7 +17,7 @@ _SCALE = 1.0  # m; radial motion alone: no result depends on it
 
 @dataclass(frozen=True)
 class LooseFit:
-    """The seat of a flexible outer ring in a rigid bore larger than it.
+    """A loose fit: the seat of a flexible outer ring in a rigid bore larger than it.
 
     The gap is closed at stations around the circumference, each a stiff spring F = κ δ^{3/2} that only
     pushes; the contact kernel of the balls computes it, the stations standing still. Friction and shoulders,

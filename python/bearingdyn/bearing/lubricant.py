@@ -1,26 +1,18 @@
-"""Lubricating oils (viscosity over temperature and pressure) and the film they keep between ball and race.
-
-Temperatures in °C, as data sheets give them. The dimensionless groups are the authors' own: Hamrock & Dowson
-(1977) with the mean surface speed, Nijenbanning, Venner & Moes (1994) with the sum of speeds.
-"""
+"""Lubricating oils: viscosity over temperature, and its rise with pressure."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal
 
-from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.checks import nonnegative, number, positive, require
+from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent
+from bearingdyn.checks import number, positive, require
 from bearingdyn.magnitude import plausible
 
-_ROELANDS_PRESSURE = 1.96e8  # Pa
-_ROELANDS_LOG_VISCOSITY = 9.67  # −ln(6.31e-5 Pa s)
 _ZERO_CELSIUS = 273.15
-
 # lg lg(ν + 0.7) at 2 and at 2e7 mm²/s, between which the constant 0.7 holds (ASTM D341)
 _LEAST, _MOST = (math.log10(math.log10(nu + 0.7)) for nu in (2.0 * (1 - 1e-12), 2e7 * (1 + 1e-12)))
-
 # Kinematic viscosity at 100 °C, mm²/s, common for mineral hydraulic oils of viscosity index near 100.
 # ISO 3448 fixes the 40 °C value only. VG 32 is theory's; the rest is customary and unverified.
 _VG_AT_100 = {10: 2.6, 15: 3.4, 22: 4.3, 32: 5.4, 46: 6.7, 68: 8.6, 100: 11.1, 150: 14.8, 220: 19.0}
@@ -28,7 +20,7 @@ _VG_AT_100 = {10: 2.6, 15: 3.4, 22: 4.3, 32: 5.4, 46: 6.7, 68: 8.6, 100: 11.1, 1
 
 @dataclass(frozen=True)
 class Walther:
-    """Kinematic viscosity over temperature, lg lg(ν + 0.7) = A − B lg T, ν in mm²/s, T in K (ASTM D341).
+    """Kinematic viscosity of a lubricant, lg lg(ν + 0.7) = A − B lg T, ν in mm²/s, T in K (ASTM D341).
 
     Parameters
     ----------
@@ -119,7 +111,7 @@ class Walther:
 
 @dataclass(frozen=True)
 class Lubricant:
-    """An oil, or the base oil of a grease.
+    """A lubricant: an oil, or the base oil of a grease.
 
     Parameters
     ----------
@@ -154,209 +146,6 @@ class Lubricant:
         if law == "barus":
             return barus(eta0, self.alpha, p)
         return roelands(eta0, roelands_exponent(eta0, self.alpha), p)
-
-
-def barus(eta0: float, alpha: float, p: float) -> float:
-    """Dynamic viscosity η0 e^{αp}, Pa s; far too high above some 0.1 GPa.
-
-    Parameters
-    ----------
-    eta0
-        Viscosity at ambient pressure, Pa s.
-    alpha
-        Pressure–viscosity coefficient, 1/Pa.
-    p
-        Pressure, Pa, zero or more.
-    """
-    return positive("eta0", eta0) * math.exp(positive("alpha", alpha) * nonnegative("p", p))
-
-
-def roelands(eta0: float, z: float, p: float) -> float:
-    """Dynamic viscosity η0 exp{(ln η0 + 9.67)[(1 + p/1.96e8)^z − 1]}, Pa s (C. J. A. Roelands 1966).
-
-    Parameters
-    ----------
-    eta0
-        Viscosity at ambient pressure, Pa s, above 6.31e-5.
-    z
-        Exponent, dimensionless.
-    p
-        Pressure, Pa, zero or more.
-    """
-    growth = (1 + nonnegative("p", p) / _ROELANDS_PRESSURE) ** positive("z", z) - 1
-    return eta0 * math.exp(_roelands_log(eta0) * growth)
-
-
-def roelands_exponent(eta0: float, alpha: float) -> float:
-    """Exponent z that gives the pressure–viscosity coefficient α at p = 0: α = z (ln η0 + 9.67)/1.96e8.
-
-    Parameters
-    ----------
-    eta0
-        Viscosity at ambient pressure, Pa s.
-    alpha
-        Pressure–viscosity coefficient, 1/Pa.
-    """
-    return positive("alpha", alpha) * _ROELANDS_PRESSURE / _roelands_log(eta0)
-
-
-class Film(NamedTuple):
-    """Film thickness of one contact, m."""
-
-    central: float
-    minimum: float
-
-
-def hamrock_dowson(contact: PointContact, F: float, u: float, eta0: float, alpha: float) -> Film:
-    """Central and minimum film thickness, m (B. J. Hamrock, D. Dowson 1977), rolling across the minor axis.
-
-    Parameters
-    ----------
-    contact
-        Point contact with Rx ≤ Ry.
-    F
-        Load, N.
-    u
-        Mean surface speed ½(u1 + u2), m/s.
-    eta0, alpha
-        Dynamic viscosity at ambient pressure, Pa s, and pressure–viscosity coefficient, 1/Pa.
-
-    Raises
-    ------
-    ValueError
-        If a value is not positive, or Rx > Ry.
-    """
-    E, Rx = _film_scales(contact)
-    U = positive("eta0", eta0) * positive("u", u, "it must be positive, in m/s") / (E * Rx)
-    G = positive("alpha", alpha) * E
-    W = positive("F", F, "it must be positive, in N") / (E * Rx**2)
-    chi = contact.chi
-    return Film(
-        central=Rx * 2.69 * U**0.67 * G**0.53 * W**-0.067 * (1 - 0.61 * math.exp(-0.73 * chi)),
-        minimum=Rx * 3.63 * U**0.68 * G**0.49 * W**-0.073 * (1 - math.exp(-0.68 * chi)),
-    )
-
-
-def nijenbanning_venner_moes(contact: PointContact, F: float, us: float, eta0: float, alpha: float) -> float:
-    """Central film thickness, m (G. Nijenbanning, C. H. Venner, H. Moes 1994), rolling across the minor axis.
-
-    As `hamrock_dowson`, but with the sum of the surface speeds us = u1 + u2, m/s; for all regimes.
-
-    Parameters
-    ----------
-    contact
-        Point contact with Rx ≤ Ry.
-    F
-        Load, N.
-    us
-        Sum of the surface speeds u1 + u2, m/s.
-    eta0
-        Dynamic viscosity at ambient pressure, Pa s.
-    alpha
-        Pressure–viscosity coefficient, 1/Pa.
-
-    Raises
-    ------
-    ValueError
-        If a value is not positive, or Rx > Ry.
-    """
-    E, Rx = _film_scales(contact)
-    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
-    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
-    L = positive("alpha", alpha) * E * speed**0.25
-    return dimensionless_film(M, L, Rx / contact.Ry) * Rx * math.sqrt(speed)
-
-
-def wijnant_damping(contact: PointContact, F: float, us: float, eta0: float, alpha: float) -> float:
-    """Damping of one lubricated contact, N s/m, after Y. H. Wijnant (1998). UNVERIFIED.
-
-    c = C (F/δ)(2a/us), C = r M^{−s}, r = .98 − L/60, s = .83 − .008L; δ the dry approach, a the half-width in
-    rolling direction. The form was written from memory and not read again in its source; that its load number
-    is the M of Nijenbanning, Venner and Moes is an assumption of this package. Values of 4 to 15 N s/m are
-    quoted for it.
-
-    Parameters
-    ----------
-    contact
-        Point contact with Rx ≤ Ry.
-    F
-        Load, N.
-    us
-        Sum of the surface speeds u1 + u2, m/s.
-    eta0
-        Dynamic viscosity at ambient pressure, Pa s.
-    alpha
-        Pressure–viscosity coefficient, 1/Pa.
-
-    Raises
-    ------
-    ValueError
-        If a value is not positive, Rx > Ry, or L ≥ 58.8, where r vanishes.
-    """
-    E, Rx = _film_scales(contact)
-    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
-    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
-    L = positive("alpha", alpha) * E * speed**0.25
-    require(
-        L < 58.8,
-        "alpha",
-        alpha,
-        f"it must give a lubricant number below 58.8, where the fit of the damping ends; here L is {L:.3g}",
-    )
-    C = (0.98 - L / 60) * M ** -(0.83 - 0.008 * L)
-    return float(C * F / contact.approach(F) * 2 * contact.semi_axes(F)[1] / us)
-
-
-def dimensionless_film(M: float, L: float, D: float) -> float:
-    """Central film H of Nijenbanning, Venner, Moes from load M, lubricant L and radius ratio D = Rx/Ry ≤ 1.
-
-    h = H Rx √(η0 us/(E′Rx)).
-
-    Parameters
-    ----------
-    M
-        Load number.
-    L
-        Lubricant number.
-    D
-        Radius ratio Rx/Ry, at most 1.
-
-    Raises
-    ------
-    ValueError
-        If a number is not positive or D > 1.
-    """
-    for name, value in (("M", M), ("L", L), ("D", D)):
-        positive(name, value)
-    require(D <= 1, "D", D, "it must be at most 1: rolling across the minor axis of the contact")
-    phi = 1 + 0.006 * math.log(D) + 0.63 * D ** (4 / 7)
-    rigid_iso = 145 * (1 + 0.796 * D ** (14 / 15)) ** (-15 / 7) / (D * M**2)
-    elastic_iso = 3.18 * phi ** (-14 / 25) * D ** (-1 / 15) * M ** (-2 / 15)
-    rigid_piezo = 1.29 * (1 + 0.691 * D) ** (-2 / 3) * L ** (2 / 3)
-    elastic_piezo = 1.48 * phi ** (-7 / 20) * D ** (-1 / 24) * M ** (-1 / 12) * L**0.75
-    flooded = 1.8 / D
-    s = 1.5 * (1 + math.exp(-1.2 * elastic_iso / rigid_iso))
-    iso = (rigid_iso**1.5 + (elastic_iso**-4 + flooded**-4) ** -0.375) ** (2 * s / 3)
-    piezo = (rigid_piezo**-8 + elastic_piezo**-8) ** (-s / 8)
-    return float((iso + piezo) ** (1 / s))
-
-
-def _film_scales(contact: PointContact) -> tuple[float, float]:
-    """E′ with 2/E′ = Σ(1 − ν²)/E, Pa, and Rx, m."""
-    require(
-        contact.Rx <= contact.Ry,
-        "contact.Rx",
-        contact.Rx,
-        f"it must not exceed Ry, {contact.Ry!r} m: the formulas hold for rolling across the minor axis",
-    )
-    return 2 * contact.modulus, contact.Rx
-
-
-def _roelands_log(eta0: float) -> float:
-    log = math.log(positive("eta0", eta0, "it must be positive, in Pa s"))
-    log += _ROELANDS_LOG_VISCOSITY
-    require(log > 0, "eta0", eta0, "it must exceed 6.31e-5 Pa s for Roelands' law (give Pa s, not mPa s)")
-    return log
 
 
 def _kelvin(field: str, T: float) -> float:

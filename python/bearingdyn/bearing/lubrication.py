@@ -10,15 +10,10 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.contact_loads import load_distribution
-from bearingdyn.bearing.hertz import resultant_damping
-from bearingdyn.bearing.kernel import ConstantDamping
-from bearingdyn.bearing.lubricant import (
-    Lubricant,
-    hamrock_dowson,
-    nijenbanning_venner_moes,
-    wijnant_damping,
-)
+from bearingdyn.bearing.contact_damping import ConstantDamping, resultant_damping, wijnant_damping
+from bearingdyn.bearing.film_thickness import hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.load_distribution import load_distribution
+from bearingdyn.bearing.lubricant import Lubricant
 from bearingdyn.checks import positive, require, vector
 from bearingdyn.magnitude import check_speed_value, plausible
 
@@ -27,7 +22,7 @@ FilmLaw = Literal["nijenbanning-venner-moes", "hamrock-dowson"]
 
 @dataclass(frozen=True)
 class Lubrication:
-    """Films of a bearing at one operating point; lengths in m."""
+    """The lubrication of a bearing at one operating point: its films, λ ratios and damping; lengths in m."""
 
     Q: float
     """Contact load at which the films are taken: the mean of the loaded balls, N."""
@@ -69,7 +64,7 @@ def lubricate(
     starvation: float = 1.0,
     roughness: tuple[float, float] | None = None,
 ) -> Lubrication:
-    """Films of both contacts, their λ ratios, and the damping, at an operating point.
+    """The lubrication of a bearing at an operating point: films of both contacts, λ ratios, damping.
 
     Taken at the mean load of the loaded balls of the dry bearing (h ∝ Q^−.07), in pure rolling at the contact
     angle of the most loaded ball; thermal thinning at the inlet is left out.

@@ -22,7 +22,7 @@ _STEEL_EXPANSION = 11.5e-6
 
 @dataclass(frozen=True)
 class Seat:
-    """The shaft under the inner ring, or the housing around the outer ring.
+    """A seat on which a ring is mounted: the shaft under the inner one, or the housing around the outer one.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Seat:
 
 @dataclass(frozen=True)
 class Mounting:
-    """A bearing in its place: seats of both rings, and temperatures.
+    """How a bearing is mounted: seats of both rings, and temperatures.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ _CARRIES = 0.01
 
 
 def shoulder(open_side: OpenSide, contact_angle: float | None) -> int:
-    """+1, −1: axial load on the inner ring is borne towards +z, −z only; 0: both ways.
+    """Which side is open: +1, −1: axial load on the inner ring is borne towards +z, −z only; 0: both ways.
 
     Raises
     ------

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.contact_pressure import check_bearing_pressure
 from bearingdyn.bearing.energy_minimum import minimum
+from bearingdyn.bearing.load_and_motion_checks import check_load
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
-from bearingdyn.bearing.pressure import check_bearing_pressure, check_load
 from bearingdyn.checks import nonnegative, positive, require, vector
 from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
@@ -24,7 +25,7 @@ _MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
 
 @dataclass(frozen=True)
 class Pair:
-    """Two equal rows on one shaft and in one housing, all four rings rigid.
+    """A pair of equal bearings on one shaft and in one housing, all four rings rigid.
 
     Motions q (6,) and loads (6,) are of both inner rings together relative to both outer rings, reference on
     the axis midway between the rows; q = 0 is the preloaded pair without load.

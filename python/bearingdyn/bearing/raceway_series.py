@@ -13,7 +13,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True)
 class RacewaySeries:
-    """Coefficients of a groove-centre displacement, radial ones first.
+    """The Fourier coefficients by which a raceway moves (its groove centre), radial ones first.
 
     Each term is (axial, order, sine): coefficient k multiplies cos or sin (sine 0 or 1) of order·ψ in the
     radial (axial 0) or axial (1) displacement of the groove centre, m.

@@ -11,7 +11,7 @@ from bearingdyn.checks import instance, number, require, whole
 def fault_lines(
     bearing: BallBearing, speed: float, *, harmonics: int = 1, contact_angle: float | None = None
 ) -> dict[str, float]:
-    """Name -> frequency, Hz, of localised defects and the cage: shaft, FTF, BPFO, BPFI, 2 BSF and multiples.
+    """Name -> frequency, Hz, of the spectral lines of faults and the cage: shaft, FTF, BPFO, BPFI, 2 BSF …
 
     A defect of a ball meets a race at twice the spin of the ball.
 
@@ -59,7 +59,7 @@ def waviness_lines(
     ball_orders: tuple[int, ...] = (2,),
     contact_angle: float | None = None,
 ) -> dict[str, float]:
-    """Name -> frequency, Hz, at which waves of order n vibrate a uniformly loaded, elastically held ring.
+    """Name -> frequency, Hz, of the spectral lines of waviness of order n, ring uniformly loaded.
 
     A race whose ring turns at ω_r: n = qZ axial at qZ|ω_r − ω_c|, n = qZ ± 1 radial at |qZ(ω_r − ω_c) ± ω_r|.
     Ball, even n: axial nω_b, radial |nω_b ± ω_c| (J. A. Wensing 1998; reference page §2). Names are body,

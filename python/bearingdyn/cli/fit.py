@@ -32,7 +32,7 @@ _OPTIONS = {
 
 
 def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The fitted model, written to --out as well."""
+    """The command that fits a model, written to --out as well."""
     out, figure = _target("--out", arguments.out), _target("--plot", arguments.plot)
     if arguments.f_max is not None and not arguments.f_max > 0:
         raise ValueError(f"--f-max is {arguments.f_max}; it must be a positive frequency, in Hz")

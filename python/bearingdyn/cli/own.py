@@ -15,7 +15,7 @@ from bearingdyn.cli.outcome import FAILED, GOOD
 
 
 def run_check(arguments: argparse.Namespace) -> tuple[str, int]:
-    """A row for each case; the code says whether all hold."""
+    """The command that is a check: a row for each case; the code says whether all hold."""
     from bearingdyn.check import check
 
     found = check(lambda done, total: _tell(f"check {done} of {total}"))
@@ -44,7 +44,7 @@ def _finite(value: Any) -> Any:
 
 
 def run_demo(arguments: argparse.Namespace) -> tuple[str, int]:
-    """What the layer changes, and the files written."""
+    """The package's own demo as a command: what the layer changes, and the files written."""
     from bearingdyn.demo import demo
 
     found = demo(Path(arguments.out), _tell)
@@ -65,7 +65,7 @@ def run_demo(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def run_version(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The package and what it computes with."""
+    """The package's own version as a command, and what it computes with."""
     found = dict(results.versions())
     if arguments.json:
         return json.dumps(found, indent=1), GOOD

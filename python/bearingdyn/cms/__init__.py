@@ -7,14 +7,25 @@ fixed-interface modes (Craig & Bampton, AIAA Journal 6 (1968) 1313-1319) and of 
 """
 
 from bearingdyn.cms.basis import Basis, basis_of, craig_bampton, inertia_shapes, modulus_levels, orthogonalise
-from bearingdyn.cms.damping import coupled_blocks, modal_damping
-from bearingdyn.cms.dynamics import Dynamics, Transfer
-from bearingdyn.cms.estimate import ReductionError, reduction_error
-from bearingdyn.cms.full import FullModel, RigidInterface
-from bearingdyn.cms.history import March, march
-from bearingdyn.cms.options import F_MAX, check_damping, check_f_max, check_held, check_moduli, check_rounds
+from bearingdyn.cms.coupled_blocks import coupled_blocks
+from bearingdyn.cms.dynamic_stiffness import Dynamics, Transfer
+from bearingdyn.cms.full_model import FullModel, RigidInterface
+from bearingdyn.cms.modal_damping import modal_damping
+from bearingdyn.cms.part_march import March, march
+from bearingdyn.cms.raceway import Raceway
+from bearingdyn.cms.radiating_surface import Surface
 from bearingdyn.cms.reduction import project, reduce, reduce_free_body
-from bearingdyn.cms.superelement import ComplexModulus, Raceway, Superelement, Surface, Viscoelastic
+from bearingdyn.cms.reduction_error import ReductionError, reduction_error
+from bearingdyn.cms.reduction_options import (
+    F_MAX,
+    check_damping,
+    check_f_max,
+    check_held,
+    check_moduli,
+    check_rounds,
+)
+from bearingdyn.cms.superelement import Superelement
+from bearingdyn.cms.viscoelastic import ComplexModulus, Viscoelastic
 
 __all__ = [
     "F_MAX",

@@ -12,12 +12,12 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import whole
-from bearingdyn.cms.full import FullModel
-from bearingdyn.cms.options import check_f_max, check_moduli, check_rounds
-from bearingdyn.cms.superelement import ComplexModulus
+from bearingdyn.cms.full_model import FullModel
+from bearingdyn.cms.reduction_options import check_f_max, check_moduli, check_rounds
+from bearingdyn.cms.viscoelastic import ComplexModulus
 from bearingdyn.fem import factorise, lowest_modes
 from bearingdyn.material import Maxwell
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
 DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, below which it is round-off
@@ -25,7 +25,7 @@ DISTINCT = 1e-12  # energy of a difference of shapes, over that of a shape, belo
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """Shapes of a reduction, u = Psi q.
+    """The basis of a reduction: shapes, u = Psi q.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def craig_bampton(
     f_max: float | None = None,
     n_modes: int | None = None,
 ) -> Basis:
-    """Constraint modes of an interface and the fixed-interface modes, for dense or sparse symmetric M and K.
+    """A basis by Craig and Bampton: constraint and fixed-interface modes, for dense or sparse M and K.
 
     Parameters
     ----------
@@ -143,11 +143,16 @@ def craig_bampton(
     dofs
         (m,) interface coordinates.
     T
-        (m, r) makes them move as u[dofs] = T q (default: each by itself).
+        (m, r) makes them move as u[dofs] = T q; None: each by itself.
     f_max
-        Keep the fixed-interface modes up to this frequency, Hz; or n_modes: keep that many. Give one of the
-        two. Three to four times the highest frequency of interest keeps frequencies to about 0.1 %, twice to
-        about 1 %.
+        Keep the fixed-interface modes up to this frequency, Hz. Three to four times the highest frequency of
+        interest keeps frequencies to about 0.1 %, twice to about 1 %.
+    n_modes
+        Instead of f_max: keep so many.
+
+    Returns
+    -------
+    Basis
 
     Raises
     ------
@@ -181,17 +186,25 @@ def craig_bampton(
 def modulus_levels(
     materials: Sequence[ComplexModulus], moduli: Sequence[float] | None = None
 ) -> list[list[float]]:
-    """Real shear moduli, Pa, at which shapes are taken: a list over the viscoelastic materials per level.
+    """Real shear moduli, Pa, at which the shapes of a basis are taken.
 
-    By default two levels for each material: its relaxed modulus, for the static state (or, if that is zero,
-    |G*| at the slowest branch), and |G*| at ω = 1/τ of its fastest branch, the end of the band in which
-    the branches describe it. Where these are more than a hundredfold apart, a third level, their geometric
-    mean, keeps the stiffness between them within some 0.3 %; two would leave 5 % at a thousandfold.
+    By default there are two levels for each material: its relaxed modulus, for the static state (or, if that
+    is zero, the magnitude of G* at the slowest branch), and the magnitude of G* at ω = 1/τ of its fastest
+    branch, the end of the band in which the branches describe it. Where these are more than a hundredfold
+    apart, a third level, their geometric mean, keeps the stiffness between them within some 0.3 %; two would
+    leave 5 % at a thousandfold.
 
     Parameters
     ----------
+    materials
+        The viscoelastic materials of the model.
     moduli
-        The same levels for every material; (G,) is the paper's basis at one modulus.
+        The same levels for every material instead; (G,) is the paper's basis at one modulus.
+
+    Returns
+    -------
+    list of list of float
+        For each level, a modulus for each material.
 
     Raises
     ------
@@ -225,10 +238,22 @@ def modulus_levels(
 
 
 def orthogonalise(shapes: Array, K: Any, M: Any) -> tuple[Array, Array]:
-    """Combine shapes (n, m) into modes of each other: unit modal mass, diagonal stiffness.
+    """Combine shapes of a basis into modes of each other: unit modal mass, diagonal stiffness.
 
-    The shapes come with energies uᵀKu of at most about one; combinations with less than DISTINCT are
-    dropped as round-off. Returns rising frequencies (p,), Hz, and shapes (n, p), p <= m.
+    Parameters
+    ----------
+    shapes
+        (n, m), with energies uᵀKu of at most about one; combinations with less than DISTINCT are dropped as
+        round-off.
+    K, M
+        Stiffness, N/m, and mass, kg, (n, n).
+
+    Returns
+    -------
+    frequency : Array
+        (p,), Hz, rising, p <= m.
+    shapes : Array
+        (n, p).
     """
     if not shapes.shape[1]:
         return np.zeros(0), shapes
@@ -241,15 +266,28 @@ def orthogonalise(shapes: Array, K: Any, M: Any) -> tuple[Array, Array]:
 
 
 def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Array, inner: Index, rounds: int) -> list[Array]:
-    """Static answers (n, m) of the held model to the inertia of shapes (n, m), then to that of the answers.
+    """Shapes of a basis: static answers (n, m) to the inertia of shapes (n, m), then to that of the answers.
+
+    They stand in for the truncated modes: each round makes the error smaller by the square of the frequency
+    over that of the first truncated mode.
 
     Parameters
     ----------
     solve
-        Static motion (inner, m) under loads (inner, m), the interfaces held.
+        Function that finds the static motion (inner, m) under loads (inner, m), the interfaces held.
     K, M
-        (n, n). They stand in for the truncated modes: each round makes the error smaller by the square of the
-        frequency over that of the first truncated mode. Shapes are scaled to an energy uᵀKu of one.
+        Stiffness, N/m, and mass, kg, (n, n).
+    shapes
+        Shapes (n, m) whose inertia is the first load.
+    inner
+        The coordinates that are not held.
+    rounds
+        How often the answers' inertia is answered again.
+
+    Returns
+    -------
+    list of Array
+        (n, m) for each round, scaled to an energy uᵀKu of one.
 
     References
     ----------
@@ -274,7 +312,24 @@ def basis_of(
     inertia: int = 1,
     attach: Iterable[str] = (),
 ) -> Basis:
-    """Shapes of a model's reduction; the arguments and errors are those of `reduce`."""
+    """The basis of a model's reduction.
+
+    Parameters
+    ----------
+    model
+        The part's unreduced equations.
+    f_max, n_modes, moduli, inertia, attach
+        As in `reduce`.
+
+    Returns
+    -------
+    Basis
+
+    Raises
+    ------
+    ValueError
+        As `reduce`.
+    """
     _check_truncation(f_max, n_modes)
     if not model.interfaces:
         raise ValueError("interfaces is empty; a part needs at least one to be joined by")

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.cms.basis import Basis, basis_of
-from bearingdyn.cms.damping import modal_damping
-from bearingdyn.cms.full import FullModel, RigidInterface
-from bearingdyn.cms.options import check_held
-from bearingdyn.cms.superelement import Superelement, Viscoelastic
+from bearingdyn.cms.full_model import FullModel, RigidInterface
+from bearingdyn.cms.modal_damping import modal_damping
+from bearingdyn.cms.reduction_options import check_held
+from bearingdyn.cms.superelement import Superelement
+from bearingdyn.cms.viscoelastic import Viscoelastic
 from bearingdyn.fem import rigid_body_residual, rigid_transfer
 
 
@@ -26,12 +27,16 @@ def reduce(
     damping: float = 0.0,
     held: str | None = None,
 ) -> Superelement:
-    """Superelement of a full model: constraint modes of its interfaces and shapes that vanish on them.
+    """Reduce a full model to a superelement: constraint modes, and shapes that vanish on the interfaces.
 
     Parameters
     ----------
+    model
+        The part's unreduced equations.
     f_max
-        Keep the fixed-interface modes up to this frequency, Hz; or n_modes: keep that many. Give one.
+        Keep the fixed-interface modes up to this frequency, Hz.
+    n_modes
+        Instead of f_max: keep so many. Give one of the two.
     moduli
         Shear moduli, Pa, at which the constraint modes of a viscoelastic part are taken (modulus_levels). The
         first serves as reference: constraint modes, fixed-interface modes, diagonal stiffness. Each further
@@ -43,9 +48,15 @@ def reduce(
         Outputs where loads may act: their static shapes at each modulus join the basis, so that the motion a
         load there causes is statically exact, which truncated modes leave to chance.
     damping
-        Ratio ζ of every elastic mode (modal_damping) of the body with only its elastic stiffness, free or
-        held at the interface `held`. Dampers then act on the motion relative to that interface, never on
-        rigid motion. It is added to the model's own C.
+        Ratio ζ of every elastic mode (modal_damping) of the body with only its elastic stiffness. It is added
+        to the model's own C.
+    held
+        Interface at which the damped body is held; None: it is free. Dampers then act on the motion relative
+        to that interface, never on rigid motion.
+
+    Returns
+    -------
+    Superelement
 
     Raises
     ------
@@ -63,7 +74,26 @@ def reduce(
 
 
 def project(model: FullModel, basis: Basis, *, damping: float = 0.0, held: str | None = None) -> Superelement:
-    """Superelement of a model in a given basis (Psiᵀ A Psi for each of its matrices); see `reduce`."""
+    """Reduce a full model to a superelement in a given basis, Psiᵀ A Psi for each of its matrices.
+
+    Parameters
+    ----------
+    model
+        The part's unreduced equations.
+    basis
+        The shapes, such as those of `basis_of`.
+    damping, held
+        As in `reduce`.
+
+    Returns
+    -------
+    Superelement
+
+    Raises
+    ------
+    ValueError
+        For a stiffness that resists rigid motion (unless model.grounded), and values outside their range.
+    """
     faces = list(model.interfaces.values())
     r = 6 * len(faces)
     R = rigid_transfer([f.position for f in faces], np.mean([f.position for f in faces], axis=0))
@@ -113,7 +143,8 @@ def project(model: FullModel, basis: Basis, *, damping: float = 0.0, held: str |
         interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(model.interfaces)},
         outputs={name: np.asarray(row @ basis.Psi) for name, row in model.outputs.items()},
         viscoelastic=tuple(
-            Viscoelastic(part.material, P.T @ basis.reduce(part.H) @ P) for part in model.viscoelastic
+            Viscoelastic(part.material, P.T @ basis.reduce(part.H) @ P, part.volume)
+            for part in model.viscoelastic
         ),
     )
 
@@ -131,24 +162,32 @@ def reduce_free_body(
     f_max: float | None = None,
     n_modes: int | None = None,
 ) -> Superelement:
-    """Superelement of an elastic body free in space, by Craig-Bampton reduction.
+    """Reduce an elastic body free in space to a superelement, by Craig-Bampton.
 
     Parameters
     ----------
-    M, K, G
-        (n, n) dense or sparse; G skew, its force being Ω G ẋ.
+    M, K
+        Mass, kg, and stiffness, N/m, (n, n), dense or sparse.
     interfaces
         name -> rigid interface, no coordinate in two of them.
     outputs
         name -> rows (6, n) or (3, n).
+    G
+        Gyroscopic matrix (n, n), skew, its force being Ω G ẋ; None: none.
     spin
         (n, n) generator J of a turn about z for a body of revolution that turns with the shaft: its damping
         then acts on ẋ - Ω J x, and the superelement has the circulatory matrix N = -C J.
     damping
-        Ratio ζ of every elastic mode (modal_damping), of the free body or of the body held at the interface
-        `held`. Dampers then act on the motion relative to that interface, never on rigid motion.
+        Ratio ζ of every elastic mode (modal_damping).
+    held
+        Interface at which the damped body is held; None: it is free. Dampers then act on the motion relative
+        to that interface, never on rigid motion.
     f_max, n_modes
         As in craig_bampton.
+
+    Returns
+    -------
+    Superelement
 
     Raises
     ------

@@ -4,156 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
 
 import numpy as np
-import scipy
-from numpy.typing import ArrayLike
 
-from bearingdyn.bearing import RacewaySeries
-from bearingdyn.checks import positive
-from bearingdyn.short import short
+from bearingdyn.cms.frozen_matrices import check_symmetry, frozen
+from bearingdyn.cms.raceway import Raceway
+from bearingdyn.cms.radiating_surface import Surface
+from bearingdyn.cms.viscoelastic import Viscoelastic
 from bearingdyn.types import Array, Complex, Index
-
-# Largest accepted |A_ij ∓ A_ji| over the largest |A|. The round-off of a congruence of 1e5 coordinates is
-# some 1e-11 of it, and matrices written with ten digits pass; a wrong sign or entry is not so small.
-SYMMETRY = 1e-9
-
-
-class ComplexModulus(Protocol):
-    """A material whose shear modulus depends on the frequency."""
-
-    def complex_modulus(self, omega: Any) -> Any:
-        """G*(ω) in Pa for ω in rad/s."""
-
-
-def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """A read-only copy. Raises ValueError, by the name, for another shape or an entry that is not finite."""
-    array = np.array(value, dtype=np.float64)
-    if array.shape != shape:
-        raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} has an entry that is not finite: {array[~np.isfinite(array)][0]}")
-    array.setflags(write=False)
-    return array
-
-
-def frozen_sparse(name: str, value: Any, n: int, columns: int | None = None) -> scipy.sparse.csr_matrix:
-    """A matrix (n, columns or n) as csr. Raises ValueError for another shape or an entry not finite."""
-    matrix = scipy.sparse.csr_matrix(value, dtype=np.float64)
-    shape = (n, n if columns is None else columns)
-    if matrix.shape != shape:
-        raise ValueError(f"{name} has shape {matrix.shape}; it must be {shape}")
-    if not np.isfinite(matrix.data).all():
-        bad = matrix.data[~np.isfinite(matrix.data)][0]
-        raise ValueError(f"{name} has an entry that is not finite: {bad}")
-    return matrix
-
-
-def check_symmetry(name: str, A: Any, sign: int) -> None:
-    """Check that a dense or sparse A is symmetric (sign 1) or skew-symmetric (sign −1).
-
-    Raises
-    ------
-    ValueError
-        Naming the matrix and the two entries farthest from it.
-    """
-    if 0 in A.shape:
-        return
-    off, scale = abs(A - sign * A.T), float(abs(A).max())
-    if not float(off.max()) <= SYMMETRY * scale:
-        i, j = sorted(int(k) for k in np.unravel_index(off.argmax(), off.shape))
-        kind = "symmetric" if sign > 0 else "skew-symmetric"
-        raise ValueError(
-            f"{name}[{i}, {j}] is {A[i, j]:.6g} and {name}[{j}, {i}] is {A[j, i]:.6g}; {name} must be "
-            f"{kind}, to {SYMMETRY:g} of its largest entry, {scale:.6g}"
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Viscoelastic:
-    """One viscoelastic material inside a superelement, or inside a full model.
-
-    Parameters
-    ----------
-    material
-        Anything with ``complex_modulus(omega)``; the time domain needs a Maxwell model.
-    H
-        (n, n) ∫BᵀT2B dV, m, dense if reduced and sparse (csr) if not; the deviatoric stiffness is 2·G*(ω)·H
-        (paper (16), (23)).
-    """
-
-    material: ComplexModulus
-    H: Any
-
-    __repr__ = short
-
-    def __post_init__(self) -> None:
-        if not callable(getattr(self.material, "complex_modulus", None)):
-            raise ValueError(
-                f"material is {self.material!r}; a viscoelastic material must have complex_modulus(omega)"
-            )
-        sparse = scipy.sparse.issparse(self.H)
-        n = self.H.shape[0] if sparse else np.shape(self.H)[0] if np.ndim(self.H) else 0
-        H = frozen_sparse("H", self.H, n) if sparse else frozen("H", self.H, (n, n))
-        check_symmetry("H", H, 1)
-        object.__setattr__(self, "H", H)
-
-
-@dataclass(frozen=True, eq=False)
-class Raceway:
-    """The raceway of a flexible ring: the motion of its groove centre as Fourier coefficients in azimuth.
-
-    Parameters
-    ----------
-    series
-        The coefficients.
-    arm
-        Radius, m, at which tilts become axial motion.
-    rows
-        (len(series), n) coefficients from the superelement's coordinates; a load of balls g acts as rowsᵀ g.
-    """
-
-    series: RacewaySeries
-    arm: float
-    rows: Array
-
-    __repr__ = short
-
-    def __post_init__(self) -> None:
-        n = np.shape(self.rows)[-1] if np.ndim(self.rows) else 0
-        object.__setattr__(self, "rows", frozen("rows", self.rows, (len(self.series), n)))
-        positive("arm", self.arm, "it must be a positive radius in m")
-
-
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """A surface of a part that radiates sound: ∫ v_n² dA = q̇ᵀ W q̇ of its normal velocity v_n.
-
-    Parameters
-    ----------
-    area
-        m².
-    W
-        (n, n) symmetric, m².
-    """
-
-    area: float
-    W: Array
-
-    __repr__ = short
-
-    def __post_init__(self) -> None:
-        positive("area", self.area, "it must be a positive area in m²")
-        n = np.shape(self.W)[0] if np.ndim(self.W) else 0
-        W = frozen("W", self.W, (n, n))
-        check_symmetry("W", W, 1)
-        object.__setattr__(self, "W", W)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Superelement:
-    """A reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
+    """A superelement, the reduced part: M ẍ + (C + Ω G) ẋ + (K + Ω N) x + Σ 2 G*(ω) H x = f.
 
     Parameters
     ----------

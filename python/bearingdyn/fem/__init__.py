@@ -6,8 +6,8 @@ all three.
 """
 
 from bearingdyn.fem.beam import Section, assemble_beam, bending_wavelength
-from bearingdyn.fem.eigen import lowest_modes
 from bearingdyn.fem.factors import Factors, factorise, order_of
+from bearingdyn.fem.lowest_modes import lowest_modes
 from bearingdyn.fem.matrix_files import (
     MM_TONNE,
     FEMatrices,
@@ -30,15 +30,23 @@ from bearingdyn.fem.meshes import (
     box_mesh,
     by_size,
     crowded,
+    disc_section,
     face_shapes,
     o_ring_mesh,
     quadrilaterals,
     revolution_mesh,
     ring_mesh,
 )
-from bearingdyn.fem.revolution import ALL_COMPONENTS, AXIAL, TORSION, Harmonic, assemble_harmonic
-from bearingdyn.fem.rigid import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
-from bearingdyn.fem.solid import SolidMatrices, assemble_solid
+from bearingdyn.fem.revolution_harmonics import (
+    ALL_COMPONENTS,
+    AXIAL,
+    TORSION,
+    Harmonic,
+    assemble_harmonic,
+    deviatoric_strains,
+)
+from bearingdyn.fem.rigid_motion import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
+from bearingdyn.fem.solid_matrices import SolidMatrices, assemble_solid
 
 __all__ = [
     "ALL_COMPONENTS",
@@ -65,6 +73,8 @@ __all__ = [
     "by_size",
     "check_matrices",
     "crowded",
+    "deviatoric_strains",
+    "disc_section",
     "face_shapes",
     "factorise",
     "lowest_modes",

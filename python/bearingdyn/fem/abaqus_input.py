@@ -15,7 +15,7 @@ WITH_FILE = ("NODE", "ELEMENT")  # keywords whose INPUT= names a file of more da
 
 @dataclass
 class Block:
-    """A keyword with its options and data lines.
+    """A block of an Abaqus input file: a keyword with its options and data lines.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class _Budget:
 
 
 def blocks(path: Path) -> Iterator[Block]:
-    """The blocks of a file in turn, *INCLUDE followed.
+    """The blocks of an Abaqus input file in turn, *INCLUDE followed.
 
     Raises
     ------
@@ -156,12 +156,12 @@ def _begun(lines: list[str], path: Path, place: int) -> Block:
 
 
 def fields(line: str) -> list[str]:
-    """The entries of a data line that are not blank."""
+    """The entries of a data line of an Abaqus input file that are not blank."""
     return [f.strip() for f in line.split(",") if f.strip()]
 
 
 def whole(text: str) -> int:
-    """A number of a node or element. Raises ValueError for what is none."""
+    """A whole number of an Abaqus input file, of a node or element; ValueError for anything else."""
     if not (text.isascii() and text.isdigit() and len(text) < 20 and int(text) <= LARGEST_NUMBER):
         raise ValueError(
             f"{text[:40]!r} is not the number of a node or element; it must be in 0...{LARGEST_NUMBER}"
@@ -170,7 +170,7 @@ def whole(text: str) -> int:
 
 
 def real(text: str) -> float:
-    """A finite number, blank for 0, with exponents of Fortran too. Raises ValueError for what is none."""
+    """A finite number of an Abaqus input file, blank for 0, Fortran's exponents too; ValueError otherwise."""
     try:
         value = float(text.replace("D", "e").replace("d", "e") or "0")
     except ValueError:
@@ -181,7 +181,7 @@ def real(text: str) -> float:
 
 
 def node(line: str) -> tuple[int, tuple[float, float, float]]:
-    """Number and position of a line of *NODE; a coordinate that is blank or absent is zero.
+    """Number and position of a line of *NODE in an Abaqus input file; absent coordinates are zero.
 
     Raises
     ------

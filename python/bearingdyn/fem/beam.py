@@ -22,7 +22,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True)
 class Section:
-    """A length of shaft of constant circular section.
+    """A section of a beam: a length of shaft of constant circular cross-section.
 
     Parameters
     ----------
@@ -80,9 +80,23 @@ class Section:
 
 
 def bending_wavelength(section: Section, material: Elastic, frequency: float) -> float:
-    """Estimate of the length, m, of a free bending wave at a frequency, Hz.
+    """Estimate of the length of a free bending wave of a beam.
 
     The shorter of the Euler-Bernoulli wave and the shear wave, between which the Timoshenko beam passes.
+
+    Parameters
+    ----------
+    section
+        Of the beam.
+    material
+        Of the beam.
+    frequency
+        Hz.
+
+    Returns
+    -------
+    float
+        m.
     """
     omega = 2.0 * math.pi * frequency
     EI, rhoA = material.E * section.second_moment, material.density * section.area
@@ -92,7 +106,7 @@ def bending_wavelength(section: Section, material: Elastic, frequency: float) ->
 
 
 def element_matrices(section: Section, length: float, material: Elastic) -> tuple[Array, Array, Array]:
-    """Mass, gyroscopic and stiffness matrix, each (12, 12), of an element between two nodes.
+    """Mass, gyroscopic and stiffness matrix, each (12, 12), of a beam element between two nodes.
 
     The gyroscopic force is Ω G ẋ on the left-hand side; for a disc G[θx, θy] = +Ip. The matrices of bending
     are consistent, with the interpolation that solves the static Timoshenko equations. Stretch and torsion
@@ -157,7 +171,7 @@ def element_matrices(section: Section, length: float, material: Elastic) -> tupl
 def assemble_beam(
     z: Array, sections: Sequence[Section], material: Elastic
 ) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix, scipy.sparse.csr_matrix]:
-    """Mass, gyroscopic and stiffness matrix of a shaft, sparse, (6 n, 6 n).
+    """Mass, gyroscopic and stiffness matrix of a shaft of beam elements.
 
     Parameters
     ----------
@@ -165,6 +179,13 @@ def assemble_beam(
         (n,) rising node positions, m.
     sections
         The n - 1 sections between them, whose own lengths do not enter.
+    material
+        Of all sections.
+
+    Returns
+    -------
+    M, G, K : scipy.sparse.csr_matrix
+        (6 n, 6 n); the gyroscopic force is Ω G ẋ.
 
     Raises
     ------

@@ -21,7 +21,7 @@ LEAF = 40  # groups of coordinates below which nothing is dissected
 
 
 def elimination_order(A: Any) -> Index:
-    """Permutation p (n,) such that A[p][:, p] is factorised with little fill.
+    """Order of elimination: a permutation p (n,) such that A[p][:, p] is factorised with little fill.
 
     On solids of 35 thousand coordinates in 20-node bricks the factors come out a fifth smaller than by
     minimum degree, in half the time. The gain grows with the size; on small cubes minimum degree is better.

@@ -35,13 +35,24 @@ class Factors:
 
 
 def factorise(A: Any) -> Any:
-    """Factors of a sparse symmetric positive definite matrix; ``.solve(b)`` as scipy's splu gives it."""
+    """Factors of a sparse symmetric positive definite matrix.
+
+    Parameters
+    ----------
+    A
+        (n, n), sparse.
+
+    Returns
+    -------
+    Factors or scipy.sparse.linalg.SuperLU
+        Its ``.solve(b)`` takes b (n,) or (n, m).
+    """
     A = scipy.sparse.csc_matrix(A)
     return Factors(A, elimination_order(A)) if A.shape[0] > DISSECT else _by_minimum_degree(A)
 
 
 def pivots(A: Any) -> Array:
-    """Pivots (n,) of a sparse symmetric matrix, by its rows.
+    """Pivots (n,) of the factors of a sparse symmetric matrix, by its rows.
 
     As many are negative as eigenvalues are (Sylvester). −1 stands where rows were exchanged, which only a
     pivot of zero makes necessary.
@@ -60,7 +71,18 @@ def pivots(A: Any) -> Array:
 
 
 def order_of(A: Any) -> Index:
-    """Order of elimination (n,) for many matrices of one pattern, found once; see Factors."""
+    """Order of elimination for the factors of many matrices of one pattern, found once; see Factors.
+
+    Parameters
+    ----------
+    A
+        (n, n), sparse, of the pattern.
+
+    Returns
+    -------
+    Array
+        Permutation (n,).
+    """
     return elimination_order(A) if A.shape[0] > DISSECT else np.argsort(_by_minimum_degree(A).perm_c)
 
 

@@ -17,13 +17,14 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_density, check_waves, plausible
+from bearingdyn.material.amplitude.law import Payne, Softening
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
 from bearingdyn.material.superposition import MasterCurve, one_curve
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 _PER_DECADE = 40  # points at which a modulus is handed to the fit
@@ -73,8 +74,8 @@ def _factor(owner: str, law: Law | None, temperature: float | None, T: float) ->
 
 
 @dataclass(frozen=True, eq=False)
-class TabulatedModulus:
-    """Complex shear modulus as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
+class TabulatedModulus(Softening):
+    """Complex modulus in shear as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
 
     Parameters
     ----------
@@ -86,6 +87,8 @@ class TabulatedModulus:
         Bulk modulus, Pa, and density, kg/m³.
     law, temperature
         Shift law, and the temperature, °C, at which the table holds, for :meth:`at`.
+    payne
+        Law of softening with the amplitude of strain; None for none.
 
     Raises
     ------
@@ -101,6 +104,7 @@ class TabulatedModulus:
     density: float
     law: Law | None = None
     temperature: float | None = None
+    payne: Payne | None = None
 
     __repr__ = short
 
@@ -174,14 +178,15 @@ class TabulatedModulus:
     ) -> Maxwell:
         """Its Maxwell approximation in a band, Hz (the table unless given); `fit` holds the error."""
         band = band or (float(self.frequency[0]), float(self.frequency[-1]))
-        return _approximate(
+        made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
+        return made.with_payne(self.payne)
 
 
 @dataclass(frozen=True)
-class PowerLaw:
-    """Power law, the paper's "simple exponential function": G* = G_ref (iω/ω_ref)^α.
+class PowerLaw(Softening):
+    """Complex modulus by a power law, the paper's "simple exponential function": G* = G_ref (iω/ω_ref)^α.
 
     |G*| grows as ω^α and the loss factor is tan(απ/2) at all frequencies: the only causal modulus with a
     constant loss factor.
@@ -198,6 +203,8 @@ class PowerLaw:
         Bulk modulus, Pa, and density, kg/m³.
     law, temperature
         Shift law, and the temperature, °C, at which the modulus holds, for :meth:`at`.
+    payne
+        Law of softening with the amplitude of strain; None for none.
 
     Raises
     ------
@@ -214,6 +221,7 @@ class PowerLaw:
     density: float
     law: Law | None = None
     temperature: float | None = None
+    payne: Payne | None = None
 
     def __post_init__(self) -> None:
         values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
@@ -243,14 +251,15 @@ class PowerLaw:
         self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02
     ) -> Maxwell:
         """Its Maxwell approximation in a band, Hz; `fit` holds the error."""
-        return _approximate(
+        made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
+        return made.with_payne(self.payne)
 
 
 @dataclass(frozen=True)
-class FractionalZener:
-    """Fractional Zener model: G* = (G0 + G∞ (iωτ)^α)/(1 + (iωτ)^α).
+class FractionalZener(Softening):
+    """Complex modulus by a fractional Zener model: G* = (G0 + G∞ (iωτ)^α)/(1 + (iωτ)^α).
 
     Parameters
     ----------
@@ -264,6 +273,8 @@ class FractionalZener:
         Bulk modulus, Pa, and density, kg/m³.
     law, temperature
         Shift law, and the temperature, °C, at which tau holds, for :meth:`at`.
+    payne
+        Law of softening with the amplitude of strain; None for none.
 
     Raises
     ------
@@ -281,6 +292,7 @@ class FractionalZener:
     density: float
     law: Law | None = field(default=None)
     temperature: float | None = None
+    payne: Payne | None = None
 
     def __post_init__(self) -> None:
         values = {"G_inf": self.G_inf, "tau": self.tau, "K": self.K, "density": self.density}
@@ -308,6 +320,7 @@ class FractionalZener:
         self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02
     ) -> Maxwell:
         """Its Maxwell approximation in a band, Hz; `fit` holds the error."""
-        return _approximate(
+        made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
+        return made.with_payne(self.payne)

@@ -19,7 +19,7 @@ _EDGE = 1e-12  # of an interval between two poles, which brackets the zero from 
 
 
 def creep_compliance(G0: float, G: Array, tau: Array, eta0: float, t: ArrayLike) -> Array:
-    """J(t), 1/Pa, of spring G0, branches (G, tau) and dashpot eta0 in parallel; t ≥ 0 s, any shape."""
+    """Creep compliance J(t), 1/Pa, of spring G0, branches (G, tau) and dashpot eta0 in parallel; t ≥ 0 s."""
     t = np.asarray(t, dtype=np.float64)
     if not np.all(t >= 0):
         raise ValueError("t: a creep compliance exists for times t >= 0 s only")

@@ -7,26 +7,27 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import require
+from bearingdyn.material.isotherms import first_unsorted, group_isotherms
+from bearingdyn.material.shear_from_tension import shear_modulus
 from bearingdyn.notice import UnlikelyModulus, warn
-from bearingdyn.types import Array, Complex
+from bearingdyn.types import Array
 
 Mode = Literal["shear", "tension"]
-
 _SPREAD = 6.0  # K; widest temperature range called one isotherm
 _SOFT, _HARD, _HARDEST = 10.0, 5e10, 1.2e12  # Pa; a soft gel, more than any polymer, diamond
 _UNIT = "is the unit right (Pa, kPa, MPa, GPa)? Give units={'storage': ..., 'loss': ...}"
 
 
 class UnitError(ValueError):
-    """Moduli no solid has: their unit is wrong."""
+    """A DMA measurement has moduli that no solid has: their unit is wrong."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DMAData:
-    """Storage and loss modulus at frequencies and temperatures, one value of each per point.
+    """A dynamic mechanical analysis (DMA): storage and loss modulus, one value of each per point.
 
     Parameters
     ----------
@@ -262,7 +263,7 @@ class DMAData:
 
 
 def check_range(dma: DMAData) -> None:
-    """Warn of moduli that gels, elastomers and polymers do not have: the unit is likely wrong."""
+    """Warn of a DMA's moduli that gels, elastomers and polymers do not have: the unit is likely wrong."""
     middle = float(np.median(np.abs(dma.storage)))
     if middle > _HARD or 0 < middle < _SOFT:
         warn(
@@ -270,68 +271,3 @@ def check_range(dma: DMAData) -> None:
             f"{_HARD:g} Pa, the range of gels, elastomers and polymers: {_UNIT}",
             UnlikelyModulus,
         )
-
-
-def shear_modulus(modulus: Complex, K: float | None, nu: float | None) -> tuple[Complex, str]:
-    """Complex shear modulus of a complex modulus in tension, Pa, by K or by nu, and a note that says how.
-
-    Raises ValueError unless exactly one is given and in its range.
-    """
-    if (K is None) == (nu is None):
-        raise ValueError("to_shear: give either the bulk modulus, K=2e9, or Poisson's ratio, nu=0.5")
-    if nu is not None:
-        require(0 <= nu <= 0.5, "nu", nu, "Poisson's ratio must lie between 0 and 0.5")
-        return modulus / (2 * (1 + nu)), f"tension turned into shear by E*/2(1 + nu), nu = {nu:g}"
-    assert K is not None  # one of the two is given
-    positive("K", K, "it must be positive and finite, Pa")
-    if not np.all(modulus.real < 9 * K):
-        raise ValueError(
-            f"K is {K:g} Pa; it must exceed a ninth of the tensile modulus, here {modulus.real.max():.4g} Pa"
-        )
-    return 3 * K * modulus / (9 * K - modulus), f"tension turned into shear by 3KE*/(9K - E*), K = {K:g} Pa"
-
-
-def first_unsorted(frequency: Array, labels: NDArray[np.int64]) -> int | None:
-    """Index of the first point whose frequency turns back within its isotherm, None if there is none."""
-    found = []
-    for k in np.unique(labels):
-        index = np.flatnonzero(labels == k)
-        step = np.sign(np.diff(frequency[index]))
-        moving = step[step != 0]
-        if moving.size:
-            turned = np.flatnonzero(step == -moving[0])
-            found += [int(index[turned[0] + 1])] if turned.size else []
-    return min(found, default=None)
-
-
-def group_isotherms(temperature: ArrayLike, run: ArrayLike | None = None) -> NDArray[np.int64]:
-    """Number of the isotherm each temperature, °C, (n,), belongs to, 0 the coldest.
-
-    Sorted temperatures are cut at their wide gaps; wide is what lies above the largest jump in the sizes of
-    the gaps, 0.3 K at least and 3 K at most, so that jitter of a tenth of a kelvin and drift of one kelvin do
-    no harm. Where runs are named, (n,), each has isotherms of its own.
-    """
-    T = np.asarray(temperature, dtype=float)
-    if run is None:
-        return _cut_at_gaps(T)
-    labels = np.zeros(T.size, dtype=np.int64)
-    used = 0
-    for name in dict.fromkeys(np.asarray(run).tolist()):
-        own = np.asarray(run) == name
-        labels[own] = used + _cut_at_gaps(T[own])
-        used = int(labels.max()) + 1
-    means = np.bincount(labels, T) / np.bincount(labels)
-    return np.argsort(np.argsort(means, kind="stable"))[labels].astype(np.int64)
-
-
-def _cut_at_gaps(T: Array) -> NDArray[np.int64]:
-    """Number of the isotherm of each temperature of one run."""
-    order = np.argsort(T, kind="stable")
-    gap = np.diff(T[order])
-    sizes = np.concatenate([[0.02], np.sort(np.clip(gap, 0.02, 3.0))])
-    jump = np.where(sizes[1:] >= 0.3, sizes[1:] / sizes[:-1], 0.0)
-    labels = np.zeros(T.size, dtype=np.int64)
-    if jump.size and jump.max() > 0:
-        threshold = sizes[1 + int(np.argmax(jump))]
-        labels[order[1:]] = np.cumsum(np.minimum(gap, 3.0) >= threshold)
-    return labels

@@ -19,15 +19,29 @@ from bearingdyn.material.shift_laws import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrh
 
 
 def elastic_constants(G: float, K: float) -> tuple[float, float]:
-    """Young's modulus 9KG/(3K + G), Pa, and Poisson's ratio (3K − 2G)/(6K + 2G)."""
+    """Young's modulus 9KG/(3K + G), Pa, and Poisson's ratio (3K − 2G)/(6K + 2G), as exports write them."""
     return 9 * K * G / (3 * K + G), (3 * K - 2 * G) / (6 * K + 2 * G)
 
 
 def to_abaqus_frequency(material: Maxwell, frequency: ArrayLike, name: str = "RUBBER") -> str:
-    """Abaqus material for steady-state dynamics: *VISCOELASTIC, FREQUENCY=TABULAR at frequencies, Hz.
+    """Export a material to Abaqus for steady-state dynamics: *VISCOELASTIC, FREQUENCY=TABULAR.
 
     Columns ωRe(g*) = G″/G∞, ωIm(g*) = 1 − G′/G∞, none for the bulk, f; the dashpot is contained. G∞ = G0 is
     the long-term modulus *ELASTIC gives.
+
+    Parameters
+    ----------
+    material
+        The Maxwell model.
+    frequency
+        (f,), Hz, of the table.
+    name
+        Of the material in Abaqus.
+
+    Returns
+    -------
+    str
+        Lines of an input file.
 
     Raises
     ------
@@ -48,9 +62,22 @@ def to_abaqus_frequency(material: Maxwell, frequency: ArrayLike, name: str = "RU
 
 
 def to_abaqus_prony(material: Maxwell, name: str = "RUBBER") -> str:
-    """Abaqus material for the time domain: *VISCOELASTIC, TIME=PRONY with *TRS of a WLF or Arrhenius law.
+    """Export a material to Abaqus for the time domain: *VISCOELASTIC, TIME=PRONY.
 
-    Temperatures are in °C, with *PHYSICAL CONSTANTS saying where absolute zero is.
+    A WLF or Arrhenius law becomes *TRS. Temperatures are in °C, and *PHYSICAL CONSTANTS says where absolute
+    zero is.
+
+    Parameters
+    ----------
+    material
+        The Maxwell model.
+    name
+        Of the material in Abaqus.
+
+    Returns
+    -------
+    str
+        Lines of an input file.
 
     Raises
     ------
@@ -81,9 +108,21 @@ def to_abaqus_prony(material: Maxwell, name: str = "RUBBER") -> str:
 
 
 def to_ansys(material: Maxwell, number: int = 1) -> str:
-    """ANSYS commands: MP, TB,PRONY and TB,SHIFT; temperatures in kelvin, so TOFFST,0.
+    """Export a material to ANSYS: MP, TB,PRONY and TB,SHIFT; temperatures in kelvin, so TOFFST,0.
 
     WLF as TB,SHIFT,,,3,WLF with (Tr, C1, C2); Arrhenius as TN (Tool–Narayanaswamy), (Tr, Ea/R).
+
+    Parameters
+    ----------
+    material
+        The Maxwell model.
+    number
+        Of the material in ANSYS.
+
+    Returns
+    -------
+    str
+        Commands.
 
     Raises
     ------
@@ -127,10 +166,24 @@ def to_ansys(material: Maxwell, number: int = 1) -> str:
 
 
 def to_calculix(material: Maxwell, frequency: float, name: str = "RUBBER") -> str:
-    """CalculiX material for steady-state dynamics near one frequency, Hz: *ELASTIC and *DAMPING, STRUCTURAL.
+    """Export a material to CalculiX for steady-state dynamics: *ELASTIC and *DAMPING, STRUCTURAL.
 
-    CalculiX has no viscoelastic material; a constant storage modulus and loss factor is all it holds, and it
-    applies the loss factor to the volume too, where this model has none.
+    CalculiX has no viscoelastic material. It takes a constant storage modulus and loss factor, and applies
+    the loss factor to the volume too, where this model has none.
+
+    Parameters
+    ----------
+    material
+        The Maxwell model.
+    frequency
+        Hz, near which the constants hold.
+    name
+        Of the material in CalculiX.
+
+    Returns
+    -------
+    str
+        Lines of an input file.
 
     Raises
     ------

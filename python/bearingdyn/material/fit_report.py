@@ -8,7 +8,7 @@ import numpy as np
 
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.notice import OutsideBand as OutsideBand
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 

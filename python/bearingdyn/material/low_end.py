@@ -1,13 +1,11 @@
-"""What data say of a material at long times, and the warning where an answer goes beyond them."""
+"""What data say of a material at long times."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
-
-from bearingdyn.notice import BeyondData, warn
 
 FALL = 0.05  # of G′ a decade: what moduli from one specimen to the next are good to
 LATE = 10.0  # times the reach: a pin this late is the relaxed state, with branches up to a tenth of it
@@ -16,7 +14,7 @@ SLACK = 2.0  # times the reach: a third of a decade, as a band may go beyond the
 
 @dataclass(frozen=True)
 class LowEnd:
-    """What the points of a fit say of the modulus at long times, and how long these are.
+    """The low end of a fit: what its points say of the modulus at long times, and how long these are.
 
     A point at ω speaks of the relaxation modulus at t = 1/ω. Beyond the longest time the modulus cannot rise,
     and of the relaxed modulus the data alone give no lower bound unless they show a plateau: a branch that
@@ -132,41 +130,3 @@ class LowEnd:
         """Of a model that states its lowest frequency, Hz, and nothing of data; G′ there, Pa."""
         unknown = math.nan
         return cls(frequency, frequency, modulus, unknown, unknown, unknown, 0.0, False, (0.0, modulus))
-
-
-def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, first: str = "") -> None:
-    """Warn of materials whose modulus `after` a time, s (inf: relaxed), is not in their data.
-
-    One warning for each call: it names all layers, and the numbers of the first. `first` is the first remedy.
-    """
-    found = [
-        (name, material)
-        for name, material in layers
-        if (end := getattr(material, "low_end", None)) is not None and not end.covers(after)
-    ]
-    if not found:
-        return
-    material = found[0][1]
-    warn(
-        f"{what} of {', '.join(dict.fromkeys(name for name, _ in found))} leaves the data: "
-        f"{_numbers(material, after)}; {first}fit from a lower frequency, pin the low end by "
-        f"fit_maxwell(pin=...), or measure longer or warmer",
-        BeyondData,
-    )
-
-
-def _numbers(material: Any, after: float) -> str:
-    """The value, what the data reach, and the interval."""
-    end: LowEnd = material.low_end
-    value = material.complex_modulus(0.0).real if math.isinf(after) else float(material.relaxation(after))
-    low, high = end.bounds(after, value)
-    state = "relaxed" if math.isinf(after) else f"after {after:.3g} s"
-    at = "" if material.temperature is None else f" at {material.temperature:g} °C"
-    falls = f", where G′ still falls {end.fall:.0%} a decade" if math.isfinite(end.fall) else ""
-    longer = ""
-    if end.measured < end.frequency / SLACK:
-        longer = f" (the master curve reaches {1 / (2 * math.pi * end.measured):.3g} s)"
-    return (
-        f"{state} G = {value / 1e6:.3g} MPa, fitted to data that reach {end.reach:.3g} s, "
-        f"{end.frequency:.3g} Hz{at}{falls}{longer}; they allow {low / 1e6:.3g} to {high / 1e6:.3g} MPa"
-    )

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, number, positive, real, vector
+from bearingdyn.checks import nonnegative, number, positive, real, require, vector
 from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
+from bearingdyn.material.amplitude.law import Payne, Softening
+from bearingdyn.material.amplitude.rest import Rest, rest_of
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd
@@ -36,11 +39,12 @@ def _branches(name: str, values: ArrayLike) -> Array:
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Maxwell(Retunable):
-    """Generalised Maxwell material: viscoelastic in shear, elastic in volume.
+class Maxwell(Retunable, Softening):
+    """The generalised Maxwell model, viscoelastic in shear, elastic in volume.
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
     G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).
+    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
 
     Parameters
     ----------
@@ -70,8 +74,9 @@ class Maxwell(Retunable):
         What data say of its modulus at long times; that of the fit unless given, else of the band, if there
         is one: then the modulus is known down to its lower edge. A static answer beyond it comes with a
         warning (BeyondData). A model without fit and band is believed.
-
-    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
+    payne
+        Law of softening with the amplitude of strain; G0, G and tau are then those at the law's gamma_r. None
+        for none: the material is linear.
 
     Raises
     ------
@@ -101,6 +106,7 @@ class Maxwell(Retunable):
     band: tuple[float, float] | None = field(repr=False)
     fit: FitReport | None = field(repr=False)
     low_end: LowEnd | None = field(repr=False)
+    payne: Payne | None = field(repr=False)
 
     def __repr__(self) -> str:
         """One line: moduli, times, and where it is good."""
@@ -132,6 +138,7 @@ class Maxwell(Retunable):
         band: tuple[float, float] | None = None,
         fit: FitReport | None = None,
         low_end: LowEnd | None = None,
+        payne: Payne | None = None,
     ) -> None:
         if band is None and fit is not None:
             band = fit.band
@@ -151,6 +158,7 @@ class Maxwell(Retunable):
             "band": None if edges is None else (float(edges[0]), float(edges[1])),
             "fit": fit,
             "low_end": low_end if low_end is not None or fit is None else fit.low_end,
+            "payne": payne,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -188,6 +196,8 @@ class Maxwell(Retunable):
             plausible("temperature", "Maxwell.temperature", self.temperature, "it must be finite, °C")
         if self.band is not None and not 0 < self.band[0] < self.band[1] < math.inf:
             raise ValueError(f"Maxwell.band is {self.band!r} Hz; it must be a lower and a higher frequency")
+        if self.payne is not None:
+            require(isinstance(self.payne, Payne), "Maxwell.payne", self.payne, "give a bd.Payne, or None")
 
     def _stiffest(self) -> float:
         """|G*| at the upper end of the band, or right after a step where there is none, Pa."""
@@ -216,6 +226,7 @@ class Maxwell(Retunable):
             self.law,
             self.temperature,
             self.vertical,
+            self.payne,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -228,6 +239,12 @@ class Maxwell(Retunable):
     def G_instantaneous(self) -> float:
         """Modulus G0 + Σ G_i right after a step of strain, Pa (the impulse of eta0 left out)."""
         return self.G0 + float(self.G.sum())
+
+    @cached_property
+    def rest(self) -> Rest:
+        """What stands beside the law of softening in the time domain; ValueError without a law."""
+        require(self.payne is not None, "Maxwell.payne", self.payne, "a material without law has no rest")
+        return rest_of(self)
 
     def complex_modulus(self, omega: ArrayLike) -> Complex:
         """Complex shear modulus G*(ω) = G0 + iωη0 + Σ G_i iωτ_i/(1 + iωτ_i), Pa.
@@ -391,6 +408,7 @@ class Maxwell(Retunable):
             band=None if self.band is None else (self.band[0] / aT, self.band[1] / aT),
             fit=None,
             low_end=None if self.low_end is None else self.low_end.moved(aT, bT),
+            payne=None if self.payne is None else self.payne.scaled(bT),
         )
 
     def to_json(self) -> str:
@@ -413,6 +431,12 @@ class Maxwell(Retunable):
             # JSON has no NaN
             known = vars(self.low_end).items()
             data["low_end"] = {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in known}
+        if self.payne is not None:
+            data["payne"] = {
+                name: list(v) if isinstance(v, tuple) else v
+                for name, v in vars(self.payne).items()
+                if name != "fit"
+            }
         return json.dumps(data, indent=1)
 
     @classmethod
@@ -425,13 +449,28 @@ class Maxwell(Retunable):
         required = {"G0", "G", "tau", "K", "density"}
         if not isinstance(data, dict) or not required <= data.keys():
             raise ValueError(f"Maxwell.from_json: needs a JSON object with {', '.join(sorted(required))}")
-        unknown = data.keys() - required - {"eta0", "law", "temperature", "vertical", "band", "low_end"}
+        unknown = (
+            data.keys()
+            - required
+            - {
+                "eta0",
+                "law",
+                "temperature",
+                "vertical",
+                "band",
+                "low_end",
+                "payne",
+            }
+        )
         if unknown:
             raise ValueError(f"Maxwell.from_json: unknown entries {', '.join(sorted(unknown))}")
         law = data.pop("law", None)
         vertical = data.pop("vertical", None)
         known = data.pop("low_end", None)
+        softens = data.pop("payne", None)
         try:
+            if softens is not None:
+                data["payne"] = Payne(**softens)
             if known is not None:
                 data["low_end"] = LowEnd.from_numbers(known)
             shift = None if vertical is None else RhoT(**vertical)

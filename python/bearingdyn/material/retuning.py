@@ -9,18 +9,20 @@ from typing import Any, Self
 import numpy as np
 
 from bearingdyn.checks import positive, require
+from bearingdyn.material.amplitude.law import Payne
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.types import Array, Complex
 
 
 class Retunable:
-    """What a Maxwell model offers to be made harder, softer, or more lossy."""
+    """What a Maxwell model offers to be retuned: made harder, softer, or more lossy."""
 
     G0: float
     G: Array
     tau: Array
     eta0: float
     low_end: LowEnd | None
+    payne: Payne | None
 
     def complex_modulus(self, omega: Any) -> Complex:
         """Complex shear modulus at ω rad/s, Pa; given by the model."""
@@ -35,13 +37,16 @@ class Retunable:
     def with_modulus(self, modulus: float, omega: float) -> Self:
         """The same material, harder or softer: all strengths scaled so that |G*(omega)| is `modulus`, Pa.
 
-        The loss factor is unchanged at every frequency.
+        The loss factor is unchanged at every frequency; a law of softening is scaled along.
         """
         positive("modulus", modulus, "it must be positive and finite, Pa")
         magnitude = float(np.abs(self.complex_modulus(omega)))
         require(magnitude > 0, "omega", omega, "|G*| is zero at this angular frequency; take one above zero")
         factor = modulus / magnitude
-        return self._with(G0=self.G0 * factor, G=self.G * factor, eta0=self.eta0 * factor, fit=None)
+        law = None if self.payne is None else self.payne.scaled(factor)
+        return self._with(
+            G0=self.G0 * factor, G=self.G * factor, eta0=self.eta0 * factor, fit=None, payne=law
+        )
 
     def with_loss_factor(self, loss_factor: float, omega: float) -> Self:
         """A causal material of the same |G*(omega)| and relaxation times, with this loss factor at omega.

@@ -50,7 +50,7 @@ def _above_zero(field: str, T: float) -> None:
 
 @dataclass(frozen=True)
 class WLF:
-    """Williams–Landel–Ferry: log10 a_T = −C1 (T − T_ref)/(C2 + T − T_ref).
+    """Shift law of Williams, Landel and Ferry: log10 a_T = −C1 (T − T_ref)/(C2 + T − T_ref).
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class WLF:
 
 @dataclass(frozen=True)
 class Arrhenius:
-    """Arrhenius: ln a_T = (Ea/R)(1/T − 1/T_ref), absolute temperatures.
+    """Shift law of Arrhenius: ln a_T = (Ea/R)(1/T − 1/T_ref), absolute temperatures.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Arrhenius:
 
 @dataclass(frozen=True)
 class Joined:
-    """WLF above the glass transition, Arrhenius below, joined at Tg: log10 a_T = f(T) − f(T_ref).
+    """Shift law joined at Tg, WLF above it and Arrhenius below: log10 a_T = f(T) − f(T_ref).
 
     f = −C1 (T − Tg)/(C2 + T − Tg) for T ≥ Tg and (Ea/R ln 10)(1/T − 1/Tg), absolute temperatures, below.
 
@@ -259,7 +259,7 @@ class ShiftTable:
 
 @dataclass(frozen=True)
 class RhoT:
-    """Vertical shift of rubber elasticity: moduli at T are those at T_ref times b_T = ρT/(ρ_ref T_ref).
+    """Law of vertical shift, rubber elasticity: moduli at T are those at T_ref times b_T = ρT/(ρ_ref T_ref).
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def _check_range(name: str, measured: Range | None) -> None:
 
 
 def moved_shift(owner: str, law: Law, start: float, T: float) -> float:
-    """log10 a_T from a temperature `start` to T, °C, for a material named `owner`.
+    """Shift log10 a_T by a law from a temperature `start` to T, °C, for a material named `owner`.
 
     Warns (OutsideIsotherms) where T lies outside the isotherms the law was found from.
 
@@ -341,7 +341,7 @@ def moved_shift(owner: str, law: Law, start: float, T: float) -> float:
 
 
 def law_to_dict(law: Law) -> dict[str, Any]:
-    """The numbers of a law, ready for JSON; :func:`law_from_dict` reads them back."""
+    """The numbers of a shift law, ready for JSON; :func:`law_from_dict` reads them back."""
     known = {} if law.measured is None else {"measured": list(law.measured)}
     if isinstance(law, WLF):
         return {"law": "wlf", "C1": law.C1, "C2": law.C2, "T_ref": law.T_ref, **known}
@@ -354,7 +354,7 @@ def law_to_dict(law: Law) -> dict[str, Any]:
 
 
 def law_from_dict(data: dict[str, Any]) -> Law:
-    """The law written by :func:`law_to_dict`; ValueError if the data are not a law."""
+    """The shift law written by :func:`law_to_dict`; ValueError if the data are not one."""
     ends = data.get("measured") if isinstance(data, dict) else None
     measured = (ends[0], ends[1]) if isinstance(ends, list) and len(ends) == 2 else None
     match data:

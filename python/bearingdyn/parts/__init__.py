@@ -1,20 +1,25 @@
 """Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
 
 from bearingdyn.fem import Section, quadrilaterals
-from bearingdyn.parts.faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
+from bearingdyn.parts.damping_sample import damping_sample
+from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.flexible_bearing import FlexibleBearing
 from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.housing import Feet, Housing
-from bearingdyn.parts.imported import Imported, NodeSet, at_radius
+from bearingdyn.parts.imported import Imported
 from bearingdyn.parts.layer import Layer
+from bearingdyn.parts.node_set import NodeSet, at_radius
+from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
+from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
 from bearingdyn.parts.rigid_body import RigidBody
-from bearingdyn.parts.ring import Ring, damping_sample
+from bearingdyn.parts.ring import Ring
 from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
-from bearingdyn.parts.shaft import Disc, Shaft
+from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.parts.squeezed import Squeezed
 
 __all__ = [
     "Cylinder",
@@ -31,6 +36,7 @@ __all__ = [
     "Line",
     "MeshNodes",
     "NodeSet",
+    "ORing",
     "Outline",
     "Outlined",
     "Patch",
@@ -44,6 +50,7 @@ __all__ = [
     "Section",
     "Shaft",
     "Solid",
+    "Squeezed",
     "ViscoelasticSolid",
     "Where",
     "at_radius",

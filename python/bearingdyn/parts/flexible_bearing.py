@@ -31,7 +31,7 @@ class _State(NamedTuple):
 
 @dataclass(frozen=True)
 class FlexibleBearing:
-    """A bearing whose outer ring is elastic, in a rigid housing at rest; rubber at its relaxed modulus.
+    """A bearing with a flexible outer ring, in a rigid housing at rest; rubber at its relaxed modulus.
 
     As BallBearing: q (6,) is the motion of the inner ring, m and rad, here against the housing.
 

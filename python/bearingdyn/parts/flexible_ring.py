@@ -15,17 +15,17 @@ from bearingdyn.cms import Superelement
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
-from bearingdyn.parts.faces import Cylinder, Face, Groove, Line, Where
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.revolved_faces import Cylinder, Face, Groove, Line, Where
 from bearingdyn.parts.round_face import RoundFace
 
 
 @dataclass(frozen=True)
 class FlexibleRing:
-    """An elastic outer ring, not turning, whose "raceway" carries the balls of one bearing.
+    """A flexible outer ring, not turning, whose "raceway" carries the balls of one bearing.
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
     Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with

@@ -17,14 +17,14 @@ from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.parts.solid import RigidSurface, Solid
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
 
 
 @dataclass(frozen=True)
 class Feet:
-    """What a housing stands on: two strips along z.
+    """The feet of a housing, on which it stands: two strips along z.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Feet:
 
 @dataclass(frozen=True)
 class Housing:
-    """A rectangular block with a round bore through it along z, of three-dimensional finite elements.
+    """A housing: a block with a round bore through it along z, of three-dimensional finite elements.
 
     Two rigid interfaces: "bore", whose reference lies on the axis at mid-length, and "feet", whose reference
     lies below it on the base. Outputs: "top", the middle of the top face, and the points; rows (3, n).

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from bearingdyn.cms import (
@@ -22,32 +20,14 @@ from bearingdyn.cms import (
     reduce,
 )
 from bearingdyn.fem import FEMatrices
-from bearingdyn.short import short
+from bearingdyn.parts.node_set import NodeSet
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
-class NodeSet:
-    """Nodes that move as one rigid body.
-
-    Parameters
-    ----------
-    nodes
-        Their numbers in the file (rows of its points, from 0, where it names none), or a function of all
-        positions (k, 3), m, that says which (k,) belong to it.
-    reference
-        (x, y, z), m, of the six coordinates; default: the mean of the nodes' positions.
-    """
-
-    nodes: Sequence[int] | Callable[[Array], NDArray[np.bool_]]
-    reference: tuple[float, float, float] | None = None
-
-    __repr__ = short
-
-
-@dataclass(frozen=True, eq=False)
 class Imported:
-    """An elastic body of another program's matrices, reduced like any other part.
+    """An imported body: another program's matrices, reduced like any other part.
 
     Parameters
     ----------
@@ -188,25 +168,3 @@ class Imported:
                     f"matrices hold a piece of {inside.size} coordinates, {model.name(int(inside[0]))} among "
                     "them, that is joined to no interface; tie it in the export, or give it an interface"
                 )
-
-
-def at_radius(
-    radius: float, axial: tuple[float, float] = (-math.inf, math.inf), tolerance: float = 1e-6
-) -> Callable[[Array], NDArray[np.bool_]]:
-    """Choice of the nodes on a cylinder about z, for NodeSet.
-
-    Parameters
-    ----------
-    radius
-        m.
-    axial
-        z from, to, m.
-    tolerance
-        m, as fine as the file's digits.
-    """
-
-    def choose(p: Array) -> NDArray[np.bool_]:
-        near = np.abs(np.hypot(p[:, 0], p[:, 1]) - radius) <= tolerance
-        return np.asarray(near & (p[:, 2] >= axial[0] - tolerance) & (p[:, 2] <= axial[1] + tolerance))
-
-    return choose

@@ -10,21 +10,25 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import positive
+from bearingdyn.checks import nonnegative, one_of, positive, require
 from bearingdyn.cms import Superelement, check_moduli
+from bearingdyn.fem import revolution_mesh
+from bearingdyn.fem.finite_strain import NoBalance
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import Elastic
-from bearingdyn.parts.faces import Cylinder
+from bearingdyn.material import Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.regions import Region, ViscoelasticSolid
+from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
+from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.round_face import RoundFace
+from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.parts.strain import Strain
 from bearingdyn.types import Array, Complex
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
+    """A layer: a rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
 
     Parameters
     ----------
@@ -40,12 +44,15 @@ class Layer:
         1 MPa are 26 % too stiff at 10 MPa.
     refinement
         Mesh density; the default gives stiffnesses within some 0.02 % for ratios G/K down to 1e-4.
+    recess
+        Depth, m, to which both ends are hollowed out as a parabola from bond to bond; 0: flat. A ring that is
+        bonded before it is squeezed needs it, or its ends fold over the edges of the bonds.
 
     Raises
     ------
     ValueError
         For dimensions that are not positive and finite, r_outer not above r_inner, or more than 10 m: they
-        are then in mm.
+        are then in mm; for a recess of half the width or more.
 
     References
     ----------
@@ -67,6 +74,7 @@ class Layer:
     material: Elastic | ViscoelasticSolid
     moduli: tuple[float, ...] | None = None
     refinement: float = 1.0
+    recess: float = 0.0
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
@@ -77,6 +85,8 @@ class Layer:
         positive("refinement", self.refinement, "it must be a positive mesh density, 1 by default")
         for name in ("r_outer", "width"):
             plausible("length", name, getattr(self, name))
+        remedy = f"it must be a depth in m, 0 or more and less than half the width, {0.5 * self.width:g} m"
+        require(nonnegative("recess", self.recess, remedy) < 0.5 * self.width, "recess", self.recess, remedy)
         if self.moduli is not None:
             object.__setattr__(self, "moduli", check_moduli(self.moduli))
         _ = self.body
@@ -90,12 +100,103 @@ class Layer:
     def body(self) -> Revolved:
         """The layer as a body of revolution."""
         half = (-0.5 * self.width, 0.5 * self.width)
+        region = Region((self.r_inner, self.r_outer), half, self.material, graded=True)
+        section = None
+        if self.recess > 0.0:
+            section = revolution_mesh([region.rectangle], self.refinement)
+            across = (2.0 * section.r - self.r_inner - self.r_outer) / self.thickness
+            hollow = 1.0 - 2.0 * self.recess / self.width * (1.0 - across**2)
+            section = replace(section, z=section.z * hollow)
         return Revolved(
-            (Region((self.r_inner, self.r_outer), half, self.material, graded=True),),
+            (region if section is None else Patch(self.material),),
             {"inner": Cylinder(self.r_inner), "outer": Cylinder(self.r_outer)},
             moduli=self.moduli,
             refinement=self.refinement,
+            section=section,
         )
+
+    def assembled(
+        self,
+        *,
+        squeeze: float | None = None,
+        interference: float | None = None,
+        inside: str = "bonded",
+        outside: str = "bonded",
+        law: Hyperelastic | None = None,
+        branches: str = "current",
+        after: float | None = None,
+    ) -> Squeezed:
+        """The layer as it is squeezed between shaft and bore, at finite strain; it takes the layer's place.
+
+        The outer surface moves inwards, the inner one stays. Both then stick, and what the result is asked is
+        of a small motion about this state.
+
+        Parameters
+        ----------
+        squeeze
+            Share of the thickness by which it is squeezed; or
+        interference
+            by how much its outer diameter exceeds the bore, m. Give one of the two.
+        inside, outside
+            "bonded" from the start, or "slip" without friction while it is pressed in. Flat ends bonded from
+            the start fold over the edge of the bond beyond some 3 % of squeeze: give them a recess, or
+            let both surfaces slip.
+        law
+            Strain energy: NeoHooke(), the default, MooneyRivlin or Yeoh, scaled to the static modulus.
+        branches
+            "current" or "separable": what of the stiffness depends on the frequency; see Revolved.assembled.
+        after
+            Take the static modulus G(t) after this time, s, instead of the relaxed one.
+
+        Raises
+        ------
+        ValueError
+            For a squeeze outside 0 to 1, both or neither measure; and naming the squeeze that was reached,
+            where the layer folds over the edge of a bond, elements turn inside out, or the law is not stable.
+
+        Warns
+        -----
+        BeyondData
+            Where the data of the material do not speak of the time at which it stands.
+
+        Examples
+        --------
+        >>> import bearingdyn as bd
+        >>> rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
+        >>> layer = bd.Layer(r_inner=0.020, r_outer=0.024, width=0.012, material=rubber)
+        >>> fitted = layer.assembled(squeeze=0.10, inside="slip", outside="slip")
+        >>> k, rest = fitted.stiffness()[0, 0].real, layer.stiffness()[0, 0].real
+        >>> f"{fitted.pressure / 1e6:.2f} MPa, radially {k / rest - 1:.0%} stiffer"
+        '0.55 MPa, radially 42% stiffer'
+        """
+        require(
+            (squeeze is None) != (interference is None),
+            "squeeze",
+            squeeze,
+            f"with interference={interference!r}; give exactly one of the two",
+        )
+        remedy = "it must be a share of the thickness, 0 or more and less than 1"
+        if squeeze is None:
+            share = nonnegative("interference", interference, "it must be a length in m, 0 or more")
+            remedy = f"it must be less than twice the thickness, {2.0 * self.thickness:g} m"
+            share *= 0.5 / self.thickness
+        else:
+            share = nonnegative("squeeze", squeeze, remedy)
+        asked = ("interference", interference) if squeeze is None else ("squeeze", squeeze)
+        require(share < 1.0, *asked, remedy)
+        slip = []
+        for side, name, how in (("inside", "inner", inside), ("outside", "outer", outside)):
+            one_of(side, how, ("bonded", "slip"))
+            slip += [name] if how == "slip" else []
+        try:
+            return self.body.squeezed(
+                {"outer": share * self.thickness}, slip=slip, law=law, branches=branches, after=after
+            )
+        except NoBalance as failure:
+            raise ValueError(
+                f"{asked[0]} is {asked[1]}; {failure.share * share:.3g} of the thickness is reached: "
+                f"{failure.reason}"
+            ) from None
 
     def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
         """Quasi-static stiffness (12, 12), inner interface then outer, N/m, N, N m: solved anew at G*(ω).
@@ -130,6 +231,43 @@ class Layer:
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""
         return {k: tuple(replace(f, bonded=True) for f in v) for k, v in self.body.round_faces().items()}
+
+    def strain(self, relative: ArrayLike, modulus: float | None = None) -> Strain:
+        """Shear strain of the rubber under a relative motion of the interfaces, by the strain at each place.
+
+        Parameters
+        ----------
+        relative
+            (6,) motion x, y, z, θx, θy, θz of the outer interface against the inner one, m and rad, real or
+            complex, zero-to-peak.
+        modulus
+            Shear modulus, Pa, on which the shape depends; None: the lowest of `moduli`.
+
+        Returns
+        -------
+        Strain
+            Over the volume `rms`; `logarithmic`, the one that a law of softening is asked at; `largest`.
+
+        Raises
+        ------
+        ValueError
+            For a motion of another shape, or an elastic material.
+
+        Examples
+        --------
+        >>> import bearingdyn as bd
+        >>> rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
+        >>> layer = bd.Layer(r_inner=0.020, r_outer=0.022, width=0.017, material=rubber)
+        >>> g = layer.strain([10e-6, 0, 0, 0, 0, 0])  # 10 µm across 2 mm of rubber, radially
+        >>> f"{100 * g.rms:.2f} % rms, {100 * g.logarithmic:.2f} % where the energy is"
+        '0.95 % rms, 1.45 % where the energy is'
+        """
+        q = np.asarray(relative)
+        require(
+            not isinstance(self.material, Elastic), "material", self.material, "a strain is asked of rubber"
+        )
+        require(q.shape == (6,), "relative", relative, "it must be (6,): x, y, z, θx, θy, θz")
+        return self.body.strain(np.concatenate([np.zeros(6), q]), modulus)
 
     def nominal_strain(self, relative: ArrayLike) -> Array:
         """Nominal strain max |t + θ × ρ| / (r_outer − r_inner) under a relative motion of the interfaces.

@@ -7,7 +7,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
 AZIMUTHS = 48  # around a body of revolution
@@ -15,7 +15,7 @@ AZIMUTHS = 48  # around a body of revolution
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The surface of a part in its own frame.
+    """The outline of a part: its surface in its own frame.
 
     Parameters
     ----------
@@ -36,19 +36,19 @@ class Outline:
 
 @runtime_checkable
 class Outlined(Protocol):
-    """A part whose surface can be drawn."""
+    """A part whose outline can be drawn."""
 
     def outline(self) -> Outline:
         """Its surface."""
 
 
 def azimuths() -> Array:
-    """The azimuths, rad, at which bodies of revolution are drawn."""
+    """The azimuths, rad, at which outlines of bodies of revolution are drawn."""
     return np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False)
 
 
 def revolved(r: Array, z: Array, lines: Index) -> tuple[Array, Index, Index]:
-    """Lines (s, 2) of a section turned about z: points, quadrilaterals, and the section's points (k,) used.
+    """Outline of a section's lines (s, 2) turned about z: points, quadrilaterals, and its points (k,).
 
     Parameters
     ----------
@@ -71,20 +71,20 @@ def revolved(r: Array, z: Array, lines: Index) -> tuple[Array, Index, Index]:
 
 
 def cylinder(r_inner: float, r_outer: float, z: tuple[float, float]) -> tuple[Array, Index]:
-    """Points and faces of a ring about z (a disc where r_inner is 0), m."""
+    """Outline of a ring about z (a disc where r_inner is 0), m: points and faces."""
     r, height = np.array([r_inner, r_outer, r_outer, r_inner]), np.repeat(z, 2)
     return revolved(r, height, np.array([[0, 1], [1, 2], [2, 3], [3, 0]]))[:2]
 
 
 def box(sides: Array) -> tuple[Array, Index]:
-    """Points (8, 3) and faces (6, 4) of a box of these sides (3,), m, about the origin."""
+    """Outline of a box of these sides (3,), m, about the origin: points (8, 3) and faces (6, 4)."""
     corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     return corners * sides, np.array(faces)
 
 
 def carried(motion: Array, arms: Array) -> Array:
-    """Rows (3 p, n) of points carried by rigid bodies: u = t + θ × arm.
+    """Rows (3 p, n) of an outline's points carried by rigid bodies: u = t + θ × arm.
 
     Parameters
     ----------

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+import scipy
+from numpy.typing import ArrayLike
 
-from bearingdyn.checks import whole
+from bearingdyn.checks import named, require, whole
 from bearingdyn.cms import (
     Basis,
     FullModel,
@@ -30,25 +32,34 @@ from bearingdyn.fem import (
     Harmonic,
     RevolutionMesh,
     assemble_harmonic,
+    deviatoric_strains,
     lowest_modes,
     revolution_mesh,
 )
+from bearingdyn.fem.finite_strain import NoBalance
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import Elastic
-from bearingdyn.parts.boundaries import RIGID_SHAPES, Boundaries, find_boundaries
-from bearingdyn.parts.faces import Cylinder, EndFace, Face, Groove
+from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline, azimuths, revolved
-from bearingdyn.parts.regions import Patch, Region, quasi_static, shape_moduli
+from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
+from bearingdyn.parts.regions import Patch, Region, is_rubber
+from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_boundaries
+from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
-from bearingdyn.short import short
+from bearingdyn.parts.shape_moduli import shape_moduli
+from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.parts.static_modulus import quasi_static
+from bearingdyn.parts.strain import Strain
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
+
+_AZIMUTHS = 16  # of a quarter turn: ln γ averages to 1e-4 over them
 
 
 @dataclass(frozen=True, eq=False)
 class RevolvedModes:
-    """Undamped modes of one Fourier order.
+    """Undamped modes of a revolved body, of one Fourier order.
 
     Parameters
     ----------
@@ -101,6 +112,9 @@ class Revolved:
     inertia
         How many rounds of cms.inertia_shapes follow the static shapes of each modulus. One round serves a
         layer or a sample better than many fixed-interface modes.
+    prestress
+        The static state of a body that `assembled` has squeezed; its mesh is then where the state is. None:
+        at rest, without stress.
 
     Raises
     ------
@@ -123,6 +137,7 @@ class Revolved:
     grooves: Mapping[str, Groove] = field(default_factory=dict)
     section: RevolutionMesh | None = None
     inertia: int = 0
+    prestress: Prestress | None = field(default=None, repr=False)
 
     __repr__ = short
 
@@ -190,7 +205,19 @@ class Revolved:
 
     @cached_property
     def _boundaries(self) -> Boundaries:
+        if self.prestress is not None:
+            return Boundaries(self.prestress.faces, {})
         return find_boundaries(self.mesh, self.interfaces, self.grooves)
+
+    @property
+    def _load_terms(self) -> Array:
+        """What the forces of a prestress add to the stiffness of its faces' coordinates, (6 i,)."""
+        terms = np.zeros((len(self.interfaces), 6))
+        if self.prestress is not None:
+            for row, name in zip(terms, self._boundaries.faces, strict=True):
+                tilt, torsion = self.prestress.load_terms[name]
+                row[3:] = tilt, tilt, torsion
+        return terms.ravel()
 
     @cached_property
     def _harmonics(self) -> dict[tuple[int, tuple[int, ...]], Harmonic]:
@@ -199,7 +226,11 @@ class Revolved:
     def _harmonic(self, order: int, components: tuple[int, ...]) -> Harmonic:
         key = (order, components)
         if key not in self._harmonics:
-            self._harmonics[key] = assemble_harmonic(self.mesh, order, components)
+            self._harmonics[key] = (
+                assemble_harmonic(self.mesh, order, components)
+                if self.prestress is None
+                else self.prestress.state.harmonic(order, components, self.prestress.branches)
+            )
         return self._harmonics[key]
 
     @property
@@ -247,10 +278,100 @@ class Revolved:
             for copy in range(copies):
                 index, sign = rigid.place(h, copy)
                 S[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (k + k.T)
-        return S
+        return S + np.diag(self._load_terms)
+
+    def assembled(
+        self,
+        press: Mapping[str, Travel],
+        *,
+        slip: Iterable[str] = (),
+        law: Hyperelastic | None = None,
+        branches: str = "current",
+        after: float | None = None,
+    ) -> Squeezed:
+        """The body squeezed by its rigid interfaces, at finite strain, to which it then sticks.
+
+        Parameters
+        ----------
+        press
+            interface -> how far it moves into the body along its normal, r or z, m; or its motion (dr, dz),
+            m. All others stay where they are.
+        slip
+            Interfaces without friction while they are pressed on. The body may part from them, and more of
+            its free surface come to touch them: of an O-ring they are the lines of first contact, and the
+            rigid surfaces the cylinders, or planes, that touch the body there. All others are bonded from
+            the start.
+        law
+            Strain energy of the viscoelastic regions, and of elastic ones with ν of 0.45 or more: NeoHooke(),
+            the default, MooneyRivlin or Yeoh, scaled to the modulus of each. Other regions are neo-Hookean.
+        branches
+            What of the stiffness depends on the frequency. "current": the branches have relaxed, and start
+            anew about the static state, as the linear law in its deformed place. "separable": the static
+            law's moduli times a function of time (Simo, Morman). They differ by 1 % at 10 % of squeeze.
+        after
+            Take the static modulus G(t) after this time, s, instead of the relaxed one.
+
+        Raises
+        ------
+        ValueError
+            Naming the share of the squeeze that was reached, where elements turn inside out, a free surface
+            folds over the edge of a bond, or the law is not stable; for names that are no interface, a body
+            with raceways, or one that is squeezed already.
+
+        References
+        ----------
+        Simo & Hughes, Computational Inelasticity, 1998, ch. 9; Morman, 7th Int. Conf. on Vehicle Structural
+        Mechanics, 1988.
+        """
+        try:
+            return self.squeezed(press, slip=slip, law=law, branches=branches, after=after)
+        except NoBalance as failure:
+            raise ValueError(
+                f"press is {dict(press)} m; {failure.share:.0%} of it is reached: {failure.reason}"
+            ) from None
+
+    def squeezed(
+        self,
+        press: Mapping[str, Travel],
+        *,
+        slip: Iterable[str] = (),
+        law: Hyperelastic | None = None,
+        branches: str = "current",
+        after: float | None = None,
+    ) -> Squeezed:
+        """What `assembled` does, with a NoBalance that knows the share reached, for ready forms to tell."""
+        named("press", press, "it must be {interface: depth in m}")
+        require(not self.grooves, "grooves", sorted(self.grooves), "a body with raceways cannot be squeezed")
+        require(self.prestress is None, "prestress", "there", "squeeze the body once, from its state at rest")
+        require(bool(press), "press", press, f"name one of the interfaces {sorted(self.interfaces)}")
+        check_branches(branches)
+        rubber = check_law(law)
+        prestress = squeeze(
+            self.mesh,
+            self._boundaries.faces,
+            press,
+            slip,
+            [rubber if is_rubber(q.material) else NEO_HOOKE for q in self.regions],
+            [quasi_static(q.material, 0.0, after).real for q in self.regions],
+            self._bulk,
+            branches,
+        )
+        deformed = replace(
+            self,
+            regions=tuple(Patch(q.material) for q in self.regions),
+            section=prestress.state.mesh,
+            outputs={name: prestress.moved(p) for name, p in self.outputs.items()},
+            prestress=prestress,
+        )
+        return prestress.told(deformed, next(iter(press)))
 
     def _free_of_rigid_motion(self, n: int) -> Array:
-        """Projector (n, n) that takes rigid motion out: what round-off leaves of its stiffness."""
+        """Projector (n, n) that takes rigid motion out: what round-off leaves of its stiffness.
+
+        A prestress that pushes its faces apart along the axis turns with them: there it takes out nothing.
+        """
+        if self.prestress is not None and not self.prestress.self_balanced:
+            return np.eye(n)
         Q = np.linalg.qr(self._boundaries.rigid_motion(n))[0]
         return np.asarray(np.eye(n) - Q @ Q.T)
 
@@ -300,7 +421,14 @@ class Revolved:
             (self._harmonic(order, components), copies)
             for (order, components), copies in RIGID_SHAPES.items()
         ]
-        return full_model(families, self.regions, self._boundaries.faces, self.outputs)
+        model = full_model(families, self.regions, self._boundaries.faces, self.outputs)
+        if self.prestress is None:
+            return model
+        extra = scipy.sparse.lil_matrix((model.n, model.n))
+        for face, terms in zip(model.interfaces.values(), self._load_terms.reshape(-1, 6), strict=True):
+            turn = np.linalg.pinv(face.T)
+            extra[np.ix_(face.dofs, face.dofs)] = turn.T @ (terms[:, None] * turn)
+        return replace(model, K=model.K + extra.tocsr())
 
     def basis(self) -> Basis:
         """The shapes `superelement` takes, in the coordinates of `full_model`."""
@@ -329,13 +457,7 @@ class Revolved:
         if not self.interfaces and not self.grooves:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
         n = self._size
-        rubbers: list[Any] = []
-        owner = np.full(len(self.regions), -1)
-        for i, q in enumerate(self.regions):
-            if not isinstance(q.material, Elastic):
-                if not any(q.material is m for m in rubbers):
-                    rubbers.append(q.material)
-                owner[i] = next(j for j, m in enumerate(rubbers) if q.material is m)
+        rubbers, owner = self._rubbers
         bulk = np.array(self._bulk)
         shear = np.array([q.material.G if isinstance(q.material, Elastic) else 0.0 for q in self.regions])
 
@@ -355,6 +477,8 @@ class Revolved:
                     full[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (a + a.T)
                 for name, (r, z, phi) in self.outputs.items():
                     rows[name][:, index] += sign * h.point_rows(r, z, phi, whole, sine=copy == 1)
+        loaded = np.arange(6 * len(self.interfaces))
+        K[loaded, loaded] += self._load_terms
         P = self._free_of_rigid_motion(n)
         return Superelement(
             M=M,
@@ -363,12 +487,105 @@ class Revolved:
             K=P @ K @ P,
             interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(self.interfaces)},
             outputs=rows,
-            viscoelastic=tuple(Viscoelastic(m, P @ h @ P) for m, h in zip(rubbers, H, strict=True)),
+            viscoelastic=tuple(
+                Viscoelastic(m, P @ h @ P, *self._strain_scale(j))
+                for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
+            ),
             raceways={
                 name: Raceway(t.series, t.arm, np.eye(n)[self._boundaries.starts[name] :][: len(t.series)])
                 for name, t in self._boundaries.tracks.items()
             },
         )
+
+    def _soft(self, owner: int | None = None) -> Index:
+        """Elements of the viscoelastic regions, or of one material's, numbered as in the superelement."""
+        _, owners = self._rubbers
+        wanted = owners >= 0 if owner is None else owners == owner
+        return np.flatnonzero(wanted[self.mesh.region])
+
+    @cached_property
+    def _rubbers(self) -> tuple[list[Any], Index]:
+        """The viscoelastic materials, and of each region the number of its own, -1 if it is elastic."""
+        rubbers: list[Any] = []
+        owner = np.full(len(self.regions), -1)
+        for i, q in enumerate(self.regions):
+            if not isinstance(q.material, Elastic):
+                if not any(q.material is m for m in rubbers):
+                    rubbers.append(q.material)
+                owner[i] = next(j for j, m in enumerate(rubbers) if q.material is m)
+        return rubbers, owner
+
+    def _strain_scale(self, owner: int) -> tuple[float, Array]:
+        """Volume of a rubber, m³, and χ of each coordinate (n,), logarithmic over rms strain of its shape."""
+        elements, scale = self._soft(owner), np.ones(self._size)
+        volume = np.zeros(0)
+        for h, Psi, places in self._placed():
+            e, volume = deviatoric_strains(self.mesh, h.order, h.components, h.complete(Psi.copy()))
+            e, volume = e[elements], volume[elements].ravel()
+            even, odd = (
+                2 * (part**2).sum(axis=2).reshape(volume.size, -1) for part in (e[:, :, :4], e[:, :, 4:])
+            )
+            phi = np.zeros(1) if h.order == 0 else (np.arange(_AZIMUTHS) + 0.5) * np.pi / _AZIMUTHS / h.order
+            cos2, sin2 = np.cos(h.order * phi) ** 2, np.sin(h.order * phi) ** 2
+            if h.order == 0:
+                sin2 = np.ones(1)
+            floor = 1e-9 * max(float((volume @ (even + odd)).max()), 1e-300)
+            for k in range(even.shape[1]):
+                if not volume @ (even[:, k] + odd[:, k]) > floor:
+                    continue
+                squares = np.outer(even[:, k], cos2) + np.outer(odd[:, k], sin2)
+                chi = Strain.of_field(np.sqrt(squares).ravel(), np.repeat(volume, phi.size)).concentration
+                for index, _ in places:
+                    scale[index[k]] = chi
+        return 2 * np.pi * float(volume.sum()), scale
+
+    def strain_field(self, motion: ArrayLike, modulus: float | None = None) -> tuple[Array, Array]:
+        """Shear strain amplitude γ = √(2 e:e) of the rubber under motions of the interfaces, point by point.
+
+        Parameters
+        ----------
+        motion
+            (6 i,) real or complex, zero-to-peak: x, y, z, θx, θy, θz of each interface in their order.
+        modulus
+            Shear modulus, Pa, of the rubber, on which its shape depends; None: the lowest of `moduli`.
+
+        Returns
+        -------
+        tuple of numpy.ndarray
+            γ (azimuths, points) at evenly spaced azimuths and the points of integration, and the points'
+            volumes (points,), m³, all around.
+        """
+        q = np.asarray(motion)
+        count = 6 * len(self.interfaces)
+        if q.shape != (count,) or not np.isfinite(q).all():
+            raise ValueError(
+                f"motion has shape {q.shape}; it must be ({count},), finite: six of each interface"
+            )
+        elements = self._soft()
+        levels = shape_moduli(self.regions, self.moduli if modulus is None else (modulus,))
+        phi = np.arange(4 * _AZIMUTHS) * 2 * np.pi / (4 * _AZIMUTHS)
+        rigid = Boundaries(self._boundaries.faces, {})
+        total: Any = 0.0
+        volume = np.zeros(0)
+        for order, components, copies in rigid.families():
+            h = self._harmonic(order, components)
+            u, _ = self._shape_maker().constraint_shapes(h, levels[0], grooves=False)
+            e, volume = deviatoric_strains(self.mesh, order, components, h.complete(u.copy()))
+            e, volume = e[elements], volume[elements].ravel()
+            for copy in range(copies):
+                index, sign = rigid.place(h, copy)
+                own = e @ (sign * q[index])
+                cos, sin = np.cos(order * phi), np.sin(order * phi)
+                even, odd = (sin, -cos) if copy else (cos, sin if order else np.ones_like(phi))
+                turn = np.stack([even] * 4 + [odd] * 2, axis=-1)
+                total = total + turn[:, None, :] * own.reshape(volume.size, 6)
+        gamma = np.sqrt(2.0 * (np.abs(total) ** 2).sum(axis=-1))
+        return gamma, 2 * np.pi * volume
+
+    def strain(self, motion: ArrayLike, modulus: float | None = None) -> Strain:
+        """The rubber's strain in one number, under motions as in `strain_field`."""
+        gamma, volume = self.strain_field(motion, modulus)
+        return Strain.of_field(gamma.ravel(), np.tile(volume / len(gamma), len(gamma)))
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""

@@ -11,8 +11,8 @@ import scipy
 from bearingdyn.cms import Basis, FullModel, RigidInterface, Viscoelastic
 from bearingdyn.fem import Harmonic
 from bearingdyn.material import Elastic
-from bearingdyn.parts.faces import MeshFace
 from bearingdyn.parts.regions import Patch, Region
+from bearingdyn.parts.revolved_faces import MeshFace
 from bearingdyn.types import Array
 
 Copies = Sequence[tuple[Sequence[int], Sequence[float]]]  # coordinates and signs of each copy of a family
@@ -24,7 +24,7 @@ def full_model(
     faces: Mapping[str, MeshFace],
     outputs: Mapping[str, tuple[float, float, float]],
 ) -> FullModel:
-    """Matrices of all copies of all families on one diagonal, without coordinates removed on the axis.
+    """Full model of a body of revolution: all copies of all families, no coordinate removed on the axis.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def full_basis(
     families: Sequence[tuple[Harmonic, Array, int, Copies]],
     level: Sequence[float],
 ) -> Basis:
-    """The shapes of the families in the coordinates of `full_model`.
+    """The shapes of a body of revolution in the coordinates of its `full_model`.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ import scipy
 
 from bearingdyn.cms import inertia_shapes, orthogonalise
 from bearingdyn.fem import Harmonic, factorise, lowest_modes
-from bearingdyn.parts.boundaries import Boundaries
+from bearingdyn.parts.revolved_boundaries import Boundaries
 from bearingdyn.types import Array
 
 ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it is rigid motion
@@ -20,7 +20,7 @@ ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ShapeMaker:
-    """What the shapes depend on besides the moduli.
+    """Maker of the shapes of a body of revolution: what they depend on besides the moduli.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Ready forms of bodies of revolution: the rectangular ring, and the damping sample of three rings."""
+"""The elastic ring of rectangular section."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from bearingdyn.checks import positive
 from bearingdyn.cms import Superelement
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
-from bearingdyn.parts.faces import Cylinder
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.regions import Region, ViscoelasticSolid
+from bearingdyn.parts.regions import Region
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
+from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.round_face import RoundFace
 
 
@@ -86,51 +86,3 @@ class Ring:
     def modes(self, order: int, count: int, fixed: Iterable[str] = ()) -> RevolvedModes:
         """Lowest modes of one Fourier order with its faces free (elastic), or some of them held still."""
         return self.body.modes(order, count, fixed=fixed)
-
-
-def damping_sample(
-    material: Elastic | ViscoelasticSolid,
-    radii: tuple[float, float, float, float] = (0.015, 0.0175, 0.020, 0.026),
-    width: float = 0.011,
-    metal: Elastic = STEEL,
-    damping: float = 0.0,
-    f_max: float = 0.0,
-    refinement: float = 1.0,
-) -> Revolved:
-    """Two concentric metal rings with a layer bonded between them, the paper's sample (figure 3); SI units.
-
-    Parameters
-    ----------
-    radii
-        Bore, inner bond, outer bond, outside. Interfaces "inner" (the bore) and "outer" (the outside) are
-        rigid.
-
-    Raises
-    ------
-    ValueError
-        For radii that do not rise.
-
-    References
-    ----------
-    Paper section 3.4.
-
-    Examples
-    --------
-    >>> import bearingdyn as bd
-    >>> sample = bd.damping_sample(bd.Elastic(2.98e6, 0.49, 1200.0))  # G = 1 MPa
-    >>> [round(float(f)) for f in sample.modes(0, 4).frequency[2:]]  # axial, torsion, Hz
-    [840, 925]
-    """
-    half = (-0.5 * width, 0.5 * width)
-    a, b, c, d = radii
-    return Revolved(
-        (
-            Region((a, b), half, metal),
-            Region((b, c), half, material, graded=True),
-            Region((c, d), half, metal),
-        ),
-        {"inner": Cylinder(a), "outer": Cylinder(d)},
-        damping=damping,
-        f_max=f_max,
-        refinement=refinement,
-    )

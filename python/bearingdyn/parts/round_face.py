@@ -16,7 +16,7 @@ _ROUND = 1e-3
 
 @dataclass(frozen=True)
 class RoundFace:
-    """A cylinder about z at an interface.
+    """A round face at an interface: a cylinder about z that a neighbour must fit.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class RoundFace:
 
 @runtime_checkable
 class HasRoundFaces(Protocol):
-    """A part that knows its cylinders."""
+    """A part that knows its round faces."""
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at each interface, by its name; an interface without one may be left out."""
@@ -54,7 +54,7 @@ class HasRoundFaces(Protocol):
 def face_of_nodes(
     radius: Array, z: Array, around: Array, reference: float, *, bonded: bool = False
 ) -> tuple[RoundFace, ...]:
-    """The cylinder that nodes of a mesh lie on; nothing where they lie on none.
+    """The round face that nodes of a mesh lie on; nothing where they lie on none.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 import scipy
 
-from bearingdyn.checks import instance, items, named, nonnegative, number, positive
+from bearingdyn.checks import instance, items, named, number, positive
 from bearingdyn.cms import (
     F_MAX,
     Basis,
@@ -24,67 +24,17 @@ from bearingdyn.cms import (
     project,
 )
 from bearingdyn.fem import Section, assemble_beam, bending_wavelength
-from bearingdyn.magnitude import check_gyration, plausible
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 from bearingdyn.parts.round_face import RoundFace
-from bearingdyn.short import short
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
 KINDS: tuple[Literal["shaft", "bore"], ...] = ("shaft", "bore")
 _SAME_SEAT = 0.01  # of the radius: a taper or a relief, no shoulder
 ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at f_max, 2e-4 at half of it
-
-
-@dataclass(frozen=True)
-class Disc:
-    """A rigid disc on a shaft.
-
-    Parameters
-    ----------
-    z
-        Position along the shaft, m.
-    mass
-        kg.
-    Id, Ip
-        Diametral and polar moment of inertia, kg m².
-
-    Raises
-    ------
-    ValueError
-        For a mass or moment that is not positive, or that no disc can have.
-    """
-
-    z: float
-    mass: float
-    Id: float
-    Ip: float
-
-    def __post_init__(self) -> None:
-        number("Disc z", self.z, "it must be a position in m")
-        plausible("mass", "Disc mass", positive("Disc mass", self.mass, "it must be a positive mass in kg"))
-        nonnegative("Disc Id", self.Id, "it must be a moment in kg m², not negative")
-        nonnegative("Disc Ip", self.Ip, "it must be a moment in kg m², not negative")
-        if not self.Ip <= 2.0 * self.Id * (1.0 + 1e-9):
-            raise ValueError(f"Disc Ip is {self.Ip}; no disc has Ip above 2 Id = {2.0 * self.Id} kg m²")
-        check_gyration("Disc Id", self.Id, self.mass)
-
-    @classmethod
-    def cylinder(
-        cls, z: float, d_outer: float, width: float, d_inner: float = 0.0, material: Elastic = STEEL
-    ) -> Disc:
-        """A cylinder centred at z with the shaft's diameter d_inner left out; lengths in m.
-
-        Raises
-        ------
-        ValueError
-            For measures that make no cylinder.
-        """
-        instance("material", material, Elastic, "it must be a bd.Elastic(E, nu, density), such as bd.STEEL")
-        body = Section(width, d_outer, d_inner)
-        mass = material.density * body.area * width
-        square = d_outer**2 + d_inner**2
-        return cls(z, mass, mass * (square / 16.0 + width**2 / 12.0), mass * square / 8.0)
 
 
 @dataclass(frozen=True)
@@ -316,7 +266,7 @@ def _reach(spans: Sequence[tuple[float, float]], yes: Sequence[bool], k: int) ->
 
 
 def spin_generator(n_nodes: int) -> scipy.sparse.csr_matrix:
-    """Generator J (6 n, 6 n) of a turn about z: ẋ = Ω J x when all six-coordinate nodes turn as one body."""
+    """Spin of a shaft: J (6 n, 6 n) with ẋ = Ω J x when all six-coordinate nodes turn as one body about z."""
     one = np.zeros((6, 6))
     one[1, 0] = one[4, 3] = 1.0
     one[0, 1] = one[3, 4] = -1.0

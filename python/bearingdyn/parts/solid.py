@@ -39,20 +39,19 @@ from bearingdyn.fem import (
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.regions import ViscoelasticSolid, quasi_static
+from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
-from bearingdyn.short import short
+from bearingdyn.parts.static_modulus import quasi_static
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
 Point = tuple[float, float, float]
 Material = Elastic | ViscoelasticSolid
 
-LOCKING = 0.45  # Poisson's ratio from which an elastic region is assembled as incompressible, lest it lock
-
 
 @dataclass(frozen=True)
 class RigidSurface:
-    """Surfaces of a mesh that move together as one rigid body with six coordinates.
+    """Surfaces of a solid that move together as one rigid body with six coordinates.
 
     Parameters
     ----------
@@ -97,7 +96,7 @@ class RigidSurface:
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A three-dimensional body of one or more materials, not turning, with rigid interfaces.
+    """A solid of one or more materials, of any shape, not turning, with rigid interfaces.
 
     Viscoelastic regions, and elastic ones with ν of 0.45 or more, are assembled as incompressible, so that
     they do not lock: see fem.assemble_solid. In rubber use 27-node bricks, which are some five times as
@@ -256,10 +255,10 @@ class Solid:
         n = 3 * len(self.mesh.points)
         M, E, bulk = (scipy.sparse.csr_matrix((n, n)) for _ in range(3))
         rubbers: list[tuple[ViscoelasticSolid, Any]] = []
+        volumes: list[float] = []
         for name, elements in self.mesh.regions.items():
             material = self._materials[name]
-            soft = not isinstance(material, Elastic) or material.nu >= LOCKING
-            unit = assemble_solid(self.mesh, elements, incompressible=soft)
+            unit = assemble_solid(self.mesh, elements, incompressible=is_rubber(material))
             M = M + material.density * unit.mass
             if isinstance(material, Elastic):
                 E = E + unit.stiffness(material)
@@ -268,8 +267,10 @@ class Solid:
             same = [k for k, (other, _) in enumerate(rubbers) if other is material]
             if same:
                 rubbers[same[0]] = (material, rubbers[same[0]][1] + unit.deviatoric)
+                volumes[same[0]] += float(unit.mass.sum()) / 3
             else:
                 rubbers.append((material, unit.deviatoric))
+                volumes.append(float(unit.mass.sum()) / 3)
         interfaces = {}
         for name, (nodes, reference) in self._faces.items():
             dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
@@ -282,7 +283,10 @@ class Solid:
             E=E if rubbers else None,
             interfaces=interfaces,
             outputs=self._rows,
-            viscoelastic=tuple(Viscoelastic(material, H) for material, H in rubbers),
+            viscoelastic=tuple(
+                Viscoelastic(material, H, volume)
+                for (material, H), volume in zip(rubbers, volumes, strict=True)
+            ),
         )
 
     def full_model(self) -> FullModel:

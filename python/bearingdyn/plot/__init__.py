@@ -5,15 +5,24 @@ holds inside a call and leaves matplotlib's own settings alone. Where a figure h
 are halved and the upper ones returned; ``ax.figure`` is the whole.
 """
 
-from bearingdyn.plot.bearing import bearing_spectrum, bearing_stiffness, film, load_distribution
-from bearingdyn.plot.material import isotherms, layer_stiffness, master, shifts
-from bearingdyn.plot.modes import campbell, mode_shape
-from bearingdyn.plot.motion import ball_loads, frequency_response, orbit, spectrum, unbalance_response
+from bearingdyn.plot.ball_loads import ball_loads
+from bearingdyn.plot.bearing_spectrum import bearing_spectrum
+from bearingdyn.plot.bearing_stiffness import bearing_stiffness
+from bearingdyn.plot.campbell import campbell
+from bearingdyn.plot.film import film
+from bearingdyn.plot.frequency_response import frequency_response
+from bearingdyn.plot.isotherms import isotherms, master, shifts
+from bearingdyn.plot.layer_stiffness import layer_stiffness
+from bearingdyn.plot.load_distribution import load_distribution
+from bearingdyn.plot.measurement_checks import causality, cole_cole, spectrum_of, van_gurp_palmen
+from bearingdyn.plot.mode_geometry import mode_geometry, mode_scene
+from bearingdyn.plot.mode_shape import mode_shape
+from bearingdyn.plot.orbit import orbit
 from bearingdyn.plot.orders import order_spectrum, orders
-from bearingdyn.plot.spectra import causality, cole_cole, spectrum_of, van_gurp_palmen
-from bearingdyn.plot.surfaces import mode_geometry, mode_scene
-from bearingdyn.plot.traces import time
+from bearingdyn.plot.spectrum import spectrum
+from bearingdyn.plot.time_traces import time
 from bearingdyn.plot.trade_off import trade_off
+from bearingdyn.plot.unbalance_response import unbalance_response
 from bearingdyn.plot.waterfall import waterfall
 
 __all__ = [

@@ -13,11 +13,13 @@ import numpy as np
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.ticker import Formatter
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+GREY = "0.35"  # of what explains a curve
 DASHES = ("-", "--", "-.", (0, (1, 1)))
 STYLE: Mapping[str, Any] = {
     "font.size": 9.0,
@@ -42,7 +44,7 @@ PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The package's own look, for as long as the context is open.
+    """The style and frame of the figures, for as long as the context is open.
 
     Only these settings are put back at its end. The first figure of a session loads the backend, perhaps in
     here, and a notebook's backend then switches `interactive` on, without which it shows no further figure:
@@ -60,7 +62,7 @@ def style() -> Iterator[None]:
 
 
 def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = None) -> Axes:
-    """Axes in a figure of their own; width and height in inches."""
+    """Axes in a new figure of their own; width and height in inches."""
     import matplotlib.pyplot as plt
 
     figure = plt.figure(figsize=(width, height), layout="constrained")
@@ -68,12 +70,12 @@ def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = N
 
 
 def halve(ax: Axes, share: float = 0.45) -> Axes:
-    """New axes that take the lower share of the room of `ax`, on the same horizontal axis."""
+    """Halve the frame of a figure: new axes take the lower share of `ax`, on the same horizontal axis."""
     return stack(ax, (1 - share, share))[1]
 
 
 def stack(ax: Axes, shares: Sequence[float]) -> list[Axes]:
-    """`ax` and new axes below it that share its room, from above, and its horizontal axis."""
+    """Stack panels in the frame of a figure: `ax` and new axes below it share its room."""
     figure = ax.figure
     spec = ax.get_subplotspec()
     panels = [ax]
@@ -96,7 +98,7 @@ def stack(ax: Axes, shares: Sequence[float]) -> list[Axes]:
 
 
 def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
-    """Frame, ticks and grid; title on the left, the legend in rows between it and the data."""
+    """Finish a figure: frame, ticks, grid; title on the left, the legend in rows between it and the data."""
     ax.spines[["top", "right"]].set_visible(False)
     # said here since ticks are made when they are drawn, outside the style's context
     ax.tick_params(which="both", labelsize=8.5, width=0.7)
@@ -123,7 +125,7 @@ def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
 
 
 def engineering(axis: Axis, values: Array, unit: str) -> str:
-    """Write the ticks of an axis in the multiple of its unit that suits the values; returns that multiple.
+    """Ticks of a figure's axis in the multiple of its unit that suits the values; returns that multiple.
 
     What is drawn stays in the unit given. A unit without prefix gets a power of ten: "10⁶", "10⁻⁸ kg". No
     factor is printed elsewhere. To be called once the scale of the axis, linear or log, is set.
@@ -171,7 +173,7 @@ def _written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> 
 
 
 def frame_log(ax: Axes, values: Array) -> None:
-    """A log axis over the measured values, whatever else is drawn, its numbers written out."""
+    """A log axis of a figure over the measured values, whatever else is drawn, its numbers written out."""
     low, high = float(values.min()), float(values.max())
     margin = max((high / low) ** 0.06, 1.05)
     ax.set_ylim(low / margin, high * margin)
@@ -179,19 +181,28 @@ def frame_log(ax: Axes, values: Array) -> None:
 
 
 def colour(k: int) -> str:
-    """Colour of the k-th curve."""
+    """Colour of the k-th curve of a figure."""
     return COLOURS[k % len(COLOURS)]
 
 
 def is_result(datasets: object) -> bool:
-    """Whether it is one result and no mapping of several: a Dataset is a Mapping too, of its variables."""
+    """Whether a figure is asked for one result and no mapping of several: a Dataset is a Mapping too."""
     return hasattr(datasets, "data_vars")
 
 
 def some(datasets: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The results by label; ValueError if there are none, or one without a label."""
+    """The results a figure shows, by label; ValueError if there are none, or one without a label."""
     if is_result(datasets):
         raise ValueError('this is a result without a label; give results by label, such as {"run": result}')
     if not datasets:
         raise ValueError("there is nothing to draw; give at least one result with its label")
     return datasets
+
+
+def kind_of(data: xarray.Dataset) -> str:
+    """What a result that a figure is to show is, with the band of an envelope."""
+    kind = str(data.attrs.get("analysis", "spectrum"))
+    if "band" in data.attrs:
+        low, high = (float(f) for f in data.attrs["band"])
+        kind += f" ({low:g} to {high:g} Hz)"
+    return kind

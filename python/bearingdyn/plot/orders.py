@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.plot.frame import DASHES, RPM, colour, engineering, finish, halve, new_axes, some, style
-from bearingdyn.plot.motion import continuous_phase, finish_phase
+from bearingdyn.plot.phase_axis import continuous_phase, finish_phase
 
 if TYPE_CHECKING:
     import xarray
@@ -71,7 +71,7 @@ def orders(
     *,
     phase: bool = False,
 ) -> Axes:
-    """Amplitudes of orders by bd.track_orders over the speed in rpm, on a log axis.
+    """Draw orders by bd.track_orders: amplitudes over the speed in rpm, on a log axis.
 
     They are drawn over the time if the speed does not change, or turns back. With `phase` the axes are
     halved, and the phases against the angle of the shaft stand below.

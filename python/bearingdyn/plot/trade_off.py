@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def trade_off(
     study: xarray.Dataset, x: str, y: str, colour: str | None = None, ax: Axes | None = None
 ) -> Axes:
-    """The cases of a study: two of its columns against each other, a third as colour.
+    """Draw the trade-off in a study: two of its columns against each other, a third as colour.
 
     Where `bearingdyn.study.pareto` has marked the front, its cases are ringed, and joined if x and y were
     the only aims. An axis is logarithmic if its values are positive and span a decade or more. Units come

@@ -16,7 +16,7 @@ DEPTH = 1e-4  # of the largest line of a waterfall: 80 dB
 
 
 def waterfall(data: xarray.Dataset, ax: Axes | None = None, *, f_max: float | None = None) -> Axes:
-    """Spectra of a record piece by piece, by bd.waterfall: frequency across, speed or time up.
+    """Draw a waterfall: spectra of a record by bd.waterfall, frequency across, speed or time up.
 
     The upward axis is the speed if it changes from piece to piece without turning back, else the time. The
     colour is logarithmic over 80 dB.

@@ -1,7 +1,8 @@
 """Results: Datasets with units, inputs and versions, in one file each; and their export."""
 
-from bearingdyn.results.datasets import dataset, inputs_of, march_dataset, versions
-from bearingdyn.results.file import groups, open_result, save
-from bearingdyn.results.uff import write_uff
+from bearingdyn.results.datasets import dataset, march_dataset
+from bearingdyn.results.provenance import inputs_of, versions
+from bearingdyn.results.result_file import groups, open_result, save
+from bearingdyn.results.universal_file import write_uff
 
 __all__ = ["dataset", "groups", "inputs_of", "march_dataset", "open_result", "save", "versions", "write_uff"]

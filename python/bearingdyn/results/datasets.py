@@ -2,62 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
-import platform
 from collections.abc import Mapping
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-import scipy
 
 from bearingdyn.core import Report
+from bearingdyn.results.provenance import inputs_of, stamp, versions
 
 if TYPE_CHECKING:
     import xarray
 
+
 Variable: TypeAlias = tuple[str | tuple[str, ...], Any, str, str]
 """dims, values, unit, meaning"""
-
-
-def _own_version() -> str:
-    try:
-        return version("bearingdyn")
-    except PackageNotFoundError:
-        return "not installed"
-
-
-# found once: it takes milliseconds where many packages are installed
-VERSION = _own_version()
-
-
-def versions() -> dict[str, str]:
-    """Versions of the package and of what it computes with, by name; "not installed" where there is none."""
-    return {
-        "bearingdyn": VERSION,
-        "Python": platform.python_version(),
-        "NumPy": np.__version__,
-        "SciPy": scipy.__version__,
-    }
-
-
-def stamp(time: datetime | None = None) -> str:
-    """A time, by default now, in UTC as ISO 8601 writes it."""
-    return (time or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="seconds")
-
-
-def inputs_of(text: str) -> dict[str, str]:
-    """Attributes that say what a result was computed from, and its hash.
-
-    Parameters
-    ----------
-    text
-        Description by `inputs.text`; empty where it is not known: then there are no attributes.
-    """
-    if not text:
-        return {}
-    return {"inputs": text, "inputs_hash": hashlib.sha256(text.encode()).hexdigest()[:32]}
 
 
 def dataset(
@@ -65,7 +23,7 @@ def dataset(
     attrs: Mapping[str, Any],
     coords: Mapping[str, tuple[Any, str]] | None = None,
 ) -> xarray.Dataset:
-    """A Dataset whose variables carry units and meaning, and which says what made it, and when (UTC).
+    """A result as a Dataset whose variables carry units and meaning, and what made it, and when (UTC).
 
     Parameters
     ----------
@@ -94,7 +52,7 @@ def march_dataset(
     report: Report,
     attrs: Mapping[str, Any] | None = None,
 ) -> xarray.Dataset:
-    """Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
+    """The Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
 
     Parameters
     ----------

@@ -10,8 +10,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from bearingdyn import inputs
-from bearingdyn.short import short
+from bearingdyn import fingerprint
+from bearingdyn.short_repr import short
 
 Parameters: TypeAlias = Mapping[str, Any]
 
@@ -31,7 +31,7 @@ class Case:
 
 
 def grid(**axes: Iterable[Any]) -> list[dict[str, Any]]:
-    """Every combination of the values of the axes, the last axis running fastest.
+    """Cases for every combination of the values of the axes, the last axis running fastest.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def grid(**axes: Iterable[Any]) -> list[dict[str, Any]]:
 
 
 def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, float]]:
-    """n cases that fill the box of the ranges evenly: a scrambled Sobol sequence, the same for the same seed.
+    """n cases that fill the box of the ranges evenly: a scrambled Sobol sequence, the same for one seed.
 
     Powers of two fill the box best. A longer study with the same seed begins with the cases of a shorter one.
 
@@ -121,7 +121,7 @@ def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, f
 
 
 def checked(cases: Iterable[Parameters]) -> list[dict[str, Any]]:
-    """The cases as dicts in one order of names.
+    """The cases of a study as dicts in one order of names.
 
     Raises
     ------
@@ -148,10 +148,10 @@ def checked(cases: Iterable[Parameters]) -> list[dict[str, Any]]:
 
 
 def label(value: Any) -> float | int | bool | str:
-    """A parameter as a table shows it: a number or text itself, else its class and a hash."""
+    """A parameter of a case as a table shows it: a number or text itself, else its class and a hash."""
     if _kind(value) != "object":
         return value  # type: ignore[no-any-return]
-    return f"{type(value).__name__} {inputs.fingerprint(value)[:8]}"
+    return f"{type(value).__name__} {fingerprint.fingerprint(value)[:8]}"
 
 
 def _kind(value: Any) -> str:
@@ -167,7 +167,7 @@ def _plain(index: int, name: str, value: Any) -> Any:
         raise ValueError(f"case {index}: parameter {name!r} is {value!r}; it must have a value")
     if _kind(value) == "object":
         try:
-            inputs.describe(value)
+            fingerprint.describe(value)
         except ValueError as error:
             raise ValueError(f"case {index}: parameter {name!r}: {error}") from None
     return value

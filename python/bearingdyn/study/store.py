@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bearingdyn import inputs
+from bearingdyn import fingerprint
 from bearingdyn.results import versions
 from bearingdyn.study.cases import Case, Parameters
 from bearingdyn.writing import write_whole
@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 
 
 def name_of(function: Callable[..., Any]) -> str:
-    """Module and name of a function, or of a callable object's class; a script goes by its file."""
+    """Name by which a study is stored: module and name of a function or class; a script goes by its file."""
     inner = function.func if isinstance(function, functools.partial) else function
     named = inner if hasattr(inner, "__qualname__") else type(inner)
     module = str(getattr(named, "__module__", ""))
@@ -31,7 +31,7 @@ def name_of(function: Callable[..., Any]) -> str:
 
 @dataclass(frozen=True)
 class Store:
-    """The cases of functions, by hash of what the function is, the version and the parameters.
+    """The store of finished cases, by hash of what the function is, the version and the parameters.
 
     Raises
     ------
@@ -58,15 +58,15 @@ class Store:
     def _of_function(self) -> dict[str, Any]:
         return {
             "function": name_of(self.function),
-            "told": inputs.fingerprint(self.function),
+            "told": fingerprint.fingerprint(self.function),
             "version": versions()["bearingdyn"],
         }
 
     def _key(self, parameters: Parameters) -> dict[str, Any]:
-        return {**self._of_function, "parameters": inputs.describe(parameters)}
+        return {**self._of_function, "parameters": fingerprint.describe(parameters)}
 
     def _path(self, parameters: Parameters) -> Path:
-        return self.folder / f"{inputs.fingerprint(self._key(parameters))}.json"
+        return self.folder / f"{fingerprint.fingerprint(self._key(parameters))}.json"
 
     def read(self, parameters: Parameters) -> Case | None:
         """The finished case of these parameters; None where there is none."""

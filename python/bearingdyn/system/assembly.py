@@ -7,17 +7,28 @@ from dataclasses import replace
 
 import numpy as np
 
-from bearingdyn.application import GRAVITY, GROUND, Application, Load, LooseJoint, Place, Plan, Unbalance
+from bearingdyn.application import GRAVITY, GROUND, Application, Load, LooseJoint, Place, Plan
 from bearingdyn.bearing import RIGID
-from bearingdyn.magnitude import plausible
-from bearingdyn.system.arrays import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm, System, factor
 from bearingdyn.system.held import check_held
 from bearingdyn.system.origin import noted
+from bearingdyn.system.softening_layer import softening_factor
+from bearingdyn.system.system import System
+from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
+from bearingdyn.system.unbalance_check import check_unbalance
 from bearingdyn.types import Array, Index
 
 
 def assemble(app: Application) -> System:
-    """Make the arrays of an application.
+    """Assemble the system of an application: its arrays.
+
+    Parameters
+    ----------
+    app
+        The application; its parts are reduced here.
+
+    Returns
+    -------
+    System
 
     Raises
     ------
@@ -51,7 +62,8 @@ def assemble(app: Application) -> System:
         inertia += select[part].T @ (element.M @ rigid[:, :3])
         terms.append(PartTerm(part, element, select[part], rigid, plan.sources[part]))
         for term in element.viscoelastic:
-            layers.append(LayerTerm(part, term.material, select[part].T @ factor(term.H)))
+            L, strain = softening_factor(term, part)
+            layers.append(LayerTerm(part, term.material, select[part].T @ L, strain))
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
         if all(relaxed):
             deviatoric = (2.0 * G0 * t.H for G0, t in zip(relaxed, element.viscoelastic, strict=True))
@@ -117,25 +129,6 @@ def assemble(app: Application) -> System:
     )
     check_held(system, firm)
     return noted(system, app)
-
-
-def check_unbalance(plan: Plan) -> None:
-    """Compare each unbalance with the mass that moves with its place: eccentricities are micrometres.
-
-    Raises
-    ------
-    ValueError
-        For an eccentricity that no rotor has; the unbalance was given in g mm or kg mm.
-    """
-    for load in plan.loads:
-        if isinstance(load, Unbalance):
-            masses = [plan.mass(part) for part in plan.joined_parts(load.where.part)]
-            mass = sum(m for m in masses if m is not None)
-            if mass > 0.0 and load.moment > 0.0:
-                name = (
-                    f"unbalance at {load.where} is {load.moment:.6g} kg m on {mass:.4g} kg; its eccentricity"
-                )
-                plausible("eccentricity", name, load.moment / mass)
 
 
 def _between(ends: Mapping[str, Array], outputs: Mapping[str, Array]) -> Array:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from bearingdyn.application import COMPONENTS, Place
-from bearingdyn.system.arrays import TEST_SPRING, System, natural, static_modulus
+from bearingdyn.system.natural_modes import natural
+from bearingdyn.system.static_modulus import static_modulus
+from bearingdyn.system.system import TEST_SPRING, System
 from bearingdyn.types import Array
 
 
 def check_held(system: System, firm: Array) -> None:
-    """Refuse a system in which anything but the spin of a shaft in its bearings is free to move.
+    """Refuse a system that is not held: only the spin of a shaft in its bearings may be free.
 
     Parameters
     ----------

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bearingdyn import inputs
+from bearingdyn import fingerprint
 from bearingdyn.application import Application
-from bearingdyn.system.arrays import System
+from bearingdyn.system.system import System
 
 
 def noted(system: System, app: Application) -> System:
-    """The system with its application's parts, joints, bearings and loads as a text."""
+    """The system with a note of its origin: the application's parts, joints, bearings and loads as a text."""
     # the reduced parts, and what is kept of them, follow from their sources
     held = {
         name: value
         for name, value in vars(app.plan).items()
         if name not in ("parts", "reduced") and name[0] != "_"
     }
-    return replace(system, inputs=inputs.text(held))
+    return replace(system, inputs=fingerprint.text(held))

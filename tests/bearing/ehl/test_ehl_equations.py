@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bearingdyn.bearing.ehl.deflection import Deflection, Grid
-from bearingdyn.bearing.ehl.groups import Groups, scales
-from bearingdyn.bearing.ehl.linear import gmres
+from bearingdyn.bearing.ehl.deflection import Deflection
+from bearingdyn.bearing.ehl.dimensionless_groups import Groups, scales
+from bearingdyn.bearing.ehl.grid import Grid
+from bearingdyn.bearing.ehl.linearised import gmres
 from bearingdyn.bearing.ehl.oil import Oil
 from bearingdyn.bearing.ehl.reynolds import Reynolds, log_mean
 from bearingdyn.bearing.hertz import PointContact

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bearingdyn.bearing import Lubricant, PointContact, Walther, ehl
-from bearingdyn.bearing.ehl.groups import scales
+from bearingdyn.bearing.ehl.dimensionless_groups import scales
 
 OIL = Lubricant(Walther.iso_vg(32), alpha=2.2e-8)
 CONTACT = PointContact(Rx=2.5e-3, Ry=0.03, modulus=1.1e11)

@@ -9,9 +9,9 @@ import pytest
 import scipy
 
 from bearingdyn.bearing import ehl
-from bearingdyn.bearing.ehl.groups import LOAD
+from bearingdyn.bearing.ehl.dimensionless_groups import LOAD
 from bearingdyn.bearing.ehl.newton import Border, newton
-from bearingdyn.bearing.lubricant import dimensionless_film
+from bearingdyn.bearing.film_thickness import dimensionless_film
 from verified.ehl import CASES, OMEGA, TABLE, mourier
 
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, system_of
-from bearingdyn.analysis.statics import BearingState, Statics
+from bearingdyn.analysis.bearing_state import BearingState
+from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.analysis.steady.balance import Balance
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines
@@ -55,6 +56,7 @@ class Problem:
         """
         system = source.system if isinstance(source, Equilibrium) else system_of("source", source)
         for layer in system.layers:
+            check_linear(layer)
             check_rest(layer, system)
         bases = Bases.of(system, subharmonic)
         if not isinstance(source, Equilibrium) and _plain(system):
@@ -99,6 +101,15 @@ def rest_modulus(layer: LayerTerm) -> float:
         return float(np.real(layer.material.complex_modulus(np.zeros(1)))[0])
     except (ValueError, ZeroDivisionError, FloatingPointError):
         return float("nan")
+
+
+def check_linear(layer: LayerTerm) -> None:
+    """Refuse a law that softens with its own amplitude: ValueError."""
+    if layer.strain is not None:
+        raise ValueError(
+            f"layer {layer.part!r} softens with its amplitude (payne), and a steady motion is balanced with laws "
+            f"that do not; leave payne out of its material, or march with bd.transient"
+        )
 
 
 def check_rest(layer: LayerTerm, system: System) -> None:

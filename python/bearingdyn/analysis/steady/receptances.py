@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bearingdyn.analysis.harmonic import Linear
+from bearingdyn.analysis.linearised import Linear
 from bearingdyn.material import Maxwell
 from bearingdyn.system import System, natural
 from bearingdyn.types import Array, Complex, Index

@@ -4,10 +4,10 @@ Reynolds' equation of an isothermal, fully flooded, Newtonian film between elast
 elliptic, rolling along the minor axis (D = Rx/Ry ≤ 1).
 """
 
-from bearingdyn.bearing.ehl.film import Figures, Level, Steady, steady
-from bearingdyn.bearing.ehl.motion import March, march
-from bearingdyn.bearing.ehl.physical import LubricatedContact, solve
-from bearingdyn.bearing.ehl.table import Lookup, lookup
+from bearingdyn.bearing.ehl.lubricated_contact import LubricatedContact, solve
+from bearingdyn.bearing.ehl.march import March, march
+from bearingdyn.bearing.ehl.steady_film import Figures, Level, Steady, steady
+from bearingdyn.bearing.ehl.table_lookup import Lookup, lookup
 
 __all__ = [
     "Figures",

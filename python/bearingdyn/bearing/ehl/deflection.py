@@ -1,69 +1,20 @@
-"""The grid, and the elastic deflection of the half-space on it."""
+"""The elastic deflection of the half-space on the grid."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from bearingdyn.bearing.ehl.groups import Groups
+from bearingdyn.bearing.ehl.dimensionless_groups import Groups
+from bearingdyn.bearing.ehl.grid import Grid
 from bearingdyn.types import Array
 
 
-@dataclass(frozen=True)
-class Grid:
-    """Nodes of one half of the contact, Y ≥ 0 (it is symmetric); arrays (ny, nx), rows across the rolling.
-
-    The pressure is held at zero on the two first columns, the last column and the last row.
-    """
-
-    nx: int
-    ny: int
-    origin: int
-    """Column of X = 0."""
-    dx: float
-    dy: float
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """(ny, nx)."""
-        return self.ny, self.nx
-
-    @cached_property
-    def X(self) -> Array:
-        """(nx,)."""
-        return np.asarray((np.arange(self.nx) - self.origin) * self.dx)
-
-    @cached_property
-    def Y(self) -> Array:
-        """(ny,)."""
-        return np.asarray(np.arange(self.ny) * self.dy)
-
-    @cached_property
-    def weights(self) -> Array:
-        """Area of each node in the whole contact, (ny, nx)."""
-        weights = np.full(self.shape, 2 * self.dx * self.dy)
-        weights[0] /= 2
-        return weights
-
-    def refined(self) -> Grid:
-        """The grid of half the pitch that holds every node of this one."""
-        return Grid(2 * self.nx - 1, 2 * self.ny - 1, 2 * self.origin, self.dx / 2, self.dy / 2)
-
-    @cached_property
-    def inner(self) -> NDArray[np.bool_]:
-        """Nodes whose pressure is unknown, (ny, nx)."""
-        inner = np.zeros(self.shape, dtype=bool)
-        inner[:-1, 2:-1] = True
-        return inner
-
-
 class Deflection:
-    """H = Σ K P for pressures constant on each cell (A. E. H. Love 1929), as a convolution by FFT.
+    """Elastic deflection H = Σ K P, P constant on each cell (A. E. H. Love 1929), a convolution by FFT.
 
     Parameters
     ----------

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from bearingdyn.bearing.ehl.deflection import Grid
-from bearingdyn.bearing.ehl.groups import Groups
+from bearingdyn.bearing.ehl.dimensionless_groups import Groups
+from bearingdyn.bearing.ehl.grid import Grid
 
 _UPSTREAM = 2.0  # the oil begins this many a before the dry contact at least
 _SIDEWAYS = 1.25  # and ends this many a beside it
@@ -17,7 +17,7 @@ _FLATTEST = 4.0  # pitch across over pitch along, in a long ellipse
 
 @dataclass(frozen=True)
 class Flooding:
-    """Extent of the oil: X from −inlet to outlet, |Y| to side."""
+    """Extent of the oil that floods the contact: X from −inlet to outlet, |Y| to side."""
 
     inlet: float
     outlet: float

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from bearingdyn.bearing.ehl import harmonic
-from bearingdyn.bearing.ehl.film import Figures, Steady, steady
-from bearingdyn.bearing.ehl.table import OMEGA
+from bearingdyn.bearing.ehl import harmonic_approach
+from bearingdyn.bearing.ehl.steady_film import Figures, Steady, steady
+from bearingdyn.bearing.ehl.table_lookup import OMEGA
 
 M = (2.0, 3.7, 7.0, 14.0, 27.0, 52.0, 100.0, 192.0, 370.0, 709.0, 1360.0, 2607.0, 5000.0)
 L = (0.0, 2.5, 5.0, 10.0, 15.0, 20.0)
@@ -33,7 +33,7 @@ COLUMNS = (
 
 
 def point(M: float, L: float, D: float) -> list[float]:
-    """One line of the table after its M, L, D; NaN where no grid of a bearable size resolves the film."""
+    """One line of the table of lubricated contacts after its M, L, D; NaN where no grid resolves the film."""
     began = time.process_time()
     found: Steady | None = None
     for accuracy in ACCURACY:
@@ -47,14 +47,14 @@ def point(M: float, L: float, D: float) -> list[float]:
     # the shape is that of the second grid: a ratio hardly depends on the pitch
     level = found.levels[-2]
     K0, C0 = level.figures.K0, level.figures.C0
-    answers = [harmonic.stiffness(level.equations, level.state, x) for x in OMEGA]
+    answers = [harmonic_approach.stiffness(level.equations, level.state, x) for x in OMEGA]
     K = [k.real - K0 for k in answers]
     C = [1.5 * k.imag / x / C0 for k, x in zip(answers, OMEGA, strict=True)]
     return [*found.figures, *found.error, *K, *C, time.process_time() - began]
 
 
 def main(arguments: list[str]) -> int:
-    """Solve the points that are missing."""
+    """Make the table of lubricated contacts: solve the points that are missing."""
     part, parts = (int(x) for x in arguments[0].split("/")) if len(arguments) == 2 else (1, 1)
     path = Path(arguments[-1])
     if not path.exists():

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.bearing.ehl.groups import LOAD
-from bearingdyn.bearing.ehl.linear import Linearised
+from bearingdyn.bearing.ehl.dimensionless_groups import LOAD
+from bearingdyn.bearing.ehl.linearised import Linearised
 from bearingdyn.bearing.ehl.reynolds import Reynolds
 from bearingdyn.types import Array
 
@@ -21,12 +21,12 @@ _CLOSED = 1e-12  # what may be missing of the border
 
 
 class NegativeFilm(ArithmeticError):
-    """The grid is too coarse: no step keeps the film positive."""
+    """Newton's method finds no step that keeps the film positive: the grid is too coarse."""
 
 
 @dataclass(frozen=True)
 class State:
-    """One solution: pressures P and films H (ny, nx), H0 the centre's film without its deflection."""
+    """One solution of Newton's method: P and H (ny, nx), and H0, the centre's film less its deflection."""
 
     P: Array
     H: Array
@@ -40,7 +40,7 @@ class State:
 
 @dataclass(frozen=True)
 class Border:
-    """The equation of H0, force ∫∫ P + mass·H0 = load: a load that is given, a motion, or a free body's."""
+    """The border of Newton's equations, for H0: a given load, a given motion, or a free body's."""
 
     load: float = LOAD
     mass: float = 0.0
@@ -64,7 +64,7 @@ def newton(
     rate: float = 0.0,
     history: Array | float = 0.0,
 ) -> State:
-    """Solve f + rate·ρ̄H + history = 0 with P ≥ 0, and the border, from P and H0 with a positive film.
+    """Newton's method for f + rate·ρ̄H + history = 0, P ≥ 0, and the border, from a positive film.
 
     Raises
     ------

@@ -20,7 +20,7 @@ _DOWSON_HIGGINSON_PRESSURE = 5.9e8  # Pa
 
 @dataclass(frozen=True)
 class Oil:
-    """Laws of one lubricant in a contact of one Hertz pressure."""
+    """The oil in a contact: viscosity and density over pressure, for one Hertz pressure."""
 
     viscosity: Viscosity
     density: Density

@@ -13,14 +13,15 @@ from typing import Any
 import numpy as np
 import scipy
 
-from bearingdyn.bearing.ehl.deflection import Deflection, Grid
-from bearingdyn.bearing.ehl.groups import Groups
+from bearingdyn.bearing.ehl.deflection import Deflection
+from bearingdyn.bearing.ehl.dimensionless_groups import Groups
+from bearingdyn.bearing.ehl.grid import Grid
 from bearingdyn.bearing.ehl.oil import Oil
 from bearingdyn.types import Array
 
 
 def log_mean(a: Array, b: Array) -> tuple[Array, Array, Array]:
-    """(a − b)/ln(a/b) of logarithms ln a, ln b, and its derivatives by them."""
+    """(a − b)/ln(a/b) of logarithms ln a, ln b, for Reynolds' equation between two nodes; and derivatives."""
     t = a - b
     small = np.abs(t) < 1e-3
     safe = np.where(small, 1.0, t)
@@ -33,7 +34,7 @@ def log_mean(a: Array, b: Array) -> tuple[Array, Array, Array]:
 
 @dataclass(frozen=True)
 class Reynolds:
-    """The equations of one contact on one grid."""
+    """Reynolds' equation of one contact on one grid."""
 
     grid: Grid
     groups: Groups

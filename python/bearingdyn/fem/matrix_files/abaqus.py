@@ -14,7 +14,8 @@ import scipy.sparse
 
 from bearingdyn.checks import existing
 from bearingdyn.fem.abaqus_input import blocks, node
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 from bearingdyn.fem.matrix_files.text_tables import (
     Form,
     first_line,
@@ -38,7 +39,7 @@ GEOMETRY = ("SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "IMPERFECTION")
 def read_abaqus(
     stiffness: str | Path, mass: str | Path, points: Points | None = None, **check: Any
 ) -> FEMatrices:
-    """Read the two files (.mtx) that *MATRIX OUTPUT, STIFFNESS, MASS writes, in either of its text formats.
+    """Read Abaqus' matrices: the two files (.mtx) of *MATRIX OUTPUT, STIFFNESS, MASS, either text format.
 
     Abaqus has no units: pass units=MM_TONNE for mm, t, s.
 
@@ -107,16 +108,26 @@ def _entries(path: Path) -> tuple[Index | None, Index, Array]:
 
 
 def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
-    """Node number -> position of all *NODE blocks of an input file of Abaqus or CalculiX (.inp), in its unit.
+    """Read the positions in all *NODE blocks of an input file of Abaqus or CalculiX (.inp).
 
     *INCLUDE is followed.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+
+    Returns
+    -------
+    dict
+        Number of the node -> position (x, y, z), in the unit of the file.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        For a file without nodes, or with a line that is no node.
+        For a file without nodes, or with a line that cannot be a node.
     """
     p = existing(path)
     nodes: dict[int, tuple[float, float, float]] = {}

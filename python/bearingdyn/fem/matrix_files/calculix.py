@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import existing
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 from bearingdyn.fem.matrix_files.text_tables import Form, symmetric_from, triples
 
 ENTRIES = Form(
@@ -28,7 +29,7 @@ def read_calculix(
     points: Points | None = None,
     **check: Any,
 ) -> FEMatrices:
-    """Read what CalculiX stores: name.sti, name.mas and name.dof.
+    """Read the matrices that CalculiX stores: name.sti, name.mas and name.dof.
 
     CalculiX leaves out the coordinates that it removed (*BOUNDARY, dependent ones of *EQUATION and *RIGID
     BODY). A body with points must be free: store its model without these keywords.

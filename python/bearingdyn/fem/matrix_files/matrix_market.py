@@ -13,7 +13,8 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.checks import existing
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 from bearingdyn.fem.matrix_files.text_tables import Form, both_triangles, rows_fit, table, triples
 
 BANNER = b"%%matrixmarket"
@@ -27,7 +28,7 @@ LONGEST_LINE = 1024  # of the format
 
 
 def is_matrix_market(path: Path) -> bool:
-    """Whether a file begins as MatrixMarket does."""
+    """Whether a file is in MatrixMarket's format, by its beginning."""
     with path.open("rb") as stream:
         return stream.read(len(BANNER)).lower() == BANNER
 
@@ -45,8 +46,12 @@ def read_matrix_market(
         Paths of the files.
     points
         Positions of the nodes, as in check_matrices.
-    check
+    **check
         Further arguments of check_matrices.
+
+    Returns
+    -------
+    FEMatrices
 
     Raises
     ------

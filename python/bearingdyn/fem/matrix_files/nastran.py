@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import existing
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 
 
 def read_op4(
@@ -20,7 +21,7 @@ def read_op4(
     coordinates: str | None = None,
     **check: Any,
 ) -> FEMatrices:
-    """Read a stiffness and a mass matrix from one output4 file, or from two.
+    """Read Nastran's stiffness and mass matrix from one output4 file, or from two.
 
     KGG and MGG have six coordinates a grid, in the basic system when no grid has another.
 

@@ -19,7 +19,8 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.checks import existing
-from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points, checked_files
+from bearingdyn.fem.matrix_files.fe_matrices import FEMatrices, Points
+from bearingdyn.fem.matrix_files.free_body_checks import checked_files
 from bearingdyn.writing import write_whole
 
 # what zipfile and NumPy raise for damage, which depends on where it is
@@ -99,7 +100,7 @@ def _from_arrays(arrays: Mapping[str, Any], name: str, path: Path) -> Any:
 
 
 def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FEMatrices:
-    """Read a NumPy archive with K and M, and perhaps points, labels and internal.
+    """Read a NumPy archive (.npz) with K and M, and perhaps points, labels and internal.
 
     K and M are each dense, or in compressed sparse rows: four arrays K_data, K_indices, K_indptr, K_shape.
     Pickled objects are not read.
@@ -110,8 +111,12 @@ def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FE
         Path of the archive.
     points
         Positions of the nodes, as in check_matrices; None: those of the archive.
-    check
+    **check
         Further arguments of check_matrices.
+
+    Returns
+    -------
+    FEMatrices
 
     Raises
     ------
@@ -133,7 +138,15 @@ def read_npz(path: str | Path, points: Points | None = None, **check: Any) -> FE
 
 
 def write_npz(path: str | Path, model: FEMatrices) -> None:
-    """Write a model as read_npz reads it, in compressed sparse rows and SI units."""
+    """Write a finite element model to a NumPy archive (.npz), in compressed sparse rows and SI units.
+
+    Parameters
+    ----------
+    path
+        Of the archive; read_npz reads it.
+    model
+        The model.
+    """
     arrays: dict[str, Any] = {}
     for name, A in (("K", model.K), ("M", model.M)):
         arrays |= {

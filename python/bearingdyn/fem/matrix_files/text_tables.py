@@ -35,7 +35,7 @@ _NO_LETTER = re.compile(rb"(?<=[\d.])(?=[+-])")  # Fortran leaves the letter out
 
 @dataclass(frozen=True)
 class Form:
-    """What each line of a file of numbers is.
+    """What each line of a text table is.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class Form:
 
 
 def first_line(path: Path, comment: str) -> str:
-    """The first line that holds something."""
+    """The first line of a text table that holds something."""
     with path.open("rb") as stream:
         for _, block in _blocks(stream, path, 1):
             for line in block.split(b"\n"):
@@ -76,7 +76,7 @@ def first_line(path: Path, comment: str) -> str:
 
 
 def triples(path: Path, stream: BinaryIO, form: Form, line: int = 1) -> tuple[Index, Index, Array]:
-    """Rows, columns (from 0) and values (e,) of a stream whose lines are row, column, value.
+    """Rows, columns (from 0) and values (e,) of a text table whose lines are row, column, value.
 
     `line` is the number of the first of them.
 
@@ -101,7 +101,7 @@ def triples(path: Path, stream: BinaryIO, form: Form, line: int = 1) -> tuple[In
 
 
 def table(path: Path, stream: BinaryIO, form: Form, line: int = 1) -> Array:
-    """The numbers (lines, columns) of a stream. Raises as `triples` does."""
+    """The numbers (lines, columns) of a text table. Raises as `triples` does."""
     width, found = len(form.columns), []
     for at, block, count in _clean(path, stream, form, line):
         numbers = np.fromstring(block.decode("ascii"), dtype=np.float64, sep=" ")
@@ -112,7 +112,7 @@ def table(path: Path, stream: BinaryIO, form: Form, line: int = 1) -> Array:
 
 
 def whole(path: Path, numbers: Array) -> Index:
-    """Integers written among other numbers. Raises ValueError where they are none."""
+    """Integers written among other numbers of a text table. Raises ValueError where one is not."""
     rounded = np.rint(numbers)
     if not np.all((np.abs(numbers - rounded) < 1e-9) & (np.abs(rounded) < LARGEST_INDEX)):
         raise ValueError(f"{path} has a node or row number that is not an integer; check the export")
@@ -120,7 +120,7 @@ def whole(path: Path, numbers: Array) -> Index:
 
 
 def rows_fit(path: Path, n: int, entries: int) -> None:
-    """Raise ValueError for a number of rows that the entries cannot fill."""
+    """Raise ValueError for a number of rows that the entries of a text table cannot fill."""
     if n > max(ROWS, entries):
         raise ValueError(
             f"{path} names row {n} and has {entries} entries, fewer than one a row; check the export"
@@ -128,7 +128,7 @@ def rows_fit(path: Path, n: int, entries: int) -> None:
 
 
 def symmetric_from(row: Index, column: Index, value: Array, n: int) -> scipy.sparse.csr_matrix:
-    """The matrix whose entries a file lists: of one triangle, which is mirrored, or of both."""
+    """The sparse matrix that a text table lists: of one triangle, which is mirrored, or of both."""
     A = scipy.sparse.csr_matrix((value, (row, column)), shape=(n, n))
     if both_triangles(row, column, n):
         return A
@@ -136,7 +136,7 @@ def symmetric_from(row: Index, column: Index, value: Array, n: int) -> scipy.spa
 
 
 def both_triangles(row: Index, column: Index, n: int) -> bool:
-    """Whether an entry off the diagonal has a partner on its other side (or is there twice)."""
+    """Whether a text table lists both triangles: entries off the diagonal have partners (or come twice)."""
     # a triangle in the file's own order need not be one in another: what counts are entries with partners
     off = row != column
     there = np.minimum(row, column)[off] * n + np.maximum(row, column)[off]

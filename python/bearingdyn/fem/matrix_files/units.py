@@ -9,7 +9,7 @@ from bearingdyn.checks import positive
 
 @dataclass(frozen=True)
 class Units:
-    """A coherent system: one unit of length in m, of mass in kg, of time in s; force is mass·length/time².
+    """Coherent units of a file: of length in m, of mass in kg, of time in s; force is mass·length/time².
 
     Raises
     ------

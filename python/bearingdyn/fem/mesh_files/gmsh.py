@@ -7,186 +7,17 @@ Format: gmsh's manual, "MSH file format". An element that two physical groups ho
 from __future__ import annotations
 
 import re
-import struct
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from itertools import islice
 from pathlib import Path
-from typing import IO
 
 import numpy as np
 
+from bearingdyn.fem.mesh_files.gmsh_elements import ORDERS, TYPES
+from bearingdyn.fem.mesh_files.gmsh_stream import Source, shown
 from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
-from bearingdyn.fem.meshes.solid_element import HEX20, HEX27, PYRAMID13, TET10, WEDGE15, SolidElement
 from bearingdyn.types import Array, Index
 
-# gmsh's types: dimension, nodes, and what they are called where they are refused
-TYPES = {
-    **{1: (1, 2, ""), 8: (1, 3, ""), 26: (1, 4, ""), 27: (1, 5, ""), 28: (1, 6, ""), 15: (0, 1, "")},
-    **{2: (2, 3, ""), 9: (2, 6, ""), 3: (2, 4, ""), 16: (2, 8, ""), 10: (2, 9, "")},
-    **{4: (3, 4, ""), 11: (3, 10, ""), 5: (3, 8, ""), 17: (3, 20, ""), 12: (3, 27, "")},
-    **{6: (3, 6, ""), 18: (3, 15, ""), 13: (3, 18, ""), 7: (3, 5, ""), 19: (3, 13, ""), 14: (3, 14, "")},
-    **{n: (2, k, "triangles of third order or more") for n, k in ((20, 9), (21, 10), (22, 12), (23, 15))},
-    **{n: (2, k, "triangles of third order or more") for n, k in ((24, 15), (25, 21))},
-    **{36: (2, 16, "quadrilaterals of third order"), 37: (2, 25, "quadrilaterals of fourth order")},
-    **{29: (3, 20, "tetrahedra of third order"), 30: (3, 35, "tetrahedra of fourth order")},
-    **{31: (3, 56, "tetrahedra of fifth order"), 90: (3, 40, "wedges of third order")},
-    **{92: (3, 64, "bricks of third order"), 93: (3, 125, "bricks of fourth order")},
-}
-# Whose middle the nodes after the corners are, in gmsh's order: two corners an edge, four a face
-BRICK_EDGES = ((0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7))
-BRICK_FACES = ((0, 1, 2, 3), (0, 1, 4, 5), (0, 3, 4, 7), (1, 2, 5, 6), (2, 3, 6, 7), (4, 5, 6, 7))
-TET_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (3, 2), (3, 1))
-WEDGE_EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5))
-PYRAMID_EDGES = ((0, 1), (0, 3), (0, 4), (1, 2), (1, 4), (2, 3), (2, 4), (3, 4))
-ENTITIES = 100_000  # of a drawing, of one dimension; a large assembly has some thousands
 PARTITION = "_part{"  # gmsh's own groups of partitions begin so
-
-
-def _order(kind: SolidElement, middles: tuple[tuple[int, ...], ...]) -> Index:
-    """Which of gmsh's nodes is each of ours."""
-    place = {frozenset(group): len(kind.corners) + k for k, group in enumerate(middles)}
-    groups = [*kind.edges, *(kind.faces if kind.centres else ())]
-    found = [*range(len(kind.corners)), *(place[frozenset(group)] for group in groups)]
-    return np.array([*found, *([26] if kind.centres else [])], dtype=np.intp)
-
-
-ORDERS = {
-    17: _order(HEX20, BRICK_EDGES),
-    12: _order(HEX27, BRICK_EDGES + BRICK_FACES),
-    11: _order(TET10, TET_EDGES),
-    18: _order(WEDGE15, WEDGE_EDGES),
-    13: np.append(_order(WEDGE15, WEDGE_EDGES), [15, 16, 17]),
-    19: _order(PYRAMID13, PYRAMID_EDGES),
-    14: np.append(_order(PYRAMID13, PYRAMID_EDGES), 13),
-}
-
-
-@dataclass
-class _Source:
-    """A .msh file as a stream of numbers, text or binary, that knows where it is."""
-
-    file: IO[bytes]
-    size: int
-    line: int = 0
-    binary: bool = False
-    endian: str = "<"
-    word: int = 8  # bytes of a size_t
-    tokens: list[bytes] = field(default_factory=list)  # what is left of a line of text, last first
-
-    def where(self) -> str:
-        return f"byte {self.file.tell()}" if self.binary else f"line {self.line}"
-
-    def fault(self, what: str) -> ValueError:
-        return ValueError(f"{self.where()}: {what}")
-
-    def text(self) -> bytes:
-        """The next line, stripped; b"" at the end of the file, for lines that are blank are passed over."""
-        while raw := self.file.readline():
-            self.line += 1
-            if line := raw.strip():
-                return line
-        return b""
-
-    def read(self, size: int) -> bytes:
-        if size > self.size - self.file.tell():
-            raise self.fault(
-                f"{size} bytes should follow, and the file ends before; it is cut off or damaged"
-            )
-        return self.file.read(size)
-
-    def take(self, spec: str) -> list[int]:
-        """The next numbers: i an int, z a size_t, d a double (passed over, 0)."""
-        if self.binary:
-            form = self.endian + spec.replace("z", "q" if self.word == 8 else "i")
-            return [int(v) if s != "d" else 0 for s, v in zip(spec, self._unpack(form), strict=True)]
-        found = []
-        for s in spec:
-            if not self.tokens:
-                self.tokens = self.text().split()[::-1]
-            if not self.tokens:
-                raise self.fault("the file ends where numbers should follow; it is cut off")
-            word = self.tokens.pop()
-            try:
-                found.append(int(word) if s != "d" else 0)
-            except ValueError:
-                raise self.fault(f"{_shown(word)} stands where a whole number should") from None
-        return found
-
-    def _unpack(self, form: str) -> tuple[float, ...]:
-        return struct.unpack(form, self.read(struct.calcsize(form)))
-
-    def count(self, what: str, n: int, least: int) -> int:
-        """A count from the file, if so many things of so many bytes can follow."""
-        if not 0 <= n * least <= self.size - self.file.tell():
-            raise self.fault(
-                f"{n} {what} should follow, more than the file can hold; it is cut off or damaged"
-            )
-        if "of" in what.split() or what == "entities":
-            if n > ENTITIES:
-                raise self.fault(f"{n} {what} should follow; up to {ENTITIES} are read")
-        return n
-
-    def table(self, n: int, ints: str, doubles: int, exact: bool = True) -> tuple[Index, Array]:
-        """The next n rows: whole numbers (n, i) of one type, i or z each, then doubles (n, d)."""
-        k = len(ints)
-        if self.binary:
-            whole = self.endian + ("i4" if "i" in ints or self.word == 4 else "i8")
-            row = np.dtype([("n", whole, (k,)), ("x", self.endian + "f8", (doubles,))])
-            data = np.frombuffer(self.read(n * row.itemsize), dtype=row)
-            return data["n"].astype(np.int64), data["x"].astype(np.float64)
-        parts = []
-        for rows in self.rows(n):
-            width = k + doubles
-            for at, row_of in enumerate(rows):
-                if len(row_of) != width and (exact or len(row_of) < width):
-                    self.line += at + 1 - len(rows)
-                    raise self.fault(f"{len(row_of)} numbers stand where {width} should")
-            parts.append(self.numbers([row_of[:width] for row_of in rows], k))
-        whole_part, real = (
-            zip(*parts, strict=True) if parts else ((np.zeros((0, k)),), (np.zeros((0, doubles)),))
-        )
-        return np.vstack(whole_part).astype(np.int64), np.vstack(real)
-
-    def rows(self, n: int) -> Iterator[list[list[bytes]]]:
-        """The next n lines of text in words, some at a time."""
-        while n > 0:
-            lines = list(islice(self.file, min(n, 50_000)))
-            self.line += len(lines)
-            if len(lines) < min(n, 50_000):
-                raise self.fault("the file ends in the middle of a list; it is cut off")
-            yield [line.split() for line in lines]
-            n -= len(lines)
-
-    def numbers(self, rows: list[list[bytes]], k: int) -> tuple[Index, Array]:
-        """Rows of words, equally many in each, up to the line just read: k whole numbers, then doubles."""
-        try:
-            words = np.array(rows)
-            return words[:, :k].astype(np.int64), words[:, k:].astype(np.float64)
-        except (ValueError, OverflowError):
-            for at, row in enumerate(rows):
-                for j, word in enumerate(row):
-                    try:
-                        np.int64(int(word)) if j < k else float(word)
-                    except (ValueError, OverflowError):
-                        self.line += at + 1 - len(rows)
-                        kind = "whole number" if j < k else "number"
-                        raise self.fault(f"{_shown(word)} stands where a {kind} should") from None
-            raise
-
-    def end(self, section: str) -> None:
-        """Passes over what is left of a section."""
-        self.tokens = []
-        wanted = b"$End" + section.encode("ascii", "replace")
-        while line := self.file.readline():
-            self.line += 1
-            if line.strip() == wanted or (self.binary and line.rstrip().endswith(wanted)):
-                return
-        raise self.fault(f"${section} has no $End{section}; the file is cut off")
-
-
-def _shown(word: bytes) -> str:
-    return repr(word[:40].decode("utf-8", "replace"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +41,7 @@ class _Contents:
 
 
 def read_msh(path: Path, region_data: str | None = None) -> RawMesh:
-    """The mesh of a .msh file: solids, physical volumes as regions, physical surfaces as surfaces.
+    """The mesh of gmsh's .msh file: solids, physical volumes as regions, physical surfaces as surfaces.
 
     region_data="gmsh:geometrical" takes the entities of the drawing, by number, for the groups.
 
@@ -225,12 +56,12 @@ def read_msh(path: Path, region_data: str | None = None) -> RawMesh:
         )
     found = _Contents()
     with path.open("rb") as file:
-        source = _Source(file, path.stat().st_size)
+        source = Source(file, path.stat().st_size)
         version = _format(source)
         while line := source.text():
             section = line[1:].decode("utf-8", "replace")
             if not re.fullmatch(r"\$[A-Za-z]\w*", line.decode("utf-8", "replace")):
-                raise source.fault(f"{_shown(line)} stands where a section ($Nodes, ...) should begin")
+                raise source.fault(f"{shown(line)} stands where a section ($Nodes, ...) should begin")
             if section == "PhysicalNames":
                 _names(source, found)
             elif section == "Entities" and version > 4.0 - 1e-9:
@@ -258,21 +89,21 @@ def read_msh(path: Path, region_data: str | None = None) -> RawMesh:
     return _mesh(found, by_entity)
 
 
-def _format(source: _Source) -> float:
+def _format(source: Source) -> float:
     first = source.text().removeprefix(b"\xef\xbb\xbf")
     if first != b"$MeshFormat":
         other = " (this looks like Fluent's)" if first.startswith(b"(") else ""
         old = first.startswith(b"$NOD")
         remedy = "gmsh's format 1 is not read; save it as 4.1" if old else f"it must be a file of gmsh{other}"
-        raise source.fault(f"{_shown(first)} stands where $MeshFormat should; {remedy}")
+        raise source.fault(f"{shown(first)} stands where $MeshFormat should; {remedy}")
     words = source.text().split()
     version, kind, word = (words + [b""] * 3)[:3]
     if version not in (b"2", b"2.0", b"2.1", b"2.2", b"4", b"4.0", b"4.1") or kind not in (b"0", b"1"):
         raise source.fault(
-            f"format {_shown(b' '.join(words))}; 2.2, 4.0 and 4.1 are read: save it as one of them"
+            f"format {shown(b' '.join(words))}; 2.2, 4.0 and 4.1 are read: save it as one of them"
         )
     if word not in (b"4", b"8"):
-        raise source.fault(f"{_shown(word)} bytes a number; files of 8 bytes are read")
+        raise source.fault(f"{shown(word)} bytes a number; files of 8 bytes are read")
     source.word = int(word)
     if kind == b"1":
         one = source.file.read(4)
@@ -284,7 +115,7 @@ def _format(source: _Source) -> float:
     return float(version)
 
 
-def _names(source: _Source, found: _Contents) -> None:
+def _names(source: Source, found: _Contents) -> None:
     line = source.text()
     try:
         for _ in range(source.count("names", int(line), 5)):
@@ -295,10 +126,10 @@ def _names(source: _Source, found: _Contents) -> None:
             name = match[3].decode("utf-8", "replace")
             found.names[int(match[1]), int(match[2])] = name
     except ValueError:
-        raise source.fault(f'{_shown(line)} stands where a physical name (2 1 "name") should') from None
+        raise source.fault(f'{shown(line)} stands where a physical name (2 1 "name") should') from None
 
 
-def _entities(source: _Source, found: _Contents, version: float, partitioned: bool) -> None:
+def _entities(source: Source, found: _Contents, version: float, partitioned: bool) -> None:
     z = "z" if version > 4.0 else "i"  # of the counts within an entity; 4.0 has int there
 
     def several(what: str) -> list[int]:
@@ -327,10 +158,10 @@ def _entities(source: _Source, found: _Contents, version: float, partitioned: bo
             found.groups[dimension, tag] = groups
 
 
-def _nodes2(source: _Source, found: _Contents, parametric: bool) -> None:
+def _nodes2(source: Source, found: _Contents, parametric: bool) -> None:
     line = source.text()
     if not line.isdigit():
-        raise source.fault(f"{_shown(line)} stands where the number of nodes should")
+        raise source.fault(f"{shown(line)} stands where the number of nodes should")
     n = source.count("nodes", int(line[:18]), 8)
     if not (parametric and source.binary):
         tags, points = source.table(n, "i", 3, exact=not parametric)
@@ -347,7 +178,7 @@ def _nodes2(source: _Source, found: _Contents, parametric: bool) -> None:
     found.points.append(np.array(places, dtype=np.float64).reshape(-1, 3))
 
 
-def _nodes4(source: _Source, found: _Contents, version: float) -> None:
+def _nodes4(source: Source, found: _Contents, version: float) -> None:
     blocks = source.take("zz" if version < 4.1 else "zzzz")[0]
     for _ in range(source.count("blocks of nodes", blocks, 7)):
         if version < 4.1:
@@ -365,7 +196,7 @@ def _nodes4(source: _Source, found: _Contents, version: float) -> None:
         found.points.append(points[:, :3])
 
 
-def _type(source: _Source, code: int) -> tuple[int, int]:
+def _type(source: Source, code: int) -> tuple[int, int]:
     """Dimension and nodes of a type of element that is read."""
     if code not in TYPES:
         raise source.fault(f"elements of type {code}; those of first and second order are read")
@@ -375,10 +206,10 @@ def _type(source: _Source, code: int) -> tuple[int, int]:
     return dimension, nodes
 
 
-def _elements2(source: _Source, found: _Contents) -> None:
+def _elements2(source: Source, found: _Contents) -> None:
     line = source.text()
     if not line.isdigit():
-        raise source.fault(f"{_shown(line)} stands where the number of elements should")
+        raise source.fault(f"{shown(line)} stands where the number of elements should")
     n = source.count("elements", int(line[:18]), 8)
     gathered: dict[tuple[int, int], list[Index]] = {}  # by type and number of tags
     if source.binary:
@@ -397,7 +228,7 @@ def _elements2(source: _Source, found: _Contents) -> None:
             for at, row in enumerate(rows):
                 if len(row) < 4 or not (row[1].isdigit() and row[2].isdigit() and len(row[1] + row[2]) < 9):
                     source.line += at + 1 - len(rows)
-                    raise source.fault(f"{_shown(b' '.join(row))} stands where an element should")
+                    raise source.fault(f"{shown(b' '.join(row))} stands where an element should")
                 if (row[1], row[2]) not in sorted_rows:
                     sorted_rows[row[1], row[2]] = []
                 sorted_rows[row[1], row[2]].append(row)
@@ -420,7 +251,7 @@ def _elements2(source: _Source, found: _Contents) -> None:
             found.blocks.append(_Block(code, some[:, 0], some[:, 1 + tags :], (g,) if g else (), e))
 
 
-def _elements4(source: _Source, found: _Contents, version: float) -> None:
+def _elements4(source: Source, found: _Contents, version: float) -> None:
     blocks = source.take("zz" if version < 4.1 else "zzzz")[0]
     for _ in range(source.count("blocks of elements", blocks, 7)):
         if version < 4.1:

@@ -10,7 +10,7 @@ from itertools import islice
 from pathlib import Path
 
 from bearingdyn.fem.abaqus_input import real, whole
-from bearingdyn.fem.mesh_files.numbered import Numbered
+from bearingdyn.fem.mesh_files.numbered_elements import Numbered
 from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
 
 # I-deas goes round a face, corner and middle in turn; which of its nodes is each of ours
@@ -25,7 +25,7 @@ OLD = {15: 2411, 781: 2411, 71: 2412, 780: 2412, 2429: 2477, 2430: 2477, 2432: 2
 
 
 def read_unv(path: Path) -> RawMesh:
-    """The mesh of a universal file; groups of elements are regions and surfaces, else the properties are.
+    """The mesh of a universal file of I-deas; groups of elements are regions and surfaces, else properties.
 
     Raises
     ------

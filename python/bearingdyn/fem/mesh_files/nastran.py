@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from bearingdyn.fem.abaqus_input import real, whole
-from bearingdyn.fem.mesh_files.numbered import Numbered
+from bearingdyn.fem.mesh_files.numbered_elements import Numbered
 from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
 
 BRICK = [
@@ -39,7 +39,7 @@ CONTINUATIONS = 100  # of a card that is read; a brick has two
 
 
 def read_bdf(path: Path) -> RawMesh:
-    """The mesh of a file of bulk data: GRID, CTETRA, CHEXA, CPENTA, CPYRAM and shells.
+    """The mesh of Nastran's bulk data: GRID, CTETRA, CHEXA, CPENTA, CPYRAM and shells.
 
     Raises
     ------

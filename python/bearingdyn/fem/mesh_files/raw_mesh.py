@@ -17,7 +17,7 @@ LESS = {27: 20, 18: 15, 14: 13}  # nodes of an element, and of the one without m
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RawMesh:
-    """Nodes, solid elements of one kind or more, and sets, unchecked.
+    """A raw mesh, as a file gives it: nodes, solid elements of one kind or more, and sets, unchecked.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def finished(
     drop_unconnected: bool,
     largest: float,
 ) -> SolidMesh:
-    """The mesh in m, second-order and checked; the arguments are those of `read_mesh`."""
+    """A raw mesh finished: in m, second-order and checked; the arguments are those of `read_mesh`."""
     positive("scale", scale, "it must be the length of the file's unit in m, as 1e-3 for mm")
     points = scale * raw.points
     if not raw.cells:

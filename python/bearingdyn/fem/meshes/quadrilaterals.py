@@ -8,7 +8,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.fem.meshes.revolution_mesh import SAME, RevolutionMesh, shape_functions
+from bearingdyn.fem.meshes.quadrilateral_element import shape_functions
+from bearingdyn.fem.meshes.revolution_mesh import SAME, RevolutionMesh
 from bearingdyn.types import Array, Index
 
 # Place of the corners, the middles of the sides 01, 12, 23, 30 and the centre in RevolutionMesh.elements.
@@ -17,7 +18,7 @@ TURNED = np.array([0, 3, 2, 1, 7, 6, 5, 4, 8])  # the same element numbered the 
 
 
 def quadrilaterals(points: ArrayLike, cells: ArrayLike, region: ArrayLike | None = None) -> RevolutionMesh:
-    """Mesh of a section from arrays, such as meshio's ``mesh.points`` and ``mesh.cells_dict["quad9"]``.
+    """Mesh of a section from arrays of quadrilaterals, such as meshio's ``mesh.cells_dict["quad9"]``.
 
     Parameters
     ----------

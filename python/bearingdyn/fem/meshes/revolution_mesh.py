@@ -11,7 +11,9 @@ from itertools import pairwise
 import numpy as np
 
 from bearingdyn.checks import vector
-from bearingdyn.short import short
+from bearingdyn.fem.meshes.grid_lines import graded_line
+from bearingdyn.fem.meshes.quadrilateral_element import shape_functions
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
 SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
@@ -19,7 +21,7 @@ SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
 
 @dataclass(frozen=True)
 class Rectangle:
-    """Section of a ring: r and z are (from, to), m, with 0 <= r[0] < r[1] and z[0] < z[1].
+    """A rectangle of a revolution mesh: r and z are (from, to), m, with 0 <= r[0] < r[1] and z[0] < z[1].
 
     Parameters
     ----------
@@ -50,21 +52,9 @@ class Rectangle:
 SIDES = np.array([[0, 3, 6], [6, 7, 8], [8, 5, 2], [2, 1, 0]])
 
 
-def lagrange(x: Array) -> tuple[Array, Array]:
-    """Quadratic Lagrange functions of the nodes -1, 0, 1 and their derivatives, (points, 3) each."""
-    N = np.stack([0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)], axis=-1)
-    return N, np.stack([x - 0.5, -2 * x, x + 0.5], axis=-1)
-
-
-def shape_functions(xi: Array, eta: Array) -> tuple[Array, Array, Array]:
-    """Nine functions N, ∂N/∂ξ, ∂N/∂η at points (q,), (q, 9) each, numbered as RevolutionMesh.elements."""
-    (a, da), (b, db) = lagrange(xi), lagrange(eta)
-    return tuple((f[:, :, None] * g[:, None, :]).reshape(-1, 9) for f, g in ((a, b), (da, b), (a, db)))  # type: ignore[return-value]
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RevolutionMesh:
-    """9-node quadrilaterals in (r, z), straight or curved.
+    """Mesh of a body of revolution: 9-node quadrilaterals in (r, z), straight or curved.
 
     Parameters
     ----------
@@ -157,22 +147,6 @@ def _merge(values: Iterable[float], size: float) -> list[float]:
     return lines
 
 
-def graded_line(a: float, b: float, first: float, cap: float, growth: float) -> Array:
-    """Points from a to b, symmetric: steps near `first` at the ends, growing by `growth` up to `cap`."""
-    steps: list[float] = []
-    step, reach, half = min(first, cap), 0.0, 0.5 * (b - a)
-    while reach < half:
-        steps.append(step)
-        reach += step
-        step = min(step * growth, cap)
-    sizes = np.array(steps) * (half / reach)
-    left = np.concatenate([[0.0], np.cumsum(sizes)])
-    points = np.concatenate([left[:-1], [half], 2 * half - left[-2::-1]])
-    points += a
-    points[0], points[-1] = a, b
-    return points
-
-
 def _grid(
     cuts: Sequence[float], spans: Sequence[tuple[float, float, bool]], thin: float, refinement: float
 ) -> Array:
@@ -221,7 +195,7 @@ def revolution_mesh(
     z_cuts: Iterable[float] = (),
     z_near: Iterable[float] = (),
 ) -> RevolutionMesh:
-    """Mesh a union of rectangles with grid lines along all their sides.
+    """Mesh a body of revolution, a union of rectangles, with grid lines along all their sides.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ PYRAMID_SPAN = (
 
 @dataclass(frozen=True)
 class SolidElement:
-    """A kind of element.
+    """A kind of second-order solid element: its nodes, edges and faces.
 
     Parameters
     ----------
@@ -119,7 +119,18 @@ FACE_INTERPOLATION = {6: "ElementTriP2", 8: "ElementQuadS2", 9: "ElementQuad2"}
 
 
 def by_size(faces: Index) -> list[tuple[Index, int]]:
-    """Rows of triangles and of quadrilaterals among faces (f, w), and how many nodes such a face has."""
+    """Faces of solid elements parted into triangles and quadrilaterals.
+
+    Parameters
+    ----------
+    faces
+        Nodes (f, w) of the faces; a triangle among quadrilaterals repeats its last node.
+
+    Returns
+    -------
+    list of (Array, int)
+        Rows of each kind that there is, and how many nodes such a face has: 6, 8 or 9.
+    """
     width = faces.shape[1]
     if width == 6:
         return [(np.arange(len(faces)), 6)]
@@ -161,7 +172,7 @@ def _spanned(kind: SolidElement, X: Array) -> tuple[Array, Array]:
 
 
 def shapes(kind: SolidElement, X: Array) -> tuple[Array, Array]:
-    """Shape functions (q, k) and their gradients (q, k, 3) at points X (q, 3) of the unit element."""
+    """Shape functions (q, k) of a solid element and gradients (q, k, 3) at points X (q, 3)."""
     if isinstance(kind.interpolation, str):
         return _shapes(kind.interpolation, kind.places, X)
     nodal = np.linalg.inv(_spanned(kind, kind.places)[0])
@@ -170,7 +181,22 @@ def shapes(kind: SolidElement, X: Array) -> tuple[Array, Array]:
 
 
 def face_shapes(nodes: int, X: Array) -> tuple[Array, Array]:
-    """Shape functions (q, f) and gradients (q, f, 2) of a face of 6, 8 or 9 nodes at X (q, 2)."""
+    """Shape functions and gradients of a solid element's face.
+
+    Parameters
+    ----------
+    nodes
+        Of the face: 6 of a triangle, 8 or 9 of a quadrilateral.
+    X
+        Points (q, 2) of the unit triangle or square.
+
+    Returns
+    -------
+    N : Array
+        (q, nodes).
+    gradient : Array
+        (q, nodes, 2).
+    """
     c = np.array([(0, 0), (1, 0), (0, 1)] if nodes == 6 else [(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
     middles = 0.5 * (c + np.roll(c, -1, axis=0))
     places = np.vstack([c, middles, c.mean(axis=0)[None]])[:nodes]
@@ -178,7 +204,7 @@ def face_shapes(nodes: int, X: Array) -> tuple[Array, Array]:
 
 
 def gauss(n: int, dimensions: int) -> tuple[Array, Array]:
-    """Gauss points (n^d, d) and weights of the unit square or cube, n a direction."""
+    """Gauss points (n^d, d) and weights of a solid element's unit square or cube, n a direction."""
     x, w = np.polynomial.legendre.leggauss(n)
     grid = np.meshgrid(*[0.5 * (x + 1.0)] * dimensions, indexing="ij")
     weights = np.meshgrid(*[0.5 * w] * dimensions, indexing="ij")
@@ -186,7 +212,7 @@ def gauss(n: int, dimensions: int) -> tuple[Array, Array]:
 
 
 def simplex_points(dimensions: int) -> tuple[Array, Array]:
-    """Points (q, d) and weights of the unit triangle or tetrahedron, exact to order 4 (scikit-fem's)."""
+    """Points (q, d), weights of a solid element's unit triangle or tetrahedron, exact to order 4."""
     import skfem
     from skfem.quadrature import get_quadrature
 
@@ -195,7 +221,7 @@ def simplex_points(dimensions: int) -> tuple[Array, Array]:
 
 
 def points(kind: SolidElement, reduced: bool = False) -> tuple[Array, Array]:
-    """Integration points (q, 3) and weights, exact for straight edges.
+    """Integration points (q, 3) of a solid element and weights, exact for straight edges.
 
     Bricks 3×3×3, reduced 2×2×2; tetrahedra to order 4; wedges those of the triangle times 3; pyramids
     3×3×4 of a brick whose top shrinks to the tip, where their rational functions are polynomials.
@@ -215,5 +241,5 @@ def points(kind: SolidElement, reduced: bool = False) -> tuple[Array, Array]:
 
 
 def face_points(nodes: int) -> tuple[Array, Array]:
-    """Integration points (q, 2) and weights of a face of 6, 8 or 9 nodes."""
+    """Integration points (q, 2) of a solid element's face of 6, 8 or 9 nodes, and weights."""
     return simplex_points(2) if nodes == 6 else gauss(3, 2)

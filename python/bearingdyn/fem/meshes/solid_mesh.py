@@ -34,7 +34,7 @@ MIDDLE = 0.3  # a middle node may lie this far from the middle of its edge, in l
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceSamples:
-    """A surface by its integration points: Σ weights·f is ∫ f dA.
+    """A surface of a solid mesh by its integration points: Σ weights·f is ∫ f dA.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class SurfaceSamples:
 
 @dataclass(frozen=True, eq=False)
 class SolidMesh:
-    """Second-order solid elements that hang together.
+    """A mesh of a solid: second-order elements that hang together, regions, surfaces.
 
     They are 27-node bricks, or 20-node bricks, 15-node wedges, 13-node pyramids and 10-node tetrahedra, of
     one kind or mixed.
@@ -428,7 +428,7 @@ class SolidMesh:
 
 
 def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Array, Index, Index]:
-    """Middle nodes for straight-edged bricks, wedges, pyramids or tetrahedra.
+    """A mesh of straight-edged solid elements made second-order, with middle nodes.
 
     Parameters
     ----------
@@ -463,7 +463,7 @@ def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Array, Index, I
 
 
 def merged(points: ArrayLike, tolerance: float) -> tuple[Array, Index]:
-    """Points with those closer than the tolerance made one; and for each given point its new number."""
+    """Points of a solid mesh with those closer than the tolerance made one; and each point's new number."""
     p = np.asarray(points, dtype=np.float64)
     pairs = cKDTree(p).query_pairs(tolerance, output_type="ndarray")
     graph = scipy.sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(p),) * 2)

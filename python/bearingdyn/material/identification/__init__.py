@@ -4,6 +4,6 @@
 two stages of the fit that `fit` makes of them.
 """
 
-from bearingdyn.material.identification.fit import fit_dense, fit_maxwell
+from bearingdyn.material.identification.fit_master_curve import fit_dense, fit_maxwell
 
 __all__ = ["fit_dense", "fit_maxwell"]

@@ -13,7 +13,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True)
 class Limits:
-    """Bounds of the strengths (spring, branches, dashpot; n + 2) and of ln τ (n); equal where fixed."""
+    """Bounds of a fit: strengths (spring, branches, dashpot; n + 2) and ln τ (n); equal where fixed."""
 
     lower: Array
     upper: Array

@@ -9,14 +9,14 @@ import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.material.identification.bounds import Limits
-from bearingdyn.material.identification.points import PIN_WEIGHT, Points
-from bearingdyn.material.spectrum import branch_columns, branch_slopes
+from bearingdyn.material.identification.points_in_band import PIN_WEIGHT, Points
+from bearingdyn.material.relaxation_spectrum import branch_columns, branch_slopes
 from bearingdyn.types import Array, Index
 
 
 @dataclass(frozen=True)
 class Polished:
-    """A fit: strengths (spring, branches, dashpot), times in rising order, and the problem around it.
+    """A polished fit: strengths (spring, branches, dashpot), times rising, and the problem around it.
 
     `names` are those of the columns of `jacobian`, all logarithms; `theta` has their values. Rows are the
     deviations of ln G′, those of ln tan δ, and that of the pin, weighted, if there is one.
@@ -38,7 +38,7 @@ class Polished:
 
 
 def polish(points: Points, limits: Limits, tau: Array, strengths: Array) -> Polished:
-    """Least squares of the deviations of ln G′ and ln tan δ over the logarithms of all that is not zero.
+    """Polish a fit: least squares of the deviations of ln G′ and ln tan δ over all logarithms together.
 
     A branch without strength is left out, unless its strength is bounded from below.
     """

@@ -6,8 +6,8 @@ import numpy as np
 import scipy
 
 from bearingdyn.material.identification.bounds import Limits
-from bearingdyn.material.identification.points import MARGIN, PIN_WEIGHT, Points
-from bearingdyn.material.spectrum import Strengths, branch_columns, branch_slopes, solve_strengths
+from bearingdyn.material.identification.points_in_band import MARGIN, PIN_WEIGHT, Points
+from bearingdyn.material.relaxation_spectrum import Strengths, branch_columns, branch_slopes, solve_strengths
 from bearingdyn.types import Array
 
 

@@ -30,7 +30,7 @@ _STEP_HEAD = re.compile(r"^\[(.+)\]$")
 
 @dataclass(frozen=True)
 class Block:
-    """One header, the rows below it down to the next, and its columns.
+    """A block: one header, the rows below it down to the next, and its columns.
 
     Attributes
     ----------
@@ -92,12 +92,12 @@ class Block:
 
 
 def cell_at(cells: Sequence[str], index: int) -> str:
-    """A cell, empty where the row is too short."""
+    """A cell of a block's row, empty where the row is too short."""
     return cells[index].strip() if index < len(cells) else ""
 
 
 def find_blocks(source: Source, request: Request) -> list[Block]:
-    """The blocks of a source, from top to bottom.
+    """The blocks of a source, headers with the rows below them, from top to bottom.
 
     Raises
     ------

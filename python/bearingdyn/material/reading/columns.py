@@ -118,7 +118,7 @@ class Column:
 
 
 def title_of(cell: str) -> tuple[str, str]:
-    """Name and unit of a header cell."""
+    """Title of a column: name and unit of a header cell."""
     text = cell.strip().strip('"') if cell.count('"') == 2 else cell.strip()
     text = re.sub("[’′´`]", "'", re.sub("[″”“]", '"', text)).replace("''", '"')
     bracket = re.search(r"[\[(]([^\[\]()]*)[\])]\s*$", text)
@@ -259,7 +259,7 @@ def columns_of(
 
 
 def choose(columns: Mapping[str, Column]) -> tuple[str, ...] | None:
-    """Frequency and the pair of moduli a header offers, or time and relaxation modulus; None if neither."""
+    """The columns chosen: frequency and a pair of moduli, or time and relaxation modulus; None if neither."""
     if not {"frequency", "angular"} & columns.keys():
         return RELAXATION if set(RELAXATION) <= columns.keys() else None
     frequency = next((q for q in ("frequency", "angular") if q in columns), None)
@@ -268,12 +268,12 @@ def choose(columns: Mapping[str, Column]) -> tuple[str, ...] | None:
 
 
 def names_shear(text: str) -> bool:
-    """Whether a text speaks of shear: torque, plates, a cone."""
+    """Whether the title of a column, or another text, speaks of shear: torque, plates, a cone."""
     return bool(_SHEAR_SIGNS.search(text))
 
 
 def number_of(cell: str) -> float:
-    """Number in a cell, decimal comma or point; ValueError if there is none."""
+    """The number in a cell of a column, decimal comma or point; ValueError if there is none."""
     text = cell.strip().strip('"').replace("−", "-")
     if "," in text and "." not in text:
         text = text.replace(",", ".")
@@ -287,7 +287,7 @@ def number_of(cell: str) -> float:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell holds a number."""
+    """Whether a cell of a column holds a number."""
     try:
         number_of(cell)
     except ValueError:

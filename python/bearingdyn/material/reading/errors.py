@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 class ReadingError(ValueError):
-    """A table cannot be read as it stands.
+    """An error of reading: a table cannot be read as it stands.
 
     Attributes
     ----------
@@ -20,15 +20,15 @@ class ReadingError(ValueError):
 
 
 class HeaderError(ReadingError):
-    """No header names the columns that are needed; another sheet of the file may hold the table."""
+    """An error of reading: no header names the columns needed; another sheet may hold the table."""
 
 
 class NoStepError(HeaderError):
-    """No step of a source is the one that is wanted; another sheet may have it."""
+    """An error of reading: no step of a source is the one that is wanted; another sheet may have it."""
 
 
 def together(where: str, faults: Sequence[ReadingError]) -> ReadingError:
-    """All faults of one place as one error, which says the place once."""
+    """All errors of reading at one place as one error, which says the place once."""
     texts = [str(fault) for fault in faults]
     message = "; ".join([texts[0], *(text.removeprefix(f"{where}, ") for text in texts[1:])])
     kind = HeaderError if any(isinstance(fault, HeaderError) for fault in faults) else ReadingError

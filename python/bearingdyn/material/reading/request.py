@@ -16,7 +16,7 @@ Step = str | int | Sequence[str | int]
 
 @dataclass(frozen=True)
 class Request:
-    """How a table is to be read; the arguments of :func:`read_dma` of the same names.
+    """What is requested of the reader: how to read a table; the arguments of :func:`read_dma`.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ _SEPARATORS = ("\t", ";", ",")
 
 @dataclass(frozen=True)
 class Row:
-    """A row by its number in the file, 1 the first: the line of a text, or the cells of a sheet."""
+    """A row of a source by its number in the file, 1 the first: a line of text, or the cells of a sheet."""
 
     number: int
     text: str
@@ -34,7 +34,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Source:
-    """Rows that are not blank, and what they come from.
+    """A source: its rows that are not blank, and what they come from.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Splitter:
-    """How the lines of a table come apart; blanks between cells if the separator is one."""
+    """How the lines of a source come apart; blanks between cells if the separator is one."""
 
     separator: str
     quoted: bool
@@ -93,7 +93,7 @@ class Splitter:
 
 
 def read_source(path: Path) -> list[Source]:
-    """The sheets of a file: one for a text, several for a spreadsheet.
+    """The sources in a file: one for a text, one for each sheet of a spreadsheet.
 
     ValueError naming the file if it is binary, of unknown encoding, a spreadsheet that cannot be read, or
     empty.
@@ -235,7 +235,7 @@ def _text(value: Any) -> str:
 
 
 def source_of(data: Any) -> Source:
-    """A pandas frame, a mapping of columns, or an array (n, 4) of frequency Hz, temperature °C, moduli Pa.
+    """The source that is a frame, a mapping, or an array (n, 4): frequency Hz, temperature °C, moduli Pa.
 
     ValueError if it is none of these, or the columns differ in length.
     """

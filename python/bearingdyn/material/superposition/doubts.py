@@ -26,7 +26,7 @@ def doubt_law(
     by_law: tuple[float, float],
     by_shifts: tuple[float, float],
 ) -> None:
-    """Warn of a law that renders the shifts far worse than they are known.
+    """Doubt a law: warn where it renders the shifts far worse than they are known.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def doubt_law(
 
 
 def doubt_steps(source: str, T: Array, shifts: Array) -> None:
-    """Warn of shifts, decades at T °C, that zigzag or rise, naming the temperatures."""
+    """Doubt shifts, decades at T °C: warn where they zigzag or rise, naming the temperatures."""
     step = np.diff(shifts)
     rate = step / np.diff(T)
     odd = step > _UNEVEN_DECADES
@@ -74,7 +74,7 @@ def doubt_steps(source: str, T: Array, shifts: Array) -> None:
 
 
 def doubt_runs(dma: DMAData) -> None:
-    """Warn of points of several runs that nobody chose, with what they say where they overlap."""
+    """Doubt points of several runs that nobody chose: warn, with what they say where they overlap."""
     if dma.run is None or dma.runs_chosen:
         return
     names = list(dict.fromkeys(dma.run.tolist()))

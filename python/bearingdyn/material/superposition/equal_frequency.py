@@ -28,12 +28,12 @@ _CELL = 0.02  # decades, 5 %: drives miss their frequency
 
 
 def cells_of(frequency: Array) -> NDArray[np.int64]:
-    """Number of the cell of 5 % each frequency lies in."""
+    """Number of the cell of 5 % in which each frequency lies: points in one cell are of equal frequency."""
     return np.asarray(np.round(np.log10(frequency) / _CELL), dtype=np.int64)
 
 
 def at_odds(dma: DMAData) -> NDArray[np.bool_]:
-    """Points, (n,), at frequencies of the machine where the isotherms contradict each other; moduli positive.
+    """Points, (n,), at which isotherms contradict each other at equal frequency of the machine.
 
     The largest deviation is taken out with its flanks, and the rest judged again, as a resonance spoils the
     shifts too.

@@ -18,14 +18,14 @@ import scipy
 from numpy.typing import NDArray
 
 from bearingdyn.material.dma import DMAData
-from bearingdyn.material.shift_laws import WLF
-from bearingdyn.material.spectrum import (
+from bearingdyn.material.relaxation_spectrum import (
     Strengths,
     branch_columns,
     branch_slopes,
     dense_times,
     solve_strengths,
 )
+from bearingdyn.material.shift_laws import WLF
 from bearingdyn.types import Array
 
 _SEARCH, _FINE = 5, 12  # times per decade while the prior is chosen, and at the end
@@ -39,7 +39,7 @@ _STRONG, _WEAKER, _RUNGS, _FLAT = 10.0, 1.6, 12, 2e-3
 
 @dataclass(frozen=True)
 class Superposed:
-    """What :class:`Superposition` finds: decades (k,), (k,), (n,); rms relative misfit of G′ and G″."""
+    """Free shifts that superpose: decades (k,), (k,), (n,); rms relative misfit of G′ and G″."""
 
     shifts: Array
     errors: Array
@@ -49,7 +49,7 @@ class Superposed:
 
 
 class Superposition:
-    """Least squares of the relative deviations of G′ and G″ over the shifts of the isotherms.
+    """Least squares of the relative deviations of G′ and G″ over the free shifts of the isotherms.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def _curvature(T: Array) -> Array:
 
 
 def first_shifts(dma: DMAData) -> Array:
-    """First guess of the shifts, decades, (k,), the coldest at zero.
+    """First guess of the free shifts, decades, (k,), the coldest at zero.
 
     From the overlap of neighbours; by the best of a grid of WLF laws where neighbours barely overlap.
     """

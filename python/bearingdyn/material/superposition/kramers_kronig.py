@@ -30,7 +30,7 @@ _ISOTHERMS = 4  # with fewer, what stays at one frequency cannot be told from wh
 
 @dataclass(frozen=True)
 class Suspect:
-    """A point that no passive material could give.
+    """A point that, by Kramers and Kronig, no passive material could give.
 
     Attributes
     ----------
@@ -49,11 +49,21 @@ class Suspect:
 
 
 def kk_ratio(dma: DMAData) -> Array:
-    """Local Kramers–Kronig ratio G″/((π/2) dG′/d ln ω) of every point, (n,).
+    """Local Kramers–Kronig ratio G″/((π/2) dG′/d ln ω) of every point.
 
     The derivative is that of a parabola through ln G′ against ln ω of the same isotherm, over half a decade
-    to either side and five points at least, weighed by distance. NaN where the isotherm has fewer than three
-    frequencies, the moduli are not positive, or G′ does not rise.
+    to either side and five points at least, weighed by distance.
+
+    Parameters
+    ----------
+    dma
+        The measurement.
+
+    Returns
+    -------
+    Array
+        (n,); NaN where the isotherm has fewer than three frequencies, the moduli are not positive, or G′ does
+        not rise.
     """
     ratio = np.full(dma.frequency.size, np.nan)
     for k in range(int(dma.labels.max()) + 1):
@@ -76,12 +86,25 @@ def kk_ratio(dma: DMAData) -> Array:
 
 
 def suspects(dma: DMAData) -> tuple[NDArray[np.bool_], tuple[Suspect, ...]]:
-    """Points that no passive material could give: mask (n,), and what is wrong with each.
+    """Points that, by Kramers and Kronig, no passive material could give.
 
-    Negative (or zero) moduli always; and, with four isotherms or more, every point from the frequency on
-    from which the median ratio over the isotherms exceeds 1.5 up to the highest one, two frequencies at
-    least, unless it does so at all frequencies: then it is the material. Then every frequency at which the
-    isotherms contradict each other at equal reduced frequency (:func:`at_odds`): a resonance inside the band.
+    Negative (or zero) moduli are always among them. With four isotherms or more, so is every point from the
+    frequency on at which the median ratio over the isotherms exceeds 1.5, provided that it does so up to the
+    highest frequency, and at two frequencies at least. If it does so at all frequencies, the material is like
+    that. Then comes every frequency at which the isotherms contradict each other at equal reduced frequency:
+    a resonance inside the band.
+
+    Parameters
+    ----------
+    dma
+        The measurement.
+
+    Returns
+    -------
+    mask : Array
+        (n,) bool.
+    found : tuple of Suspect
+        What is wrong with each.
     """
     ratio = kk_ratio(dma)
     negative = ~((dma.storage > 0) & (dma.loss > 0))
@@ -123,7 +146,7 @@ def _median(ratio: Array) -> float:
 
 
 def summary(found: tuple[Suspect, ...]) -> str:
-    """How many points are flagged and why, in words."""
+    """How many points fail Kramers' and Kronig's relations and why, in words."""
     parts = []
     for reason in ("negative modulus", "fixture resonance"):
         those = [s for s in found if s.reason == reason]

@@ -82,7 +82,7 @@ def _numbers(name: LawName) -> int:
 
 
 def require_isotherms(name: LawName, count: int) -> None:
-    """ValueError if so many isotherms cannot determine the law and its offset."""
+    """ValueError if so many isotherms cannot determine the fit of a law and its offset."""
     needed = _numbers(name) + 1
     if count < max(2, needed):
         raise ValueError(
@@ -91,7 +91,7 @@ def require_isotherms(name: LawName, count: int) -> None:
 
 
 def fit_law(T: Array, shifts: Array, T_ref: float, name: LawName, pinned: bool = False) -> tuple[Law, float]:
-    """Law through shifts, decades, at T, °C, and the shift at T_ref it implies.
+    """Fit a law to shifts, decades, at T, °C; and the shift at T_ref that it implies.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _with_covariance(form: _Form, p: Array, J: Array, variance: float | None) ->
 def fit_law_to_data(
     fit: Superposition, start: Law, T_ref: float, name: LawName
 ) -> tuple[Law, tuple[float, float], Array]:
-    """Law whose shifts superpose the data best, from that of free shifts as a start.
+    """Fit a law whose shifts superpose the data best, from that of free shifts as a start.
 
     Every point is shifted by its own temperature. Returned are the law with its covariance, the rms relative
     misfit of G′ and G″, and the shifts of the points, decades, (n,).

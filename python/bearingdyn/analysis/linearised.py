@@ -1,0 +1,115 @@
+"""The system with its bearings linearised, from which harmonic analyses start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bearingdyn import core
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.static_balance import HOLD
+from bearingdyn.application import COMPONENTS, Application
+from bearingdyn.system import System, natural, system_of
+from bearingdyn.types import Array, Complex
+
+# N/m: a bearing below it holds nothing; κ^(2/3) F^(1/3) of one ball under 1e-9 N is some 1e4 N/m
+IDLE = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """A system with its bearings linearised: K, C (coefs, coefs) on their raceway coefficients."""
+
+    system: System
+    K: Array
+    C: Array
+
+    def solve(
+        self,
+        omega: Array,
+        force: Array,
+        rows: Array,
+        speed: float,
+        progress: core.Progress | None = None,
+    ) -> Complex:
+        """Motions rows (k, n) under forces (i, n) e^{iωt}, (f, k, i); paper (20)."""
+        system = self.system
+        modulus = np.ones((omega.size, len(system.layers)), dtype=np.complex128)
+        for k, layer in enumerate(system.layers):
+            modulus[:, k] = layer.material.complex_modulus(omega)
+        # η0 sits in G*(ω) here, so C is the structure's own
+        x = np.zeros((omega.size, len(rows), len(force)), dtype=np.complex128)
+        for part in (omega > 0, omega == 0):
+            if part.any():
+                held = system if omega[part][0] > 0 else self._held_at_rest(modulus[part][0], force)
+                model = held.model([], relaxed=False)
+                x[part] = core.harmonic(
+                    model, omega[part], modulus[part], self.K, self.C, force, rows, speed, progress
+                )
+        return x
+
+    def _held_at_rest(self, modulus: Complex, force: Array) -> System:
+        """The system with its free motions held, which no force drives; modulus (layers,) at 0 Hz, Pa.
+
+        Raises
+        ------
+        ArithmeticError
+            Where a force drives one: its response is infinite. Names what moves.
+        """
+        system = self.system
+        K = system.K + system.B.T @ self.K @ system.B
+        for layer, G in zip(system.layers, modulus.real, strict=True):
+            K += 2.0 * G * (layer.L @ layer.L.T)
+        squares, shapes = natural(K, system.M)
+        free = shapes[:, squares <= 0.0]
+        if not free.shape[1]:
+            return system
+        drives = force @ free
+        worst = int(np.argmax(np.abs(drives).max(axis=1)))
+        if np.abs(drives[worst]).max() > 1e-9 * np.abs(free).max():
+            ends = np.cumsum([0, *(len(t.B) for t in system.bearings)])
+            idle = [
+                t.name
+                for t, a, b in zip(system.bearings, ends, ends[1:], strict=False)
+                if np.abs(self.K[a:b, a:b]).max(initial=0.0) <= IDLE
+            ]
+            raise ArithmeticError(_freedom(system, free @ drives[worst], idle))
+        held = system.M @ free
+        return replace(system, K=system.K + HOLD * (held @ held.T))
+
+
+def _freedom(system: System, motion: Array, idle: list[str]) -> str:
+    """What is said of a motion (n,) that is free and driven at 0 Hz."""
+    sites = [(name, rows @ motion) for name, rows in system.outputs.items()]
+    name, moved = max(sites, key=lambda site: float(np.abs(site[1]).max()))
+    k = int(np.argmax(np.abs(moved)))
+    place = f"{name}.{COMPONENTS[k]}"
+    hint = f" (no ball of {idle} is pressed: load it)" if idle else ""
+    spins = k == 5 and np.abs(moved[:5]).max() < 1e-6 * abs(moved[5])
+    what = "the shaft is free to spin about z" if spins else f"nothing holds that motion{hint}"
+    spring = ", ".join("k" if i == k else "0" for i in range(6))
+    return (
+        f"frequency is 0 Hz, and a force drives {place}, where {what}: the static response is infinite (the "
+        f"dynamic stiffness is singular); ask from above 0 Hz on, leave that input out, or hold it, as by "
+        f'app.ground("{name}", stiffness=[{spring}])'
+    )
+
+
+def linear(source: Equilibrium | Application | System) -> Linear:
+    """The linearised system that a harmonic analysis starts from.
+
+    Raises
+    ------
+    ValueError
+        For bearings without an equilibrium.
+    """
+    if isinstance(source, Equilibrium):
+        source.warn_of_unloaded()
+        return Linear(source.system, source.bearing_K, source.bearing_C)
+    system = system_of("source", source)
+    if system.bearings:
+        raise ValueError(
+            "bearings have no stiffness of their own; pass bd.equilibrium(app), which linearises them"
+        )
+    return Linear(system, np.zeros((0, 0)), np.zeros((0, 0)))

@@ -1,0 +1,30 @@
+"""The record of a march: samples, unit and sampling time of its channels."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bearingdyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def signal_of(result: xarray.Dataset, channel: str) -> Array:
+    """Samples (n,) of a recorded channel; ValueError for one that was not recorded."""
+    known = [str(c) for c in result["channel"].values]
+    if channel not in known:
+        raise ValueError(f"channel {channel!r} was not recorded; there are {known}")
+    return np.asarray(result["record"].sel(channel=channel).values, dtype=np.float64)
+
+
+def unit_of(result: xarray.Dataset, channel: str) -> str:
+    """Unit of a recorded channel."""
+    return str(result["unit"].sel(channel=channel).item())
+
+
+def sampling_time(result: xarray.Dataset) -> float:
+    """Time between two samples of recorded channels, s."""
+    return float(result.attrs["dt"]) * int(result.attrs["decimate"])

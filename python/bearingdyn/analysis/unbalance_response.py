@@ -1,0 +1,129 @@
+"""The response of a rotor to its own unbalance, speed by speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
+from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, requested
+from bearingdyn.analysis.linearised import linear
+from bearingdyn.analysis.softening import layer_names, moduli_of, softened, warn_of_strain
+from bearingdyn.application import QUANTITIES, Application
+from bearingdyn.checks import name_list, numbers, one_of
+from bearingdyn.system import System
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def unbalance_response(
+    source: Equilibrium | Application | System,
+    speeds: ArrayLike,
+    outputs: Sequence[str],
+    *,
+    quantity: str = "displacement",
+) -> xarray.Dataset:
+    """Synchronous response to all unbalances of an application, with the gyroscopic forces of each speed.
+
+    Parameters
+    ----------
+    source
+        Equilibrium, whose bearings are linearised; or an application or system without bearings. Its
+        unbalances are those of `Application.unbalance`, at their phases.
+    speeds
+        (s,) rad/s of the shaft, ≥ 0; the response has this frequency.
+    outputs
+        Channels of motions and forces, as in `frequency_response`.
+    quantity
+        "displacement", "velocity" or "acceleration", of motions.
+
+    Returns
+    -------
+    xarray.Dataset
+        response (speed, output), complex, zero-to-peak: the motion is Re(response·e^{iΩt}) while the shaft
+        stands at the angle Ωt. Where layers soften (`Maxwell.payne`), they do so with this motion, and strain
+        (speed, layer) is the shear strain amplitude of each.
+
+    Raises
+    ------
+    ValueError
+        For negative speeds, an application without unbalance, an unknown channel or quantity, a part that
+        would turn although its damping is known at rest only.
+    ArithmeticError
+        Where the dynamic stiffness is singular, or the strain of a layer is not found.
+
+    Warns
+    -----
+    BeyondSweep
+        Where a layer's strain leaves the sweep its law of softening comes from.
+    """
+    given = numbers(
+        "speeds", speeds, "speeds must be one or more finite values of zero or more, in rad/s", 0.0
+    )
+    outputs = name_list("outputs", outputs)
+    one_of("quantity", quantity, QUANTITIES)
+    state = linear(source)
+    system = state.system
+    system.check_speed(float(given.max()))
+    loads = [load for load in system.loads if load.kind == "rotating"]
+    if not loads:
+        raise ValueError("there is no unbalance; add one with app.unbalance(place, moment, phase)")
+    wanted = [Output.of(system, name) for name in outputs]
+    rows = requested(wanted, system.n)
+    inputs = [
+        Input(name, force, part=load.part, load=own)
+        for load in loads
+        for name, force, own in (("cos", load.p_cos, load.own_cos), ("sin", load.p_sin, load.own_sin))
+    ]
+    force = np.array([i.force for i in inputs])
+    # p_cos cos Ωt + p_sin sin Ωt = Re (p_cos − i p_sin) e^{iΩt}
+    phase = np.tile([1.0, -1j], len(loads))
+    response = np.zeros((given.size, len(outputs)), dtype=np.complex128)
+    soft, power = layer_names(system), QUANTITIES.index(quantity)
+    strain = np.zeros((given.size, len(soft), 1))
+    for k, speed in enumerate(given):
+        if speed > 0.0:
+            omega, turning = np.array([speed]), float(speed)
+            if soft:
+                drive = speed**2 * phase.reshape(1, -1, 1)  # all together make the strain
+                (found,) = softened(state, omega, force, rows, turning, [drive])
+                strain[k], x = found.strain[0], found.each
+                moduli = moduli_of(system, omega, found.change)
+            else:
+                x, moduli = state.solve(omega, force, rows, turning, None), None
+            unit = recovered(wanted, inputs, x, omega, turning, power, state.K, state.C, moduli)
+            response[k] = speed**2 * (unit[0] @ phase)
+    if soft:
+        warn_of_strain(system, strain)
+
+    from bearingdyn.results import dataset, inputs_of
+
+    units = [o.unit(quantity) for o in wanted]
+    variables: dict[str, Any] = {
+        "response": (
+            ("speed", "output"),
+            response,
+            ", ".join(dict.fromkeys(units)),
+            f"complex {quantity}, zero-to-peak, at the frequency of the speed",
+        )
+    }
+    coords: dict[str, tuple[Any, str]] = {"speed": (given, "rad/s"), "output": (list(outputs), "")}
+    if soft:
+        meaning = "shear strain amplitude of each layer that softens"
+        variables["strain"] = (("speed", "layer"), strain[:, :, 0], "1", meaning)
+        coords["layer"] = (soft, "")
+    made = dataset(
+        variables,
+        {
+            "analysis": "unbalance response",
+            "quantity": quantity,
+            **state_of(source),
+            **inputs_of(system.inputs),
+        },
+        coords,
+    )
+    return made.assign_coords(unit=("output", units, {"units": "", "long_name": "unit of each output"}))

@@ -1,0 +1,441 @@
+"""The application as its user builds it: every call is checked and written into the plan."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bearingdyn.application.channel import GROUND
+from bearingdyn.application.fit_of_neighbours import RINGS, check_bearing, check_connection
+from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
+from bearingdyn.application.loads import Unbalance, in_time
+from bearingdyn.application.part import Part
+from bearingdyn.application.place import GRAVITY
+from bearingdyn.application.plan import Plan
+from bearingdyn.application.summary import summary
+from bearingdyn.bearing import BallBearing, LooseFit, Pair
+from bearingdyn.checks import require
+from bearingdyn.magnitude import plausible
+from bearingdyn.types import Array
+
+
+class Application:
+    """The application: a machine of parts, joints, bearings and loads, by name.
+
+    An interface is named "part.interface", as "shaft.left"; a point that a part offers for output and loads
+    is named in the same manner. Every interface must be joined, grounded, given a bearing, or declared free.
+
+    Names are checked at once, joints when the system is assembled. Either way a ValueError names the part and
+    interface. Lengths, forces and masses are in SI; vectors have the order (x, y, z, θx, θy, θz).
+
+    Attributes
+    ----------
+    plan
+        All that was added, for those who read it.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> app = bd.Application()
+    >>> app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
+    >>> app.ground("mass.centre", stiffness=[1e6] * 6)
+    >>> app.load("mass.centre", (0, -20.0, 0, 0, 0, 0))
+    >>> print(f"{bd.equilibrium(app).displacement('mass.centre')[1] * 1e6:.1f} µm")
+    -20.0 µm
+    """
+
+    def __init__(self) -> None:
+        self.plan = Plan()
+
+    def __repr__(self) -> str:
+        """The summary, or that there is nothing yet."""
+        return self.summary() if self.plan.parts else "<Application without parts>"
+
+    def summary(self) -> str:
+        """What is connected to what, masses, loads, and which motions nothing holds: read it first."""
+        return summary(self.plan)
+
+    def names(self) -> list[str]:
+        """All interfaces and points, "part.name"."""
+        return self.plan.names()
+
+    def mass(self, part: str) -> float | None:
+        """Mass of a part, kg; None where it has no rigid motion of its own.
+
+        Raises
+        ------
+        ValueError
+            If there is no such part.
+        """
+        self.plan.check_part(part)
+        return self.plan.mass(part)
+
+    def add(self, name: str, part: Part) -> None:
+        """Add a part under a name. One object may be added under several names; it is reduced once.
+
+        Parameters
+        ----------
+        name
+            A word without dots, neither "ground" nor "gravity".
+        part
+            Anything with a method `superelement()`, such as a Shaft, a Layer or a Superelement.
+
+        Raises
+        ------
+        ValueError
+            If the name is taken, reserved or has a dot, or the part cannot become a superelement.
+        """
+        plan = self.plan
+        plan.check_new("part", name)
+        if isinstance(part, BallBearing | Pair):
+            raise ValueError(
+                f"part {name!r} is a {type(part).__name__}; hang bearings between parts with "
+                f"app.bearing({name!r}, …, inner=…, outer=…)"
+            )
+        remedy = "it must be a part, such as bd.Shaft(…), bd.RigidBody(…) or bd.Layer(…)"
+        ready = not isinstance(part, type) and callable(getattr(part, "superelement", None))
+        require(ready, f"part {name!r}", part, remedy)
+        twin = next((known for known, source in plan.sources.items() if source is part), None)
+        # the twin's own, before a temperature was put on it
+        plan.reduced[name] = part.superelement() if twin is None else plan.reduced[twin]
+        plan.parts[name] = plan.reduced[name]
+        plan.sources[name] = part
+
+    def connect(self, a: str, b: str, *, fits: bool = True) -> None:
+        """Join two interfaces rigidly: they move as one.
+
+        Parameters
+        ----------
+        a, b
+            The interfaces, "part.interface".
+        fits
+            Whether what is known of both is compared: one must sit in the other. Radii more than 5 % apart
+            are refused, and warned of above 1 %; so are parts that run into a shoulder. False: they are meant
+            to differ.
+
+        Raises
+        ------
+        ValueError
+            If either is unknown or connected already, both are of one part, or they do not fit.
+
+        Warns
+        -----
+        FitWarning
+            Where they hardly fit.
+        """
+        first, second = self.plan.interface(a), self.plan.interface(b)
+        for place in (first, second):
+            partner = self.plan.partners().get(place)
+            if partner is not None:
+                raise ValueError(
+                    f"{place} is connected already, to {partner}; connect the third part to another "
+                    f"interface of either"
+                )
+        joint = Connection(first, second)
+        if fits:
+            check_connection((first, second), (self.plan.faces(first), self.plan.faces(second)))
+        self.plan.connections.append(joint)
+
+    def ground(
+        self,
+        interface: str,
+        stiffness: ArrayLike | None = None,
+        damping: ArrayLike | None = None,
+        offset: ArrayLike | None = None,
+    ) -> None:
+        """Hold an interface: rigidly, or by springs and dampers.
+
+        Parameters
+        ----------
+        interface
+            What is held. Without stiffness and damping it is held rigidly.
+        stiffness, damping
+            (6,) N/m, N m/rad and N s/m, N m s/rad.
+        offset
+            (6,) m and rad, where the springs carry no force: they pull the interface there (preload by
+            displacement). Choose the stiffness of what presses.
+
+        Raises
+        ------
+        ValueError
+            If the interface is unknown or grounded already, a number is negative, or an offset has no spring
+            to act through.
+        """
+        place = self.plan.interface(interface)
+        if place in self.plan.supports:
+            raise ValueError(f"{place} is grounded already; give stiffness and damping in one call")
+        self.plan.supports[place] = Support(place, *(cast(Array, v) for v in (stiffness, damping, offset)))
+
+    def spring(
+        self,
+        a: str,
+        b: str,
+        stiffness: ArrayLike,
+        damping: ArrayLike | None = None,
+        offset: ArrayLike | None = None,
+    ) -> None:
+        """Put six springs and dampers between two interfaces.
+
+        Both references are taken to lie at one place, as in a bush: the springs act on x_a − x_b − offset.
+
+        Parameters
+        ----------
+        a, b
+            The interfaces; b may be "ground".
+        stiffness, damping
+            (6,) N/m, N m/rad and N s/m, N m s/rad.
+        offset
+            (6,) m and rad, preload by displacement.
+
+        Raises
+        ------
+        ValueError
+            If an interface is unknown, both are one, a number is negative, or an offset has no spring to act
+            through.
+        """
+        first, second = self.plan.interface(a), self.plan.interface_or_ground(b)
+        given = (stiffness, *(np.zeros(6) if v is None else v for v in (damping, offset)))
+        self.plan.springs.append(Bush(first, second, *(cast(Array, v) for v in given)))
+
+    def free(self, interface: str) -> None:
+        """Declare that an interface is left unjoined on purpose, or a raceway without balls.
+
+        Raises
+        ------
+        ValueError
+            If there is no such interface or raceway.
+        """
+        place = self.plan.place(interface)
+        if self.plan.raceway(place) is None:
+            self.plan.interface(place)
+        self.plan.free_interfaces.add(place)
+
+    def bearing(
+        self,
+        name: str,
+        bearing: BallBearing,
+        *,
+        inner: str,
+        outer: str,
+        offset: float = 0.0,
+        fits: bool = True,
+    ) -> None:
+        """Hang a bearing between the interfaces of its two rings.
+
+        Parameters
+        ----------
+        name
+            A word without dots.
+        bearing
+            What is hung; of a pair, each row by itself.
+        inner, outer
+            Interfaces of the rings. outer may be "ground", or the raceway of a flexible ring,
+            "ring.raceway", made for this bearing's arm. A ring turns with the shaft where its part does: one
+            with gyroscopic forces, as a Shaft or a rotating RigidBody, or connected to such a part. Where
+            neither is known to turn, the inner ring does. The bearing's `turning` says otherwise.
+        offset
+            How far along z the inner ring sits beyond where it is drawn, m: a spacer or nut that preloads
+            two bearings against each other by displacement.
+        fits
+            Whether bore, outside and width are compared with the seats, as by `connect`; of a bearing without
+            `boundary`, whether the seats leave room for its rings.
+
+        Raises
+        ------
+        ValueError
+            If this is no bearing, a name is unknown or taken, the raceway has another arm, the offset is not
+            finite, or a ring does not fit.
+
+        Warns
+        -----
+        FitWarning
+            Where a ring hardly fits.
+        """
+        self.plan.check_new("bearing", name)
+        ends = self.plan.interface(inner), self.plan.raceway_or_interface(outer)
+        joint = BearingJoint(name, bearing, *ends, offset)
+        self.plan.check_raceway(joint)
+        if fits:
+            for ring, place in zip(RINGS, (joint.inner, joint.outer), strict=True):
+                check_bearing(name, bearing, ring, place, self.plan.faces(place))
+        self.plan.bearings[name] = joint
+
+    def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
+        """Set a flexible ring loosely in a bore.
+
+        Parameters
+        ----------
+        name
+            A word without dots.
+        fit
+            Clearance and contact.
+        ring
+            Outside of the ring, "ring.outside".
+        bore
+            An interface or "ground".
+
+        Raises
+        ------
+        ValueError
+            If this is no loose fit, a name is unknown or taken, or the ring's outside is no raceway.
+        """
+        self.plan.check_new("fit", name)
+        joint = LooseJoint(name, fit, self.plan.place(ring), self.plan.interface_or_ground(bore))
+        if self.plan.raceway(joint.ring) is None:
+            raise ValueError(
+                f'fit {name!r}: {ring!r} is no flexible face; make the ring with outside="flexible" and '
+                f'name its "outside"'
+            )
+        check_connection((joint.ring, joint.bore), (self.plan.faces(joint.ring), self.plan.faces(joint.bore)))
+        if joint.ring in self.plan.raceways_used():
+            raise ValueError(f"fit {name!r}: {ring} is in use already; give each its own")
+        self.plan.fits[name] = joint
+
+    def load(
+        self,
+        where: str,
+        vector: ArrayLike,
+        *,
+        frequency: float | None = None,
+        phase: float = 0.0,
+        time: ArrayLike | None = None,
+        value: ArrayLike | None = None,
+    ) -> None:
+        """Apply a force and moment at an interface or point.
+
+        Without the arguments after `vector` the load is constant. With `frequency` it is
+        vector·cos(2π f t + phase), zero-to-peak. With `time` and `value` it is vector × value(time), linear
+        between the samples; before and after, the end values hold.
+
+        Parameters
+        ----------
+        where
+            The place, "part.place".
+        vector
+            (6,) Fx, Fy, Fz, Mx, My, Mz in N and N m; at a point without rotation the moments must be zero.
+        frequency
+            f, Hz.
+        phase
+            rad.
+        time, value
+            (k,) s, increasing, and factors of the vector.
+
+        Raises
+        ------
+        ValueError
+            For an unknown place, a wrong shape, or an unsorted table.
+        """
+        place = self.plan.place(where)
+        rows = self.plan.rows(place)
+        load = in_time(place, vector, frequency, phase, time, value)
+        if rows.shape[0] == 3 and load.vector[3:].any():
+            raise ValueError(f"load at {where}: the point has no rotation, so its moment must be zero")
+        self.plan.loads.append(load)
+
+    def unbalance(self, where: str, moment: float, phase: float = 0.0) -> None:
+        """Apply an unbalance, which turns with the shaft.
+
+        Parameters
+        ----------
+        where
+            The place, "part.place".
+        moment
+            Mass × eccentricity, kg m.
+        phase
+            Angle from x at which it stands when the shaft stands at zero, rad.
+
+        Raises
+        ------
+        ValueError
+            For an unknown place or a negative moment.
+        """
+        place = self.plan.place(where)
+        self.plan.rows(place)
+        self.plan.loads.append(Unbalance(place, moment, phase))
+
+    def gravity(self, acceleration: ArrayLike) -> None:
+        """Give every part its weight.
+
+        Parameters
+        ----------
+        acceleration
+            (3,) of a falling body, m/s², such as (0, -9.81, 0).
+
+        Raises
+        ------
+        ValueError
+            For a wrong shape, or if there is gravity already.
+        """
+        if any(load.where == GRAVITY for load in self.plan.loads):
+            raise ValueError("gravity is given already; one acceleration holds for all parts")
+        self.plan.loads.append(in_time(GRAVITY, acceleration))
+
+    def base_motion(
+        self,
+        acceleration: ArrayLike,
+        *,
+        frequency: float | None = None,
+        phase: float = 0.0,
+        time: ArrayLike | None = None,
+        value: ArrayLike | None = None,
+    ) -> None:
+        """Move the ground, all of it together without turning.
+
+        Everything is then reckoned relative to the moving ground, where each part feels −M R ü, R its rigid
+        translation. This is exact, for the supports see the relative motion alone. Recorded motions are
+        relative too.
+
+        Parameters
+        ----------
+        acceleration
+            (3,) m/s².
+        frequency, phase, time, value
+            Its course in time, as in `load`.
+
+        Raises
+        ------
+        ValueError
+            For a wrong shape or an unsorted table.
+        """
+        self.plan.loads.append(in_time(GROUND, acceleration, frequency, phase, time, value))
+
+    def temperature(self, part: str, T: float) -> None:
+        """Put a part's viscoelastic materials at a temperature, by the shift law of each.
+
+        Parameters
+        ----------
+        part
+            Name of the part.
+        T
+            °C; a second call replaces the first. Outside the isotherms a material's law was found from, a
+            warning (OutsideIsotherms) says so.
+
+        Raises
+        ------
+        ValueError
+            For an unknown part, one without viscoelastic material, or a material without law.
+        """
+        self.plan.check_part(part)
+        element = self.plan.parts[part]
+        if not element.viscoelastic:
+            raise ValueError(f"part {part!r} has no viscoelastic material; a temperature changes nothing")
+        T = plausible(
+            "temperature", f"temperature of part {part!r}", T, "it must be one finite number, in °C"
+        )
+        moved = []
+        for term in element.viscoelastic:
+            at = getattr(term.material, "at", None)
+            if at is None:
+                raise ValueError(
+                    f"part {part!r}: {type(term.material).__name__} has no shift law; use a Maxwell model "
+                    f"with one"
+                )
+            try:
+                moved.append(replace(term, material=at(T)))
+            except ValueError as error:
+                raise ValueError(f"part {part!r} at {T} °C: {error}") from None
+        self.plan.parts[part] = replace(element, viscoelastic=tuple(moved))
+        self.plan.temperatures[part] = T

@@ -1,0 +1,188 @@
+"""The damping of a contact: its laws over the approach, and its value in a lubricated contact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bearingdyn.bearing.film_thickness import film_scales
+from bearingdyn.bearing.hertz import PointContact, resultant_deflection_coefficient
+from bearingdyn.checks import nonnegative, number, positive, require, vector
+from bearingdyn.magnitude import plausible
+from bearingdyn.short_repr import short
+from bearingdyn.types import Array
+
+
+def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) -> float:
+    """Damping of one ball from its two contacts in series, each a pair (κ in N/m^1.5, c in N s/m), N s/m.
+
+    Spring and damper pairs in series, c = k²(c_i/k_i² + c_o/k_o²) with k ∝ κ^{2/3} under one force, as long
+    as the dampers carry little of it (ω ≪ k/c).
+
+    Parameters
+    ----------
+    inner
+        (κ, c) of the inner contact, N/m^1.5 and N s/m.
+    outer
+        (κ, c) of the outer contact.
+
+    Raises
+    ------
+    ValueError
+        If κ is not positive or c negative.
+    """
+    kappa = resultant_deflection_coefficient(inner[0], outer[0])
+    return math.fsum(nonnegative("c", c) * math.pow(kappa / k, 4 / 3) for k, c in (inner, outer))
+
+
+Law: TypeAlias = Literal["constant", "table", "load"]
+KernelFields: TypeAlias = tuple[Law, float, Array]
+
+
+@dataclass(frozen=True)
+class ConstantDamping:
+    """Constant damping of a contact, c(δ) = c, N s/m. The force jumps where contact is lost.
+
+    At the edge of the film, δ + h0 = 0, the law is taken in its set-valued sense: F is any force in
+    [0, c dδ/dt] there, and a step of a march that ends in the jump finds the one that balances. A table with
+    c > 0 at that place is treated likewise.
+
+    Raises
+    ------
+    ValueError
+        If c is negative or not finite.
+    """
+
+    c: float
+
+    def __post_init__(self) -> None:
+        c = nonnegative("damping.c", self.c, "the damping of one ball in N s/m must be zero or positive")
+        plausible("contact damping", "damping.c", c)
+
+    def kernel_fields(self) -> KernelFields:
+        """Law, constant and table as the kernel takes them."""
+        return "constant", float(self.c), np.zeros((0, 2))
+
+
+@dataclass(frozen=True, eq=False)
+class TabulatedDamping:
+    """Damping of a contact by a table, c(δ) linear between its points, end values held outside.
+
+    At an inner table point the slope is that of the interval below it.
+
+    Parameters
+    ----------
+    delta
+        (n,) contact indentations δ (film not included), m, strictly increasing, n ≥ 2.
+    c
+        (n,) damping of one ball, N s/m, ≥ 0.
+
+    Raises
+    ------
+    ValueError
+        If the table is unsorted, ragged, too short, negative or not finite.
+    """
+
+    delta: Array
+    c: Array
+
+    __repr__ = short
+
+    def __init__(self, delta: ArrayLike, c: ArrayLike) -> None:
+        n = np.size(delta)
+        require(n >= 2, "damping.delta", delta, "a table needs two points or more (else ConstantDamping)")
+        x = vector("damping.delta", delta, (n,), "indentations in metres")
+        y = vector("damping.c", c, (n,), "one damping in N s/m for each delta")
+        require(bool((np.diff(x) > 0).all()), "damping.delta", delta, "it must be strictly increasing")
+        require(bool((y >= 0).all()), "damping.c", c, "it must be zero or positive")
+        plausible("contact damping", "the largest damping.c", float(y.max()))
+        plausible("offset", "the largest damping.delta", float(np.abs(x).max()))
+        for array in (x, y):
+            array.flags.writeable = False
+        object.__setattr__(self, "delta", x)
+        object.__setattr__(self, "c", y)
+
+    def kernel_fields(self) -> KernelFields:
+        """Law, constant and table as the kernel takes them."""
+        return "table", 0.0, np.column_stack([self.delta, self.c])
+
+
+@dataclass(frozen=True)
+class LoadDamping:
+    """Damping of a contact in step with its stiffness, c(δ) = time·(3/2)κ√(δ + h0); none where it is open.
+
+    Values of (0.25–2.5)e-5 s are quoted for lubricated contacts; unverified here.
+
+    Raises
+    ------
+    ValueError
+        If `time` (s) is negative or not finite.
+    """
+
+    time: float
+
+    def __post_init__(self) -> None:
+        remedy = "the damping time in seconds must be zero or positive"
+        plausible("contact damping time", "damping.time", nonnegative("damping.time", self.time, remedy))
+
+    def kernel_fields(self) -> KernelFields:
+        """Law, constant and table as the kernel takes them."""
+        return "load", float(self.time), np.zeros((0, 2))
+
+
+Damping: TypeAlias = ConstantDamping | TabulatedDamping | LoadDamping
+
+
+def as_damping(damping: object) -> Damping:
+    """A law of contact damping, or a plain number of N s/m as ConstantDamping; ValueError otherwise."""
+    if isinstance(damping, ConstantDamping | TabulatedDamping | LoadDamping):
+        return damping
+    remedy = (
+        "give the damping of one ball in N s/m, zero or positive, "
+        "or ConstantDamping, TabulatedDamping or LoadDamping"
+    )
+    return ConstantDamping(nonnegative("damping", number("damping", damping, remedy), remedy))
+
+
+def wijnant_damping(contact: PointContact, F: float, us: float, eta0: float, alpha: float) -> float:
+    """Damping of one lubricated contact, N s/m, after Y. H. Wijnant (1998). UNVERIFIED.
+
+    c = C (F/δ)(2a/us), C = r M^{−s}, r = .98 − L/60, s = .83 − .008L; δ the dry approach, a the half-width in
+    rolling direction. The form was written from memory and not read again in its source; that its load number
+    is the M of Nijenbanning, Venner and Moes is an assumption of this package. Values of 4 to 15 N s/m are
+    quoted for it.
+
+    Parameters
+    ----------
+    contact
+        Point contact with Rx ≤ Ry.
+    F
+        Load, N.
+    us
+        Sum of the surface speeds u1 + u2, m/s.
+    eta0
+        Dynamic viscosity at ambient pressure, Pa s.
+    alpha
+        Pressure–viscosity coefficient, 1/Pa.
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive, Rx > Ry, or L ≥ 58.8, where r vanishes.
+    """
+    E, Rx = film_scales(contact)
+    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
+    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
+    L = positive("alpha", alpha) * E * speed**0.25
+    require(
+        L < 58.8,
+        "alpha",
+        alpha,
+        f"it must give a lubricant number below 58.8, where the fit of the damping ends; here L is {L:.3g}",
+    )
+    C = (0.98 - L / 60) * M ** -(0.83 - 0.008 * L)
+    return float(C * F / contact.approach(F) * 2 * contact.semi_axes(F)[1] / us)

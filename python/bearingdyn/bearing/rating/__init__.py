@@ -1,0 +1,67 @@
+"""What a bearing is rated for: ratings, equivalent loads, life in a given oil."""
+
+from bearingdyn.bearing.rating.cases import LoadCases, lives, load_cases
+from bearingdyn.bearing.rating.life import (
+    Races,
+    equivalent_ball_loads,
+    life_of_loads,
+    loads_under,
+    race_capacities,
+    rating_life,
+    ratings_of,
+)
+from bearingdyn.bearing.rating.modified import (
+    CONTAMINATION,
+    LEAST_KAPPA,
+    ModifiedLife,
+    Phase,
+    contamination_factor,
+    equivalent_life,
+    fatigue_limit,
+    in_hours,
+    life_factor,
+    modified_life,
+    reference_viscosity,
+    reliability_factor,
+)
+from bearingdyn.bearing.rating.standard import (
+    Ratings,
+    dynamic_factor,
+    dynamic_factors,
+    equivalent_load,
+    equivalent_static_load,
+    iso_ratings,
+    static_factor,
+)
+
+__all__ = [
+    "CONTAMINATION",
+    "LEAST_KAPPA",
+    "LoadCases",
+    "ModifiedLife",
+    "Phase",
+    "Races",
+    "Ratings",
+    "contamination_factor",
+    "dynamic_factor",
+    "dynamic_factors",
+    "equivalent_ball_loads",
+    "equivalent_life",
+    "equivalent_load",
+    "equivalent_static_load",
+    "fatigue_limit",
+    "in_hours",
+    "iso_ratings",
+    "life_factor",
+    "life_of_loads",
+    "lives",
+    "load_cases",
+    "loads_under",
+    "modified_life",
+    "race_capacities",
+    "rating_life",
+    "ratings_of",
+    "reference_viscosity",
+    "reliability_factor",
+    "static_factor",
+]

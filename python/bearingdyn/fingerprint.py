@@ -1,0 +1,250 @@
+"""What something was computed from, as plain data: a text to keep with the result, a hash to know it by.
+
+Dataclasses become their class and fields, arrays their numbers or, where they are large, their digest, and
+functions their name, code, and all that code takes from around it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import dis
+import functools
+import hashlib
+import inspect
+import json
+import logging
+import math
+import os
+import sys
+import sysconfig
+import types
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+# arrays of more numbers than this are told by their digest
+WRITTEN_OUT = 64
+# HDF5 keeps an attribute of up to 64 kB
+LONGEST = 60_000
+
+
+def describe(value: Any, *, strict: bool = True, within: tuple[Any, ...] = ()) -> Any:
+    """A value as JSON's own types, from which its fingerprint is taken: the same for equal values anywhere.
+
+    Numbers, texts, dataclasses, arrays (sparse ones too), mappings, sequences, sets, functions, and objects
+    by their `told_as` where they have it, else by their attributes.
+
+    A function is told by its name, its byte code, defaults, enclosed variables, and the global names it uses:
+    values by their content, functions and classes of the user's own modules by their code in turn, what is
+    installed, and modules, by their names.
+
+    Parameters
+    ----------
+    value
+        Anything a result may be computed from.
+    strict
+        Refuse what has no content to tell it by.
+    within
+        What the value is a part of: one that holds itself is told by its name there.
+
+    Raises
+    ------
+    ValueError
+        For what has no content to tell it by, such as an open file. If not strict, its class stands for it.
+    """
+
+    def told(part: Any) -> Any:
+        return describe(part, strict=strict, within=(*within, value))
+
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else {"float": str(value)}
+    if isinstance(value, complex):
+        return {"complex": [told(value.real), told(value.imag)]}
+    if isinstance(value, bytes | bytearray):
+        return {"bytes": hashlib.sha256(value).hexdigest()}
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, Mapping):
+        return {str(key): told(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [told(item) for item in value]
+    if isinstance(value, set | frozenset):
+        return sorted((told(item) for item in value), key=lambda item: json.dumps(item, sort_keys=True))
+    if isinstance(value, np.ndarray):
+        return _array(value, told)
+    if hasattr(value, "told_as") and not isinstance(value, type):
+        return value.told_as
+    if any(value is whole for whole in within):
+        return {"again": getattr(value, "__qualname__", type(value).__qualname__)}
+    if isinstance(value, types.FunctionType):
+        return _function(value, told)
+    if isinstance(value, type) and not _installed(value.__module__):
+        return _class(value, told)
+    return _object(value, told, strict)
+
+
+def text(value: Any) -> str:
+    """What a fingerprint is taken from, as one line of JSON, not strict; long entries as their hashes."""
+    described = describe(value, strict=False)
+    written = json.dumps(described, sort_keys=True)
+    if len(written) > LONGEST and isinstance(described, dict):
+        share = LONGEST // (2 * len(described))
+        for name, entry in described.items():
+            if len(json.dumps(entry)) > share:
+                described[name] = {"sha256": _digest(entry)}
+        written = json.dumps(described, sort_keys=True)
+    return written if len(written) <= LONGEST else json.dumps({"sha256": _digest(described)})
+
+
+def fingerprint(value: Any) -> str:
+    """Fingerprint (32 hexadecimal digits) of a value's whole content."""
+    return _digest(describe(value))
+
+
+def _digest(described: Any) -> str:
+    return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:32]
+
+
+def _array(value: np.ndarray, told: Callable[[Any], Any]) -> Any:
+    if value.dtype.hasobject or value.size <= WRITTEN_OUT:
+        return [told(item) for item in value.tolist()] if value.ndim else told(value.item())
+    plain = np.ascontiguousarray(value)
+    return {
+        "shape": list(value.shape),
+        "dtype": value.dtype.str,
+        "sha256": hashlib.sha256(plain.tobytes()).hexdigest()[:32],
+    }
+
+
+def _object(value: Any, told: Callable[[Any], Any], strict: bool) -> Any:
+    kind = type(value)
+    name = f"{kind.__module__}.{kind.__qualname__}"
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = {f.name: told(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        return {"class": name, **fields, **_own_code(kind, told)}
+    if isinstance(value, functools.partial):
+        return {"function": told(value.func), "given": told([value.args, value.keywords])}
+    if inspect.ismethod(value):
+        return {"method": told(value.__func__), "of": told(value.__self__)}
+    if isinstance(value, functools._lru_cache_wrapper | staticmethod | classmethod):
+        return {"wrapper": name, "of": told(value.__wrapped__)}
+    if isinstance(value, property):
+        return {"property": told([value.fget, value.fset])}
+    if isinstance(value, types.ModuleType | logging.Logger):
+        return {"class": name, "name": value.__name__ if isinstance(value, types.ModuleType) else value.name}
+    if hasattr(value, "__qualname__"):
+        return f"{value.__module__}.{value.__qualname__}"
+    if hasattr(value, "tocoo"):
+        coo = value.tocoo()
+        return {"class": name, "shape": list(coo.shape), "row": told(coo.row), "col": told(coo.col),
+                "data": told(coo.data)}  # fmt: skip
+    held = {**getattr(value, "__dict__", {})}
+    for slot in (slot for base in kind.__mro__ for slot in _slots(base)):
+        if hasattr(value, slot):
+            held[slot] = getattr(value, slot)
+    if not held and _installed(kind.__module__):
+        if not strict:
+            return {"class": name}
+        raise ValueError(
+            f"{value!r} cannot be told by its content; use numbers, texts, arrays, dataclasses or objects "
+            f"with attributes"
+        )
+    return {"class": name, **{k: told(v) for k, v in held.items()}, **_own_code(kind, told)}
+
+
+def _own_code(kind: type, told: Callable[[Any], Any]) -> dict[str, Any]:
+    return {} if _installed(kind.__module__) else {"code": told(kind)}
+
+
+def _slots(kind: type) -> tuple[str, ...]:
+    slots = vars(kind).get("__slots__", ())
+    return (
+        (slots,)
+        if isinstance(slots, str)
+        else tuple(s for s in slots if s not in ("__dict__", "__weakref__"))
+    )
+
+
+@functools.lru_cache(maxsize=1000)
+def _installed(module: str) -> bool:
+    """Whether a module came with Python or a package, whose version stands for its code."""
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if module.partition(".")[0] == __name__.partition(".")[0]:
+        return True
+    if file is None:
+        return module not in ("__main__", "__mp_main__")
+    places = {os.path.realpath(sysconfig.get_path(key)) for key in ("stdlib", "purelib", "platlib")}
+    return any(os.path.realpath(file).startswith(place + os.sep) for place in places)
+
+
+def _function(value: types.FunctionType, told: Callable[[Any], Any]) -> Any:
+    name = f"{value.__module__}.{value.__qualname__}"
+    if _installed(value.__module__) and value.__closure__ is None and "<lambda>" not in name:
+        return name
+    cells = value.__closure__ or ()
+    around = {
+        used: _told_of(f"{name} uses the global {used!r}", value.__globals__[used], told)
+        for used in sorted(_globals_of(value.__code__))
+        if used in value.__globals__
+    }
+    enclosed = {
+        used: _told_of(f"{name} uses {used!r} from around it", cell.cell_contents, told)
+        for used, cell in zip(value.__code__.co_freevars, cells, strict=True)
+        if _filled(cell)
+    }
+    return {
+        "function": name,
+        "code": _digest(_code(value.__code__, told)),
+        "defaults": told([value.__defaults__, value.__kwdefaults__]),
+        "enclosed": enclosed,
+        "globals": around,
+    }
+
+
+def _told_of(what: str, value: Any, told: Callable[[Any], Any]) -> Any:
+    try:
+        return told(value)
+    except ValueError as error:
+        raise ValueError(f"{what}: {error}") from None
+
+
+def _filled(cell: types.CellType) -> bool:
+    try:
+        return cell.cell_contents is not cell
+    except ValueError:
+        return False
+
+
+def _class(value: type, told: Callable[[Any], Any]) -> Any:
+    """Its code: functions and plain attributes of it and of its bases."""
+    own = {
+        key: told(part)
+        for key, part in vars(value).items()
+        if isinstance(part, types.FunctionType | staticmethod | classmethod | property | int | float | str)
+        and key not in ("__module__", "__doc__", "__qualname__", "__firstlineno__")
+    }
+    bases = [told(base) for base in value.__bases__ if base is not object]
+    return {"class": f"{value.__module__}.{value.__qualname__}", "own": _digest(own), "bases": bases}
+
+
+def _code(code: types.CodeType, told: Callable[[Any], Any]) -> Any:
+    constants = [
+        _code(c, told) if isinstance(c, types.CodeType) else repr(c) if c is ... else told(c)
+        for c in code.co_consts
+    ]
+    return [code.co_code.hex(), constants, list(code.co_names), list(code.co_freevars)]
+
+
+def _globals_of(code: types.CodeType) -> set[str]:
+    """Names a function and those within it take from its module."""
+    found = {
+        str(instruction.argval)
+        for instruction in dis.get_instructions(code)
+        if instruction.opname in ("LOAD_GLOBAL", "LOAD_NAME")
+    }
+    return found.union(*(_globals_of(c) for c in code.co_consts if isinstance(c, types.CodeType)))

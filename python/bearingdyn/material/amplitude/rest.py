@@ -1,0 +1,112 @@
+"""What a Maxwell model keeps beside the law of softening, for the time domain.
+
+In time the law is a spring E and a Maxwell branch of strength 2 L whose rate is the running frequency Ω. The
+rest, G_lin(ω) − F(γr) − i L(γr), has to be a Maxwell model itself; as its loss is less than its storage's
+slope would have it (Kramers and Kronig), it is rendered within a percent or so. What it misses at Ω the law's
+spring and branch make good.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy
+
+from bearingdyn.short_repr import short
+from bearingdyn.types import Array, Complex
+
+_POINTS = 160  # of the fit, evenly in ln ω
+_LOSS = 10.0  # weight of the loss against the storage: damping cannot be made good where L is small
+_TRIES, _TOO_MUCH = 8, 1e-5  # of loss too much, over G′
+TABLE = 33  # frequencies of the correction, evenly in ln ω
+_DECADE = 10.0  # of a model without a band: so far beyond its times
+
+
+@dataclass(frozen=True)
+class Rest:
+    """A Maxwell model of G_lin − F(γr) − i L(γr), and what it misses.
+
+    Attributes
+    ----------
+    G0, G, tau, eta0
+        As those of Maxwell.
+    omega
+        First and last angular frequency it was fitted between, rad/s.
+    misses
+        (TABLE,) rest less what it should be, Pa, complex, at frequencies evenly spaced in ln ω between them.
+    """
+
+    G0: float
+    G: Array
+    tau: Array
+    eta0: float
+    omega: tuple[float, float]
+    misses: Complex
+
+    __repr__ = short
+
+    def complex_modulus(self, omega: Any) -> Complex:
+        """G*, Pa, at ω rad/s, any shape."""
+        w = np.asarray(omega, dtype=np.float64)
+        x = w[..., None] * self.tau
+        return np.asarray(self.G0 + 1j * w * self.eta0 + (x / (1 + x * x) * (x + 1j)) @ self.G)
+
+
+def rest_of(material: Any) -> Rest:
+    """The rest of a Maxwell model with a law of softening.
+
+    Raises
+    ------
+    ValueError
+        Where the law takes more storage, or loss, than the model has: one of them is of another rubber.
+    """
+    law = material.payne
+    band = _band(material)
+    omega = np.geomspace(*band, _POINTS)
+    F, L = float(law.storage(law.gamma_r)), float(law.loss(law.gamma_r))
+    linear = _modulus(material, omega)
+    wanted = linear - F - 1j * L
+    if not np.all(wanted.real > 0):
+        worst = int(np.argmin(wanted.real))
+        raise ValueError(
+            f"payne: the law's breakable storage at the isotherms' strain, {F:.4g} Pa, exceeds the storage "
+            f"modulus {linear.real[worst]:.4g} Pa that the material has at "
+            f"{omega[worst] / 2 / math.pi:.3g} Hz: the law is of a harder rubber; scale it, law.scaled(...)"
+        )
+    weight = 1 / np.abs(linear)
+    x = omega[:, None] * material.tau
+    shapes = np.column_stack([np.ones_like(omega), x / (1 + x * x) * (x + 1j)])
+    fixed = 1j * omega * material.eta0
+    A = np.vstack([shapes.real * weight[:, None], _LOSS * shapes.imag * weight[:, None]])
+    target = wanted - fixed
+    # of loss the rest must not have too much: the law's branch can add some, and take none away
+    spare, found = 0.0, np.zeros(A.shape[1])
+    for _ in range(_TRIES):
+        b = np.concatenate([target.real * weight, _LOSS * (target.imag - spare) * weight])
+        found = scipy.optimize.nnls(A, b)[0]
+        more = float(np.max(shapes.imag @ found - target.imag))
+        if more <= _TOO_MUCH * float(np.median(linear.real)):
+            break
+        spare += more
+    made = Rest(float(found[0]), found[1:], material.tau, material.eta0, band, np.zeros(0, complex))
+    at = np.geomspace(*band, TABLE)
+    misses = made.complex_modulus(at) - (_modulus(material, at) - F - 1j * L)
+    return Rest(made.G0, made.G, made.tau, made.eta0, band, misses)
+
+
+def _modulus(material: Any, omega: Array) -> Complex:
+    """G*, Pa, without the warning of a band."""
+    x = omega[:, None] * material.tau
+    return np.asarray(material.G0 + 1j * omega * material.eta0 + (x / (1 + x * x) * (x + 1j)) @ material.G)
+
+
+def _band(material: Any) -> tuple[float, float]:
+    """Angular frequencies, rad/s, between which the rest is sought."""
+    if material.band is not None:
+        return 2 * math.pi * material.band[0], 2 * math.pi * material.band[1]
+    if not material.tau.size:
+        return 1.0, 1e5
+    return 1 / (_DECADE * float(material.tau.max())), _DECADE / float(material.tau.min())

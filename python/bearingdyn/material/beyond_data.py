@@ -1,0 +1,62 @@
+"""The warning where an answer goes beyond the times that the data of a material speak of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from bearingdyn.material.low_end import SLACK, LowEnd
+from bearingdyn.notice import BeyondData, warn
+
+
+def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, first: str = "") -> None:
+    """Warn of materials whose data do not reach the time at which they are asked.
+
+    Parameters
+    ----------
+    layers
+        Name and material of each.
+    after
+        The time, s; inf: relaxed.
+    what
+        What rests on it.
+    first
+        The first remedy.
+
+    Warns
+    -----
+    BeyondData
+        Once for each call: it names all layers, and gives the numbers of the first.
+    """
+    found = [
+        (name, material)
+        for name, material in layers
+        if (end := getattr(material, "low_end", None)) is not None and not end.covers(after)
+    ]
+    if not found:
+        return
+    material = found[0][1]
+    warn(
+        f"{what} of {', '.join(dict.fromkeys(name for name, _ in found))} leaves the data: "
+        f"{_numbers(material, after)}; {first}fit from a lower frequency, pin the low end by "
+        f"fit_maxwell(pin=...), or measure longer or warmer",
+        BeyondData,
+    )
+
+
+def _numbers(material: Any, after: float) -> str:
+    """The value, what the data reach, and the interval."""
+    end: LowEnd = material.low_end
+    value = material.complex_modulus(0.0).real if math.isinf(after) else float(material.relaxation(after))
+    low, high = end.bounds(after, value)
+    state = "relaxed" if math.isinf(after) else f"after {after:.3g} s"
+    at = "" if material.temperature is None else f" at {material.temperature:g} °C"
+    falls = f", where G′ still falls {end.fall:.0%} a decade" if math.isfinite(end.fall) else ""
+    longer = ""
+    if end.measured < end.frequency / SLACK:
+        longer = f" (the master curve reaches {1 / (2 * math.pi * end.measured):.3g} s)"
+    return (
+        f"{state} G = {value / 1e6:.3g} MPa, fitted to data that reach {end.reach:.3g} s, "
+        f"{end.frequency:.3g} Hz{at}{falls}{longer}; they allow {low / 1e6:.3g} to {high / 1e6:.3g} MPa"
+    )

@@ -1,0 +1,108 @@
+"""What a squeezed part tells: forces, pressures, stretch, bulge, contact, and the stiffness it then has."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from bearingdyn.cms import Superelement
+from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.round_face import RoundFace
+from bearingdyn.short_repr import short
+from bearingdyn.types import Complex
+
+
+class _Part(Protocol):
+    """A part whose matrices are those of a small motion about its static state."""
+
+    def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex: ...
+
+    def superelement(self) -> Superelement: ...
+
+    def outline(self) -> Outline: ...
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]: ...
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Squeezed:
+    """A part as it is squeezed in its machine; it takes the place of the part in an Application.
+
+    Its matrices are those of a small motion about the static state. That state pushes on its neighbours, and
+    they are taken to bear it: a ring pressed into a bore is balanced by itself, a pad between two plates by
+    whatever clamps them.
+
+    Parameters
+    ----------
+    part
+        The deformed part, all its surfaces stuck to their rigid bodies.
+    squeezed
+        The face that was pressed, to which `pressure`, `force` and `width` belong.
+    force
+        With which the pressed face squeezes the part, along its normal and summed around the axis, N.
+    forces
+        name -> radial and axial force of each face on the part, summed around the axis, N; of a solid its
+        three components and their moments about the face's reference, N m.
+    pressures
+        name -> mean pressure on each face, Pa.
+    widths
+        name -> length along the section over which each face touches, m; of a solid the area, m².
+    lost
+        name -> length, m, over which the part has parted from a face that it slipped on.
+    bulge
+        Largest outward motion of the free surface, m.
+    stretch
+        Largest principal stretch at a point of integration. At the edge of a bond it is singular and grows as
+        the mesh is refined.
+    strain
+        Largest |λ − 1| of the principal stretches λ, singular likewise.
+    energy
+        Stored, J.
+    stability
+        Least modulus of a further change of shape anywhere, over that of the undeformed material; 1 at rest.
+    """
+
+    part: _Part
+    squeezed: str
+    force: float
+    forces: Mapping[str, tuple[float, ...]]
+    pressures: Mapping[str, float]
+    widths: Mapping[str, float]
+    lost: Mapping[str, float]
+    bulge: float
+    stretch: float
+    strain: float
+    energy: float
+    stability: float
+
+    __repr__ = short
+
+    @property
+    def pressure(self) -> float:
+        """Mean pressure on the pressed face, Pa."""
+        return self.pressures[self.squeezed]
+
+    def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
+        """Quasi-static stiffness (6 i, 6 i) of its i interfaces about the static state, N/m, N, N m.
+
+        Parameters
+        ----------
+        omega
+            rad/s.
+        after
+            Take G(t) after this time at rest, s, instead of the relaxed modulus that ω = 0 has.
+        """
+        return self.part.stiffness(omega, after)
+
+    def superelement(self) -> Superelement:
+        """Reduced matrices about the static state, as those of the part before."""
+        return self.part.superelement()
+
+    def outline(self) -> Outline:
+        """Its deformed surface."""
+        return self.part.outline()
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, where they are now."""
+        return self.part.round_faces()

@@ -1,0 +1,50 @@
+"""What a result was made from, by which versions, and when."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+import scipy
+
+
+def _own_version() -> str:
+    try:
+        return version("bearingdyn")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+# found once: it takes milliseconds where many packages are installed
+VERSION = _own_version()
+
+
+def versions() -> dict[str, str]:
+    """Versions of the package and of what results are computed with, by name; "not installed" for none."""
+    return {
+        "bearingdyn": VERSION,
+        "Python": platform.python_version(),
+        "NumPy": np.__version__,
+        "SciPy": scipy.__version__,
+    }
+
+
+def stamp(time: datetime | None = None) -> str:
+    """When a result was made: a time, by default now, in UTC as ISO 8601 writes it."""
+    return (time or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="seconds")
+
+
+def inputs_of(text: str) -> dict[str, str]:
+    """Attributes that say what a result was computed from, its provenance, and its hash.
+
+    Parameters
+    ----------
+    text
+        Description by `inputs.text`; empty where it is not known: then there are no attributes.
+    """
+    if not text:
+        return {}
+    return {"inputs": text, "inputs_hash": hashlib.sha256(text.encode()).hexdigest()[:32]}

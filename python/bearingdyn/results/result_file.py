@@ -1,0 +1,192 @@
+"""One file for each result, or for several by name: netCDF-4, and run files as far as they go."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bearingdyn import runfile
+from bearingdyn.checks import existing, meant
+from bearingdyn.results.datasets import march_dataset
+from bearingdyn.results.provenance import stamp
+from bearingdyn.writing import check_target, write_whole
+
+if TYPE_CHECKING:
+    import xarray
+
+
+# netCDF has no complex type: a trailing axis of two of this name holds real and imaginary part
+PARTS = "part"
+
+
+def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
+    """Save a Dataset, or several by name (as groups), to one result file (netCDF-4).
+
+    The file is made in memory, written under another name beside its place, and moved there when it is on the
+    disk: whatever fails, the file that was there before is intact. This takes as much memory again as the
+    results do.
+
+    Other programs can open the file: a complex number is stored along a last axis of two, real and imaginary.
+
+    Parameters
+    ----------
+    results
+        One Dataset, or several by name.
+    path
+        File to write; one that is there is replaced.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to save, or something that is no Dataset.
+    OSError
+        Where the place cannot be written: its folder is missing, the disk is full, or it is no file but a
+        folder, a device or a pipe. It names the file.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import bearingdyn as bd
+    >>> app = bd.Application()
+    >>> app.add("mass", bd.RigidBody(mass=1.0, inertia=(1e-3, 1e-3, 1e-3)))
+    >>> app.ground("mass.centre", stiffness=[1e6] * 6)
+    >>> found = bd.modes(app)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     bd.save(found, Path(folder) / "modes.nc")
+    ...     again = bd.open_result(Path(folder) / "modes.nc")
+    >>> again.equals(found)
+    True
+    """
+    groups = dict(results) if isinstance(results, Mapping) and not hasattr(results, "dims") else {"": results}
+    if not groups:
+        raise ValueError(f"{os.fspath(path)}: nothing to save; give at least one result")
+    for name, data in groups.items():
+        what = f"results[{name!r}]" if name else "results"
+        if not hasattr(data, "to_netcdf") or not hasattr(data, "data_vars"):
+            raise ValueError(f"{what} is {data!r}; it must be a Dataset, as every analysis returns it")
+        if name and not all(name.split("/")):
+            raise ValueError(
+                f"results has the name {name!r}; each part of a name must be a text, as in 'response/mass'"
+            )
+    check_target(path)
+    # in memory: HDF5 itself does not survive a disk that fills up under it
+    made = io.BytesIO()
+    for i, (name, data) in enumerate(groups.items()):
+        _plain(data).to_netcdf(made, mode="w" if i == 0 else "a", group=name or None, engine="h5netcdf")
+    write_whole(path, made.getbuffer())
+
+
+def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset:
+    """Open a result file written by `save`, or what a run file holds so far, wholly into memory.
+
+    Parameters
+    ----------
+    path
+        File by `save`, or by the `stream` of a march.
+    group
+        Name of the result in a file of several.
+
+    Returns
+    -------
+    xarray.Dataset
+        Its variables carry units; complex numbers are complex again.
+
+    Raises
+    ------
+    ValueError
+        If the file is no netCDF-4 file, or lacks the group.
+    FileNotFoundError
+        If there is no such file.
+    """
+    import h5netcdf  # noqa: F401  # so that its absence is not taken for a damaged file
+    import xarray
+
+    existing(path, "result")
+    if runfile.is_run(path):
+        return _run_dataset(path)
+    try:
+        with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
+            found = _complex(data.load())
+    except Exception as error:  # the layers under it raise whatever the damage of a file leads to
+        known = groups(path) if group else []
+        if group and group not in known:
+            hint = meant(group, known) if known else "it is one result: leave group out"
+            raise ValueError(f"{os.fspath(path)} has no result {group!r}; {hint}") from None
+        place = f"group {group!r} of " if group else ""
+        raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}") from None
+    if not group and not found.variables and groups(path):
+        raise ValueError(f"{os.fspath(path)} holds several results; name one of them: {groups(path)}")
+    return found
+
+
+def groups(path: str | os.PathLike[str]) -> list[str]:
+    """Names of the groups in a result file.
+
+    Parameters
+    ----------
+    path
+        File by `save`.
+
+    Returns
+    -------
+    list[str]
+        Sorted; empty for a file of one result, and for a run file.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    import h5netcdf
+
+    existing(path, "result")
+    if runfile.is_run(path):
+        return []
+    try:
+        with h5netcdf.File(path, "r") as file:
+            return sorted(file.groups)
+    except Exception as error:  # as in open_result
+        raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def _run_dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
+    """What a run file holds so far."""
+    facts, chunks, _ = runfile.read(path)
+    if not chunks:
+        raise ValueError(f"{os.fspath(path)} holds no finished chunk yet")
+    state = chunks[-1].state
+    rows = np.concatenate([c.rows for c in chunks])
+    written = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
+    return march_dataset(facts, rows, state, runfile.report_of(chunks), {"made_at": stamp(written)})
+
+
+def _plain(data: Any) -> Any:
+    """Complex variables as a trailing axis of two."""
+    import xarray
+
+    plain = data.copy()
+    for name, variable in data.data_vars.items():
+        if np.iscomplexobj(variable.values):
+            values = np.stack([variable.values.real, variable.values.imag], axis=-1)
+            plain[name] = xarray.Variable((*variable.dims, PARTS), values, {**variable.attrs, "complex": 1})
+    return plain
+
+
+def _complex(data: xarray.Dataset) -> xarray.Dataset:
+    import xarray
+
+    for name, variable in data.data_vars.items():
+        if variable.attrs.get("complex") == 1 and variable.dims[-1] == PARTS:
+            attrs = {k: v for k, v in variable.attrs.items() if k != "complex"}
+            # by parts: re + 1j·im makes NaN of an infinite part
+            values = np.empty(variable.shape[:-1], dtype=np.complex128)
+            values.real, values.imag = variable.values[..., 0], variable.values[..., 1]
+            data = data.assign({str(name): xarray.Variable(variable.dims[:-1], values, attrs)})
+    return data

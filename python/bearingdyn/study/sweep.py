@@ -1,0 +1,256 @@
+"""One function over many cases, in many processes, resumed where it was interrupted."""
+
+from __future__ import annotations
+
+import ast
+import logging
+import multiprocessing
+import os
+import pickle
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import (
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    as_completed,
+)
+from contextlib import contextmanager
+from numbers import Real
+from pathlib import Path
+from types import FrameType
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from bearingdyn.progress import Progress, told
+from bearingdyn.study.cases import Case, Parameters, checked
+from bearingdyn.study.store import Store, name_of
+
+Study: TypeAlias = Callable[[dict[str, Any]], Mapping[str, float]]
+# each worker is one process on one core: a BLAS with threads of its own would only get in the others' way
+WORKER_ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
+# Windows waits for no more handles than this
+MOST_WORKERS = 61
+log = logging.getLogger(__name__)
+
+
+def sweep(
+    function: Study,
+    cases: Iterable[Parameters],
+    executor: Executor | None = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: Progress | bool | None = None,
+    *,
+    retry: bool = False,
+) -> list[Case]:
+    """Sweep a function over all cases and gather what it returns, in the order of the cases.
+
+    Parameters
+    ----------
+    function
+        Maps the parameters of a case, a dict, to a mapping of real numbers. An exception it raises is kept in
+        the case and the study goes on.
+    cases
+        Parameters by name, the same names in each: a list of dicts, as `grid` and `sobol` make them. A
+        parameter is a number, a text, an array, or an object told by its content, such as a part or material.
+    executor
+        Any executor of `concurrent.futures`, or one that behaves like it, as the ``get_executor()`` of a
+        client of dask.distributed does. None: processes, as many as there are processors, started afresh
+        ("spawn"), BLAS with one thread in each. These import the function by name: it must stand at the top
+        level of a module or script, and a script must call `sweep` below ``if __name__ == "__main__":``.
+        Ctrl-C ends the study when the cases being computed are done.
+    store
+        Folder, made where missing: each finished case, a failed one too, is written there at once, as JSON
+        under the hash of the function, this package's version and the parameters, and taken from there when
+        the study is run again. Of the function counts all that it is: its code and name, bound arguments, the
+        object it is a method of, defaults, enclosed variables and the global values and functions it uses;
+        of installed packages and modules it uses, their names alone: when these change, take another folder.
+        Several studies may share a folder, at the same time too.
+    progress
+        Called with (cases done, cases in all) after each; True for a bar on standard error, False for none,
+        None for a bar where standard error is a terminal.
+    retry
+        Compute again what failed before and lies in the store with its error.
+
+    Returns
+    -------
+    list[Case]
+        One for each case, in the order given.
+
+    Raises
+    ------
+    ValueError
+        Before any work: no cases, unequal names, a parameter that cannot be told by its content, nor, with
+        a store, the function; a function that other processes cannot import; a script that calls `sweep`
+        outside ``if __name__ == "__main__":``.
+    concurrent.futures.BrokenExecutor
+        Where a worker of a pool of processes died. What was finished is in the store. A dask cluster computes
+        the cases of a worker that died anew, and gives up a case that killed several.
+    """
+    todo = checked(cases)
+    folder = Store(Path(store), function) if store is not None else None
+    done: dict[int, Case] = {}
+    for index, parameters in enumerate(todo):
+        kept = folder.read(parameters) if folder else None
+        if kept is not None and not (retry and kept.error is not None):
+            done[index] = kept
+    ahead = [index for index in range(len(todo)) if index not in done]
+    with told(progress, "case") as tell:
+        advance = tell or (lambda done, total: None)
+        if done:
+            advance(len(done), len(todo))
+        if ahead:
+            with _pool(executor, function, len(ahead)) as pool:
+                for index, case in _run(pool, function, todo, ahead):
+                    done[index] = case
+                    if case.error is not None:
+                        log.warning("case %d, %s, failed: %s", index, dict(case.parameters), case.error)
+                    if folder:
+                        folder.write(case)
+                    advance(len(done), len(todo))
+    return [done[index] for index in range(len(todo))]
+
+
+def _attempt(function: Study, parameters: dict[str, Any]) -> tuple[dict[str, float], str | None]:
+    """Numbers, or the error in words: not every exception survives the way to another process."""
+    try:
+        returned = function(dict(parameters))
+        if not isinstance(returned, Mapping):
+            raise TypeError(
+                f"returned {type(returned).__name__}; the function must return a mapping of numbers"
+            )
+        return {str(name): _real(str(name), value) for name, value in returned.items()}, None
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt from None
+    except BaseException as error:  # sys.exit too ends the case, not the study
+        return {}, f"{type(error).__name__}: {error}"
+
+
+def _real(name: str, value: Any) -> float:
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if not isinstance(value, Real | np.bool_):
+        raise TypeError(f"value {name!r} is {value!r}; it must be one real number")
+    return float(value)
+
+
+# ---------------------------------------------------------------- processes
+
+
+def _run(
+    pool: Executor, function: Study, todo: list[dict[str, Any]], ahead: list[int]
+) -> Iterator[tuple[int, Case]]:
+    """Cases as they are finished; what ended the study is raised after all that were."""
+    futures: dict[Future[tuple[dict[str, float], str | None]], int] = {}
+    ended: BrokenExecutor | CancelledError | None = None
+    try:
+        try:
+            with _worker_environment():  # a worker may be started with every submission
+                for index in ahead:
+                    futures[pool.submit(_attempt, function, todo[index])] = index
+        except BrokenExecutor as broken:
+            ended = broken
+        for future in as_completed(futures):
+            index = futures[future]
+            try:
+                values, error = future.result()
+            except (BrokenExecutor, CancelledError) as broken:
+                ended = ended or broken
+                continue
+            except Exception as lost:  # the executor's own, as dask's KilledWorker
+                values, error = {}, f"{type(lost).__name__}: {lost}"
+            yield index, Case(todo[index], values, error)
+        if isinstance(ended, BrokenExecutor):
+            ended.add_note(
+                "A worker process died: the function crashed it or used up the memory, or the script "
+                'calls sweep outside `if __name__ == "__main__":`.'
+            )
+        if ended is not None:
+            raise ended
+    finally:
+        for future in futures:
+            future.cancel()
+
+
+@contextmanager
+def _pool(executor: Executor | None, function: Study, cases: int) -> Iterator[Executor]:
+    if executor is not None:
+        yield executor
+        return
+    _importable(function)
+    _check_guard()
+    pool = ProcessPoolExecutor(
+        min(cases, _processors(), MOST_WORKERS), mp_context=multiprocessing.get_context("spawn")
+    )
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _worker_environment() -> Iterator[None]:
+    """The environment that new processes inherit.
+
+    It cannot be set in the worker: BLAS reads it when NumPy is loaded, and a spawned worker loads NumPy with
+    the caller's script, before any initializer of the pool. The BLAS of this process has read it long since.
+    """
+    before = {name: os.environ.get(name) for name in WORKER_ENVIRONMENT}
+    os.environ.update(WORKER_ENVIRONMENT)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _importable(function: Study) -> None:
+    remedy = "define it with def at the top level of a module or script, or give an executor of threads"
+    name = name_of(function)
+    try:
+        pickle.dumps(function)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise ValueError(f"function {name} cannot be sent to another process ({error}); {remedy}") from None
+    typed_in = not hasattr(sys.modules["__main__"], "__file__")
+    if getattr(function, "__module__", "") == "__main__" and typed_in:
+        raise ValueError(f"function {name} was typed in, and other processes cannot import it; {remedy}")
+
+
+def _check_guard() -> None:
+    """A script that starts processes does so behind its guard: each of them runs the script once more."""
+    frame: FrameType | None = sys._getframe()
+    while frame is not None:
+        if (
+            frame.f_globals.get("__name__") in ("__main__", "__mp_main__")
+            and frame.f_code.co_name == "<module>"
+        ):
+            break
+        frame = frame.f_back
+    file = getattr(sys.modules["__main__"], "__file__", None)
+    if frame is None or file is None or frame.f_code.co_filename != file:
+        return
+    try:
+        tree = ast.parse(Path(file).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and "__name__" in ast.unparse(node.test):
+            before = node.lineno <= frame.f_lineno
+            if before and (frame.f_lineno <= (node.end_lineno or 0) or "!=" in ast.unparse(node.test)):
+                return
+    raise ValueError(
+        f'{file}, line {frame.f_lineno} calls sweep outside `if __name__ == "__main__":`, and each worker '
+        f"process runs the script up to there again; put the call below that line"
+    )

@@ -1,0 +1,65 @@
+"""A layer that softens with its own strain: its factor, its weights in that strain, its form in a march."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from bearingdyn.cms import Viscoelastic
+from bearingdyn.system.matrix_factor import factor
+from bearingdyn.system.terms import LayerTerm
+from bearingdyn.types import Array
+
+
+def softening_factor(term: Viscoelastic, part: str) -> tuple[Array, Array | None]:
+    """L (n, rank) of a part's rubber, and the weights (rank,) of its coordinates Lᵀx in γ²; None without law.
+
+    The strain that counts has the squares Σ (χ_i x_i …): with the concentration χ of each coordinate,
+    γ² = 2 (χx)ᵀ H (χx)/V. L is turned so that both forms are diagonal.
+
+    Raises
+    ------
+    ValueError
+        For a law of softening on rubber whose volume is not known.
+    """
+    L = factor(term.H)
+    if getattr(term.material, "payne", None) is None:
+        return L, None
+    if term.volume is None:
+        raise ValueError(
+            f"part {part!r} has a law of softening (payne), and the volume of its rubber is not known: give "
+            f"Viscoelastic(material, H, volume=...), or the material without: material.with_payne(None)"
+        )
+    if term.concentration is None:
+        return L, np.full(L.shape[1], 2.0 / term.volume)
+    # rigid motion stays rigid when scaled, so that χL = L Qᵀ
+    Q = (np.linalg.pinv(L) @ (term.concentration[:, None] * L)).T
+    weights, turn = np.linalg.eigh(Q.T @ Q)
+    return L @ turn, 2.0 / term.volume * np.maximum(weights, 0.0)
+
+
+def marched_layer(layer: LayerTerm, memory: float | None) -> tuple[Any, ...]:
+    """A layer as a march takes it: L, strengths and times of its branches, and how it softens."""
+    if layer.strain is None:
+        return layer.L, np.asarray(layer.material.G), np.asarray(layer.material.tau)
+    if memory is None:
+        raise ValueError(
+            f"layer {layer.part!r} softens with its amplitude, and memory is None; give the time, s, over "
+            f"which it remembers it: five periods of the slowest motion"
+        )
+    law, rest = layer.material.payne, layer.material.rest
+    softening = (
+        law.D,
+        law.gamma_c,
+        law.m,
+        law.Lm,
+        law.gamma_l,
+        law.p,
+        float(memory),
+        layer.material.G0 - rest.G0,
+        np.asarray(layer.strain),
+        *rest.omega,
+        np.stack([rest.misses.real, rest.misses.imag]),
+    )
+    return layer.L, rest.G, rest.tau, softening

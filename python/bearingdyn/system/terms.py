@@ -1,0 +1,137 @@
+"""The terms of a system: layers, bearings, parts, springs and loads in its coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from bearingdyn.application import Part
+from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, LooseFit, RacewaySeries
+from bearingdyn.cms import Superelement
+from bearingdyn.short_repr import short
+from bearingdyn.types import Array
+
+
+@dataclass(frozen=True, eq=False)
+class LayerTerm:
+    """A layer's term in the system: its deviatoric stiffness is 2 G*(ω) L Lᵀ, L (n, rank).
+
+    strain: (rank,), γ² = Σ strain |Lᵀx|² is the square of the shear strain amplitude that counts for a law of
+    softening; None where the material has none.
+    """
+
+    part: str
+    material: Any
+    L: Array
+    strain: Array | None = None
+
+    __repr__ = short
+
+
+@dataclass(frozen=True, eq=False)
+class BearingTerm:
+    """A term of the system: one bearing or loose fit.
+
+    Parameters
+    ----------
+    name, bearing
+        Its name and what it is.
+    B
+        (n_coefs, n); B x are its relative raceway coefficients, inner minus outer, m.
+    series
+        Which coefficients they are.
+    offset
+        Distance along z, m, of the inner ring from where B x puts it.
+    ends
+        Rows (n_coefs, 6) of the interface at each end, by the interface's name.
+    """
+
+    name: str
+    bearing: BallBearing | LooseFit
+    B: Array
+    series: RacewaySeries = RIGID
+    offset: float = 0.0
+    ends: Mapping[str, Array] = field(default_factory=dict)
+
+    __repr__ = short
+
+    def kernel(self) -> BearingKernel:
+        """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves."""
+        kernel = self.bearing.kernel(self.series)
+        if self.offset == 0.0:
+            return kernel
+        # e0 = x0² + y0² − A² moves by offset (2 x0 + offset), without cancellation
+        shift = self.offset * (2.0 * kernel.x0 + self.offset)
+        return replace(kernel, x0=kernel.x0 + self.offset, e0=kernel.e0 + shift)
+
+
+@dataclass(frozen=True, eq=False)
+class PartTerm:
+    """A term of the system: one part.
+
+    Parameters
+    ----------
+    name, element
+        Its name and its matrices.
+    place
+        (m, n); place @ x are the coordinates of the part.
+    rigid
+        (m, 6), its coordinates in unit rigid motions x, y, z, θx, θy, θz of its first interface; NaN for a
+        part that holds itself.
+    source
+        What it was reduced from.
+    """
+
+    name: str
+    element: Superelement
+    place: Array
+    rigid: Array
+    source: Part
+
+    __repr__ = short
+
+
+@dataclass(frozen=True, eq=False)
+class SpringTerm:
+    """A term of the system: springs and dampers of one joint.
+
+    Parameters
+    ----------
+    name
+        Of the joint.
+    across
+        (k, n); across @ x are the motions that they resist.
+    stiffness, damping
+        (k,), N/m and N s/m (N m/rad and N m s/rad of rotations).
+    ends
+        Rows (k, 6) of the interface at each end, by the interface's name.
+    """
+
+    name: str
+    across: Array
+    stiffness: Array
+    damping: Array
+    ends: Mapping[str, Array] = field(default_factory=dict)
+
+    __repr__ = short
+
+
+@dataclass(frozen=True, eq=False)
+class LoadTerm:
+    """A load's term: kind one of bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one.
+
+    part: the part it acts on, if one; own_cos, own_sin: the columns in the part's coordinates.
+    """
+
+    kind: str
+    omega: float
+    p_cos: Array
+    p_sin: Array
+    time: Array
+    value: Array
+    part: str = ""
+    own_cos: Array | None = None
+    own_sin: Array | None = None
+
+    __repr__ = short

@@ -1,0 +1,25 @@
+"""Whether an unbalance suits the mass that moves with it."""
+
+from __future__ import annotations
+
+from bearingdyn.application import Plan, Unbalance
+from bearingdyn.magnitude import plausible
+
+
+def check_unbalance(plan: Plan) -> None:
+    """Check each unbalance against the mass that moves with its place: eccentricities are micrometres.
+
+    Raises
+    ------
+    ValueError
+        For an eccentricity that no rotor has; the unbalance was given in g mm or kg mm.
+    """
+    for load in plan.loads:
+        if isinstance(load, Unbalance):
+            masses = [plan.mass(part) for part in plan.joined_parts(load.where.part)]
+            mass = sum(m for m in masses if m is not None)
+            if mass > 0.0 and load.moment > 0.0:
+                name = (
+                    f"unbalance at {load.where} is {load.moment:.6g} kg m on {mass:.4g} kg; its eccentricity"
+                )
+                plausible("eccentricity", name, load.moment / mass)
