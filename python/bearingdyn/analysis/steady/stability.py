@@ -372,6 +372,7 @@ def floquet(
     C: Array,
     kept: int = 6,
     warm: Array | None = None,
+    whole: bool = False,
 ) -> Floquet:
     """Multipliers of a period from tangents (2·steps, m, m) at equal distances along it.
 
@@ -385,12 +386,14 @@ def floquet(
         Multipliers.
     warm
         Directions of a neighbour, from which a large model begins.
+    whole
+        Whether the matrix of a period is formed however large it is.
     """
     count = len(K) // 2
     propagator = Propagator.of(model, speed, period / count)
     S = propagator.steps(np.concatenate([K, K[:1]]), np.concatenate([C, C[:1]]))
     n = model.size
-    if n <= WHOLE:
+    if whole or n <= WHOLE:
         once = propagator.over(S, np.eye(n))
         values, vectors = np.linalg.eig(once)
         directions = np.zeros((n, 0))

@@ -191,7 +191,7 @@ def stability_of(
     period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
     K = pooled([a.K for a in pressed.bearings], m)
     C = pooled([a.C for a in pressed.bearings], m)
-    return floquet(model, balance.speed, period, K, C, KEPT).stability
+    return floquet(model, balance.speed, period, K, C, KEPT, whole=True).stability
 
 
 def first_order(problem: Problem, balance: Balance) -> FirstOrder:
@@ -199,7 +199,7 @@ def first_order(problem: Problem, balance: Balance) -> FirstOrder:
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))
-    return FirstOrder.of(problem.system, FOLLOWS * highest, band)
+    return FirstOrder.of(problem.system, 2.0 * FOLLOWS * highest, band)
 
 
 def _failed(problem: Problem, balance: Balance, found: Found, result: xarray.Dataset) -> core.SolverError:
