@@ -54,12 +54,15 @@ class Curve:
         Size of a motion, m (the norm of its amplitudes).
     tolerance
         Of the residual.
+    slope_step
+        Of the parameter, relative, over which the residual's slope is taken.
     """
 
     at: Callable[[float], Balance]
     scale: float
     size: float
     tolerance: float = 1e-10
+    slope_step: float = SLOPE
 
     def solve(
         self,
@@ -91,7 +94,7 @@ class Curve:
 
     def column(self, z: Complex, parameter: float, residual: Complex) -> Complex:
         """dF/dp (L, m)."""
-        step = SLOPE * max(abs(parameter), self.scale)
+        step = self.slope_step * max(abs(parameter), self.scale)
         other = self.at(parameter + step)
         return (other.residual(z, other.press(z, tangents=False)) - residual) / step
 
