@@ -290,6 +290,8 @@ class Found:
 def measure(residual: Complex, z: Complex) -> tuple[float, int]:
     """The largest residual over the largest amplitude, and its line."""
     sizes = np.abs(residual).max(axis=1, initial=0.0)
+    if not sizes.any():
+        return float(sizes.sum()), 0
     return float(sizes.max() / max(np.abs(z).max(initial=0.0), TINY)), int(np.argmax(sizes))
 
 

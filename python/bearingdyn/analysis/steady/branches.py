@@ -38,8 +38,8 @@ PLACES, PUSHES = 5, (0.5, 1.5)
 LEAP, LEAPS = 0.01, 40
 # of a multiplier's size, within which an event lies on the unit circle
 ON_CIRCLE = 2e-3
-# multipliers within this of the unit circle are computed with finer samples
-NEAR, FINER = 0.1, 4
+# times as many samples for the multipliers of a located point
+FINER = 4
 
 
 Tell: TypeAlias = Callable[[float], object] | None
@@ -129,9 +129,7 @@ class Task:
         """Of a motion that repeats after so many passages."""
         return Lines.harmonics(self.harmonics * passages, self.per)
 
-    def stability(
-        self, balance: Balance, z: Complex, passages: int, fine: int = 1, warm: Array | None = None
-    ) -> Floquet:
+    def stability(self, balance: Balance, z: Complex, passages: int, fine: int = 1) -> Floquet:
         """Multipliers of a motion that repeats after so many passages."""
         base = abs(float(balance.bases.frequencies(balance.speed)[0]))
         band = band_of(float(np.abs(balance.omega).max()))
@@ -147,9 +145,11 @@ class Task:
         m = z.shape[1]
         K = pooled([a.K for a in pressed.bearings], m)
         C = pooled([a.C for a in pressed.bearings], m)
-        return floquet(self.models[key], balance.speed, 2 * np.pi / base, K, C, warm=warm)
+        return floquet(self.models[key], balance.speed, 2 * np.pi / base, K, C)
 
 
+# balances of a curve that are kept: what they have answered is asked again
+RECENT = 4
 # first-order models that are kept
 MODELS = 40
 # samples of a passage for its stability
@@ -184,9 +184,17 @@ class Branch:
 def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
     """A curve in the measure of what moves: a motion's size, and a tenth of the range."""
 
+    recent: dict[float, Balance] = {}
+
     def at(parameter: float) -> Balance:
-        balance = task.at(parameter, lines)
-        return balance if passages == 1 else replace(balance, bases=_divided(balance.bases, passages))
+        if parameter not in recent:
+            while len(recent) >= RECENT:
+                del recent[next(iter(recent))]
+            balance = task.at(parameter, lines)
+            if passages > 1:
+                balance = replace(balance, bases=_divided(balance.bases, passages))
+            recent[parameter] = balance
+        return recent[parameter]
 
     moving = float(np.linalg.norm(found.z[1:]))
     size = max(5.0 * moving, 0.1 * float(np.linalg.norm(found.z[0])))
@@ -205,23 +213,18 @@ class Tracer:
     ) -> None:
         self.task, self.passages, self.others, self.tell = task, passages, others, tell
         self.lines = task.lines(passages)
-        self.warm: Array | None = None
 
     def mark(self, curve: Curve, point: Point, event: str = "", fine: int = 1) -> Mark:
         """A point with its stability and what moves."""
         balance = curve.at(point.parameter)
         state = self.stability(balance, point.z, fine)
-        if fine == 1 and state is not None and abs(abs(state.largest) - 1.0) < NEAR:
-            state = self.stability(balance, point.z, FINER)
         return Mark(point, state, balance.moved(point.z, point.pressed.g), event)
 
     def stability(self, balance: Balance, z: Complex, fine: int = 1) -> Stability | None:
-        """Multipliers, begun from the directions of the last point."""
+        """Multipliers, or None without bearings."""
         if not balance.system.bearings:
             return None
-        found = self.task.stability(balance, z, self.passages, fine, self.warm)
-        self.warm = found.directions
-        return found.stability
+        return self.task.stability(balance, z, self.passages, fine).stability
 
     def trace(self, found: Found, parameter: float, direction: float, origin: str) -> Branch:
         """The branch through a motion, towards rising (+1) or falling parameter."""

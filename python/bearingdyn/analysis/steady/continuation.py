@@ -105,22 +105,29 @@ class Curve:
         )
         return self.with_tangent(point, np.zeros(2 * found.z.size), direction)
 
-    def with_tangent(self, point: Point, border: Array, slope: float) -> Point:
-        """The point with its own tangent, along the border given."""
+    def with_tangent(self, point: Point, border: Array, slope: float, column: Complex | None = None) -> Point:
+        """The point with its own tangent, along the border given; the column dF/dp may be a neighbour's."""
         balance = self.at(point.parameter)
-        r = balance.residual(point.z, point.pressed)
-        column = self.column(point.z, point.parameter, r)
+        if column is None:
+            r = balance.residual(point.z, point.pressed)
+            column = self.column(point.z, point.parameter, r)
         dz, dp = self.solve(balance, point.pressed, column, (border, slope), None, 1.0, 1e-8)
         length = math.sqrt(float(dz @ dz) + dp * dp)
         return replace(point, tangent=dz / length, slope=dp / length)
 
-    def step(self, point: Point, length: float) -> Point | None:
-        """The point at a length of arc further on, or None where the corrector fails."""
+    def step(self, point: Point, length: float, exact: bool = False) -> Point | None:
+        """The point at a length of arc further on, or None where the corrector fails.
+
+        With `exact`, its tangent is made from the slope at the point itself, not at a neighbour of the last
+        correction.
+        """
         z = point.z + self.size * length * unflat_like(point.tangent, point.z)
         p = point.parameter + self.scale * length * point.slope
-        return self.correct(z, p, (point.tangent, point.slope))
+        return self.correct(z, p, (point.tangent, point.slope), exact)
 
-    def correct(self, z: Complex, p: float, border: tuple[Array, float]) -> Point | None:
+    def correct(
+        self, z: Complex, p: float, border: tuple[Array, float], exact: bool = False
+    ) -> Point | None:
         """Onto the curve, across the border from (z, p)."""
         column: Complex | None = None
         last = math.inf
@@ -133,7 +140,7 @@ class Curve:
                 return None
             if size <= self.tolerance:
                 point = Point(z, p, pressed, size, iteration, *border)
-                return self.with_tangent(point, *border)
+                return self.with_tangent(point, *border, None if exact else column)
             if column is None or iteration % 3 == 0:
                 column = self.column(z, p, r)
             forcing = min(1e-2, max(0.03 * size, 0.1 * self.tolerance / size))
@@ -205,10 +212,10 @@ def locate(
     best, side = after, 0
     for _ in range(most):
         s = (a * fb - b * fa) / (fb - fa)
-        new = curve.step(before, s)
+        new = curve.step(before, s, True)
         if new is None:
             s = 0.5 * (a + b)
-            new = curve.step(before, s)
+            new = curve.step(before, s, True)
             if new is None:
                 return best
         f = test(new)

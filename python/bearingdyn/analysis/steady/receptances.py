@@ -173,10 +173,24 @@ class Receptances:
         out = np.zeros((len(omega), len(rows), len(forces)), dtype=np.complex128)
         rest = omega == 0.0
         if rest.any():
-            out[rest] = self._whole(np.zeros(1), speed, rows, forces)
+            turned = self._at_rest + speed * self.system.N if self.system.N.any() else self._at_rest
+            out[rest] = rows @ np.linalg.solve(turned, np.transpose(forces))
         if not rest.all():
             out[~rest] = self._joined(omega[~rest], speed, rows, forces)
         return out
+
+    @cached_property
+    def _at_rest(self) -> Array:
+        """D (n, n) at 0 Hz with the reference on, and springs on free motions that no bearing feels."""
+        linear = Linear(self.system, self.K, self.C)
+        moduli = np.array(
+            [np.asarray(t.material.complex_modulus(np.zeros(1)))[0] for t in self.system.layers]
+        )
+        held = linear.held_at_rest(moduli, np.vstack([np.zeros(self.system.n), self.B]))
+        K = held.K + self.B.T @ self.K @ self.B
+        for layer, G in zip(self.system.layers, moduli.real, strict=True):
+            K += 2.0 * G * (layer.L @ layer.L.T)
+        return np.asarray(K)
 
     def _whole(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
         """All coordinates at once."""

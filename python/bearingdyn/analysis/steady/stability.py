@@ -1,13 +1,13 @@
 """Stability of a periodic motion: Floquet multipliers of the structure, its branches and the balls' tangents.
 
-A small departure u from the motion obeys u̇ = A u − E (K(t) z + C(t) ż) with z and ż rows of u, A constant and
-the tangents those of the balls along the motion. Over a double step Δ the force of the balls is a parabola
-through its values at 0, Δ/2 and Δ, and what A makes of it is exact:
+A small departure u from the motion obeys u̇ = A u − E (K(t) z + C(t) ż) with z and ż rows of u, A constant with the
+mean tangents in it, and K and C what the tangents of the balls along the motion are beside their mean. Over a double
+step Δ the force of the balls is a parabola through its values at 0, Δ/2 and Δ, and what A makes of it is exact:
 
     u(Δ) = e^{AΔ} u(0) − Σ_j W_j h_j,   h_j = K_j z_j + C_j ż_j,   z_j = Z (e^{Aτ_j} u(0) − Σ_i W_i(τ_j) h_i)
 
-so that a period is a product of matrices, of fourth order in Δ. The highest modes of the structure follow at
-once: what they give way by is kept as a flexibility.
+so that a period is a product of matrices, of fourth order in Δ. The highest modes of the structure, and what hardly
+moves the bearings, follow at once: what they give way by is kept as a flexibility, in which tangents soften.
 """
 
 from __future__ import annotations
@@ -26,6 +26,12 @@ from bearingdyn.types import Array, Complex, Index
 
 # modes above so many times the highest line that counts follow at once
 FOLLOWS = 1.5
+# modes of a block that are kept however slowly it runs
+ALWAYS = 10
+# of a block's static flexibility, below which the bearings do not feel one of its poles
+FELT = 1e-5
+# of the fastest mode kept, the ω that a floating motion is measured by
+FLOATING = 0.1
 # a multiplier this near to the real axis, as a share of its size, is real
 REAL = 1e-6
 
@@ -67,7 +73,9 @@ class FirstOrder:
         return sum(len(c.A) for c in self.chunks)
 
     @classmethod
-    def of(cls, system: System, fastest: float, band: tuple[float, float] = (1.0, 1e4)) -> FirstOrder:
+    def of(
+        cls, system: System, fastest: float, band: tuple[float, float] = (1.0, 1e4), felt: float = FELT
+    ) -> FirstOrder:
         """A system, its modes above `fastest`, rad/s, as a flexibility.
 
         Parameters
@@ -78,6 +86,8 @@ class FirstOrder:
             rad/s.
         band
             Hz.
+        felt
+            Of a block's static flexibility, below which the bearings do not feel one of its poles.
         """
         system = maxwell_system(system, band)
         modal, _ = system.modal()
@@ -89,10 +99,15 @@ class FirstOrder:
             touched = np.flatnonzero(np.abs(B[:, index]).any(axis=1))
             if not touched.size:
                 continue
-            kept = index[squares[index] <= fastest**2]
-            fast = index[squares[index] > fastest**2]
+            rank = np.argsort(np.argsort(squares[index]))
+            slow = (squares[index] <= fastest**2) | (rank < ALWAYS)
+            kept, fast = index[slow], index[~slow]
             flexibility += (B[:, fast] / squares[fast]) @ B[:, fast].T
-            chunks.append(_chunk(modal, kept, touched, squares))
+            chunk = _chunk(modal, kept, touched, squares, FLOATING * fastest)
+            if len(chunk.A) > 2 * len(kept):
+                chunk, gives = _felt_alone(chunk, felt)
+                flexibility[np.ix_(touched, touched)] += gives
+            chunks.append(chunk)
         return cls(tuple(chunks), flexibility)
 
 
@@ -112,7 +127,7 @@ def maxwell_system(system: System, band: tuple[float, float]) -> System:
     )
 
 
-def _chunk(modal: System, kept: Index, touched: Index, squares: Array) -> Chunk:
+def _chunk(modal: System, kept: Index, touched: Index, squares: Array, floating: float) -> Chunk:
     """One block of a modal system in first order, with the modes kept."""
     n = len(kept)
     inside = np.ix_(kept, kept)
@@ -125,10 +140,13 @@ def _chunk(modal: System, kept: Index, touched: Index, squares: Array) -> Chunk:
     ]
     size = 2 * n + sum(L.shape[1] for L, _, _ in branches)
     A, speed_A = np.zeros((size, size)), np.zeros((size, size))
-    A[:n, n : 2 * n] = np.eye(n)
-    A[n : 2 * n, :n] = -np.diag(squares[kept])
+    # ω q for q, so that u² is twice the energy and a period hardly stretches it; what floats has its bearings' ω
+    omega = np.sqrt(np.maximum(squares[kept], 0.0))
+    scale = np.where(omega > 0.0, omega, floating)
+    A[:n, n : 2 * n] = np.diag(scale)
+    A[n : 2 * n, :n] = -np.diag(squares[kept] / scale)
     A[n : 2 * n, n : 2 * n] = -modal.viscous()[inside]
-    speed_A[n : 2 * n, :n] = -modal.N[inside]
+    speed_A[n : 2 * n, :n] = -modal.N[inside] / scale
     speed_A[n : 2 * n, n : 2 * n] = -modal.G[inside]
     at = 2 * n
     for L, G, tau in branches:
@@ -140,10 +158,48 @@ def _chunk(modal: System, kept: Index, touched: Index, squares: Array) -> Chunk:
         at += L.shape[1]
     B = modal.B[np.ix_(touched, kept)]
     Z, V, E = np.zeros((len(B), size)), np.zeros((len(B), size)), np.zeros((size, len(B)))
-    Z[:, :n] = B
+    Z[:, :n] = B / scale
     V[:, n : 2 * n] = B
     E[n : 2 * n] = B.T
     return Chunk(A, speed_A, Z, V, E, touched)
+
+
+def _felt_alone(chunk: Chunk, least: float) -> tuple[Chunk, Array]:
+    """A block with branches in its poles, those alone that the bearings feel, and the flexibility of the others.
+
+    A block that turns stays as it is.
+    """
+    none = np.zeros((len(chunk.touched),) * 2)
+    if chunk.speed_A.any():
+        return chunk, none
+    values, vectors = np.linalg.eig(chunk.A)
+    basis = np.zeros_like(chunk.A)
+    k, keep = 0, []
+    for value, v in zip(values, vectors.T, strict=True):
+        if value.imag < 0.0:
+            continue
+        width = 2 if value.imag > 0.0 else 1
+        basis[:, k] = v.real
+        if width == 2:
+            basis[:, k + 1] = v.imag
+        keep.append((k, width, abs(value)))
+        k += width
+    if k != len(values) or not np.linalg.cond(basis) < 1e8:
+        return chunk, none
+    inverse = np.linalg.inv(basis)
+    A, Z, V, E = inverse @ chunk.A @ basis, chunk.Z @ basis, chunk.V @ basis, inverse @ chunk.E
+    static = np.abs(chunk.Z @ np.linalg.solve(chunk.A, chunk.E)).max()
+    felt = np.zeros(len(values), dtype=bool)
+    gives = none
+    for k, width, size in keep:
+        own = slice(k, k + width)
+        if np.linalg.norm(Z[:, own]) * np.linalg.norm(E[own]) > least * size * static:
+            felt[own] = True
+        else:
+            gives = gives - Z[:, own] @ np.linalg.solve(A[own, own], E[own])
+    own = np.flatnonzero(felt)
+    inside = A[np.ix_(own, own)]
+    return Chunk(inside, np.zeros_like(inside), Z[:, own], V[:, own], E[own], chunk.touched), gives
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +209,7 @@ class Propagator:
     Parameters
     ----------
     after
-        e^{AΔ}, block by block.
+        e^{AΔ} (n, n).
     W
         (n, 3m) of the forces at 0, Δ/2 and Δ.
     free
@@ -162,45 +218,33 @@ class Propagator:
         (6m, 3m) what they lose by the forces.
     """
 
-    after: tuple[Array, ...]
+    after: Array
     W: Array
     free: Array
     felt: Array
-    flexibility: Array
 
     @classmethod
-    def of(cls, model: FirstOrder, speed: float, step: float) -> Propagator:
-        """Of a double step, s, at a speed, rad/s."""
+    def of(cls, model: FirstOrder, speed: float, step: float, K: Array, C: Array) -> Propagator:
+        """Of a double step, s, at a speed, rad/s, with mean tangents K, C (m, m)."""
         m, n = len(model.flexibility), model.size
-        after = []
-        W = np.zeros((n, 3, m))
-        free = np.zeros((3, 2, m, n))
-        felt = np.zeros((3, 2, m, 3, m))
+        A = np.zeros((n, n))
+        rows = np.zeros((2, m, n))
+        E = np.zeros((n, m))
         at = 0
         for chunk in model.chunks:
-            A = chunk.A + speed * chunk.speed_A
-            k, c = len(A), chunk.E.shape[1]
-            half, weights_half = _exponential(A, chunk.E, step, 0.5)
-            full, weights_full = half @ half, _advance(half, weights_half)
-            own = slice(at, at + k)
-            after.append(full)
-            W[own][:, :, chunk.touched] = weights_full
-            rows = np.stack([chunk.Z, chunk.V])
-            for j, (E, weights) in enumerate(
-                ((np.eye(k), np.zeros((k, 3, c))), (half, weights_half), (full, weights_full))
-            ):
-                free[j][:, chunk.touched, own] = rows @ E
-                block = (rows.reshape(2 * c, k) @ weights.reshape(k, 3 * c)).reshape(2, c, 3, c)
-                for q in range(2):
-                    for i in range(3):
-                        felt[j, q, chunk.touched[:, None], i, chunk.touched] += block[q][:, i, :]
-            at += k
-        # the highest modes give way at once, and move z alone
-        for j in range(3):
-            felt[j, 0, :, j, :] += model.flexibility
-        return cls(
-            tuple(after), W.reshape(n, 3 * m), free.reshape(6 * m, n), felt.reshape(6 * m, 3 * m), felt
-        )
+            own = slice(at, at + len(chunk.A))
+            A[own, own] = chunk.A + speed * chunk.speed_A
+            rows[0, chunk.touched, own], rows[1, chunk.touched, own] = chunk.Z, chunk.V
+            E[own, chunk.touched] = chunk.E
+            at += len(chunk.A)
+        A -= E @ (K @ rows[0] + C @ rows[1])
+        half, first = _exponential(A, E, step, 0.5)
+        full, whole = half @ half, _advance(half, first)
+        both = rows.reshape(2 * m, n)
+        free = np.concatenate([both, both @ half, both @ full])
+        felt = np.zeros((3, 2 * m, 3 * m))
+        felt[1], felt[2] = both @ first.reshape(n, 3 * m), both @ whole.reshape(n, 3 * m)
+        return cls(full, whole.reshape(n, 3 * m), free, felt.reshape(6 * m, 3 * m))
 
     def steps(self, K: Array, C: Array) -> Array:
         """S (steps, 3m, 6m): the forces at the three places are S · free · u(0).
@@ -221,27 +265,18 @@ class Propagator:
 
     def over(self, S: Array, U: Array) -> Array:
         """U (n, k) after all steps."""
-        sizes = np.cumsum([0, *(len(a) for a in self.after)]).tolist()
-        slots = [slice(a, b) for a, b in zip(sizes, sizes[1:], strict=False)]
         for s in S:
-            h = s @ (self.free @ U)
-            moved = self.W @ h
-            U = np.concatenate([a @ U[own] for a, own in zip(self.after, slots, strict=True)]) - moved
+            U = self.after @ U - self.W @ (s @ (self.free @ U))
         return U
 
     def along(self, S: Array, u: Array) -> Array:
-        """z (steps, m) at the beginning of every step from u (n,), without what follows at once."""
+        """z (steps, m) at the beginning of every step from u (n,)."""
         m = len(self.free) // 6
-        sizes = np.cumsum([0, *(len(a) for a in self.after)]).tolist()
         out = np.zeros((len(S), m), dtype=u.dtype)
         for i, s in enumerate(S):
             seen = self.free @ u
-            h = s @ seen
-            out[i] = seen[:m] - self.felt[:m] @ h
-            u = (
-                np.concatenate([a @ u[p:q] for a, p, q in zip(self.after, sizes, sizes[1:], strict=False)])
-                - self.W @ h
-            )
+            out[i] = seen[:m]
+            u = self.after @ u - self.W @ (s @ seen)
         return out
 
 
@@ -324,18 +359,11 @@ def kind(multiplier: complex) -> str:
     return "neimark-sacker"
 
 
-# numbers of u up to which the whole matrix of a period is formed; above, the directions that grow most
-WHOLE = 60
-# directions that are kept, and times they go through a period from those of a neighbour, or from nothing
-DIRECTIONS, TIMES, COLD = 16, 2, 6
-
-
 @dataclass(frozen=True, eq=False)
 class Floquet:
     """Stability of a motion, and the directions (n, k) of u that go with its multipliers."""
 
     stability: Stability
-    directions: Array
     vectors: Complex
     propagator: Propagator
     steps: Array
@@ -371,8 +399,6 @@ def floquet(
     K: Array,
     C: Array,
     kept: int = 6,
-    warm: Array | None = None,
-    whole: bool = False,
 ) -> Floquet:
     """Multipliers of a period from tangents (2·steps, m, m) at equal distances along it.
 
@@ -384,32 +410,20 @@ def floquet(
         Tangents of all bearings.
     kept
         Multipliers.
-    warm
-        Directions of a neighbour, from which a large model begins.
-    whole
-        Whether the matrix of a period is formed however large it is.
     """
     count = len(K) // 2
-    propagator = Propagator.of(model, speed, period / count)
+    # what follows at once softens the tangents: h = K (z − F h) + C ż
+    give = np.eye(K.shape[1]) + K @ model.flexibility
+    K, C = np.linalg.solve(give, K), np.linalg.solve(give, C)
+    K0, C0 = K.mean(axis=0), C.mean(axis=0)
+    propagator = Propagator.of(model, speed, period / count, K0, C0)
+    K, C = K - K0, C - C0
     S = propagator.steps(np.concatenate([K, K[:1]]), np.concatenate([C, C[:1]]))
     n = model.size
-    if whole or n <= WHOLE:
-        once = propagator.over(S, np.eye(n))
-        values, vectors = np.linalg.eig(once)
-        directions = np.zeros((n, 0))
-    else:
-        ready = warm is not None and warm.shape[0] == n
-        U = warm if ready else np.random.default_rng(0).standard_normal((n, DIRECTIONS))
-        assert U is not None
-        for _ in range(TIMES if ready else COLD):
-            U = np.linalg.qr(U)[0]
-            after = propagator.over(S, U)
-            before, U = U, after
-        values, inner = np.linalg.eig(before.T @ after)
-        vectors = before @ inner
-        directions = np.linalg.qr(after)[0]
+    once = propagator.over(S, np.eye(n))
+    values, vectors = np.linalg.eig(once)
     order = np.argsort(-np.abs(values))[:kept]
-    return Floquet(Stability(values[order], period), directions, vectors[:, order], propagator, S)
+    return Floquet(Stability(values[order], period), vectors[:, order], propagator, S)
 
 
 def pooled(blocks: Sequence[Array], m: int) -> Array:

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 HARMONICS, SEVERAL = 40, 20
 # samples of a period for its stability, at least
 SAMPLES = 256
+# poles of one state are all kept, what the bearings do not feel as well
+ALL = -1.0
 # multipliers that are kept
 KEPT = 6
 
@@ -191,7 +193,7 @@ def stability_of(
     period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
     K = pooled([a.K for a in pressed.bearings], m)
     C = pooled([a.C for a in pressed.bearings], m)
-    return floquet(model, balance.speed, period, K, C, KEPT, whole=True).stability
+    return floquet(model, balance.speed, period, K, C, KEPT).stability
 
 
 def first_order(problem: Problem, balance: Balance) -> FirstOrder:
@@ -199,7 +201,7 @@ def first_order(problem: Problem, balance: Balance) -> FirstOrder:
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))
-    return FirstOrder.of(problem.system, 2.0 * FOLLOWS * highest, band)
+    return FirstOrder.of(problem.system, 2.0 * FOLLOWS * highest, band, felt=ALL)
 
 
 def _failed(problem: Problem, balance: Balance, found: Found, result: xarray.Dataset) -> core.SolverError:
