@@ -136,6 +136,15 @@ void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work
     }
 }
 
+/* The running maximum of every ball's force; its padding lanes have none. */
+void BD_NAMED(bd_bearing_keep_peaks)(const bd_bearing *bearing, bd_bearing_work *work)
+{
+    for (size_t first = 0; first < (size_t)bearing->balls; first += BD_WIDTH) {
+        lanes more = LANES(work->force + first) - LANES(work->peak + first);
+        LANES_AT(work->peak + first) += LANES_WHERE(LANES_POSITIVE(more), more);
+    }
+}
+
 /* Rows k0 ... k0 + rows of both tangents, one register of columns wide; inlined with a constant count of rows,
  * whose sums then stay in registers over all balls. */
 BD_INLINE void tangent_rows(const bd_bearing *bearing, const bd_bearing_work *work,

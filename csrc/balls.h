@@ -7,6 +7,7 @@
 void BD_NAMED(bd_bearing_turn)(const bd_bearing *bearing, bd_bearing_work *work, double psi);
 void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work, const double *z,
                                 const double *z_rate, double cage_speed, double *restrict g);
+void BD_NAMED(bd_bearing_keep_peaks)(const bd_bearing *bearing, bd_bearing_work *work);
 void BD_NAMED(bd_bearing_tangent)(const bd_bearing *bearing, const bd_bearing_work *work,
                                   double cage_speed, int stride, double *restrict K,
                                   double *restrict C);

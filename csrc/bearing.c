@@ -13,7 +13,7 @@ static const double no_ball = -1e6;
 size_t bd_bearing_work_size(const bd_bearing_data *data)
 {
     size_t balls = (size_t)BD_PADDED(data->n_balls), coefs = (size_t)BD_PADDED(data->n_coefs);
-    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + 19 * balls;
+    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + 20 * balls;
 }
 
 size_t bd_bearing_constants(const bd_bearing_data *data)
@@ -62,7 +62,7 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
         &work->sine_a,     &work->cosine_a, &work->delta,  &work->rate,         &work->turn,
         &work->tilt,       &work->turning,  &work->force,  &work->stiffness,    &work->damping,
         &work->shift_X,    &work->shift_Y,  &work->shift,  &work->shift_X_rate, &work->shift_Y_rate,
-        &work->shift_rate, &work->place,    &work->inside, &work->pull};
+        &work->shift_rate, &work->place,    &work->inside, &work->pull,         &work->peak};
 
     work->holds = false;
     work->phi = memory;
@@ -78,19 +78,22 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
 
 /* Of the largest ball load: a ball that only brushes the groove does not carry. */
 static const double carries = 0.01;
+/* Of the open sine, 1 of 5 degrees: a ball that leans on the shoulder at all. */
+static const double leans = 0.2;
 
 bool bd_bearing_runs_off(const bd_bearing *bearing, const bd_bearing_work *work)
 {
     const bd_bearing_data *data = &bearing->data;
-    double largest = 0.0, astray = 0.0;
+    double largest = 0.0, astray = 0.0, leaning = 0.0;
     if (data->shoulder == 0)
         return false;
     for (int j = 0; j < data->n_balls; j++) {
-        const bool open = (double)data->shoulder * work->sine_a[j] < -data->open_sine;
-        largest = fmax(largest, work->force[j]);
-        astray = open ? fmax(astray, work->force[j]) : astray;
+        const double sine = (double)data->shoulder * work->sine_a[j], force = work->force[j];
+        largest = fmax(largest, force);
+        astray = sine < -data->open_sine ? fmax(astray, force) : astray;
+        leaning = sine > leans * data->open_sine ? fmax(leaning, force) : leaning;
     }
-    return astray > carries * largest;
+    return astray > carries * largest || (largest > 0.0 && leaning <= carries * largest);
 }
 
 bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const double *z_rate,

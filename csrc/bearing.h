@@ -29,6 +29,7 @@ struct bd_bearing_work {
     double *shift_X, *shift_Y, *shift; /* (balls) of imperfections: groove centres, indentation */
     double *shift_X_rate, *shift_Y_rate, *shift_rate;
     double *force, *stiffness, *damping; /* (balls) */
+    double *peak;                        /* (balls) largest force at the end of a step, N */
     /* (balls) a ball at the jump of its force (grazing.h): its place, the force in the jump, and what moves it */
     double *place, *inside, *pull;
     bool holds; /* whether the three count */
@@ -44,7 +45,8 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
 /* Whether a bearing has no waves, pits or unequal balls; its shifts are then zero for ever. */
 bool bd_bearing_perfect(const bd_bearing *bearing);
 
-/* Whether a ball that carries is pressed on the side without a shoulder, after a force was worked out. */
+/* Whether a ball that carries is pressed on the side without a shoulder, or none leans on the shoulder, after a force
+ * was worked out. */
 bool bd_bearing_runs_off(const bd_bearing *bearing, const bd_bearing_work *work);
 
 /* A bearing's bodies where the shaft has turned so far and the first ball stands at psi; of speeds likewise. */

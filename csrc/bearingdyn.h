@@ -39,7 +39,7 @@
 
 /* ---------------------------------------------------------------- status */
 
-/* 0 is success, < 0 fatal, > 0 a stop that is no error. */
+/* 0 is success, < 0 fatal, > 0 a stop that is not an error. */
 #define BD_STATUS_LIST(X)                                                                          \
     X(BD_OK, 0, "success")                                                                         \
     X(BD_INTERRUPTED, 1, "interrupted by the user")                                                \
@@ -115,16 +115,22 @@ void bd_maxwell_stress(int n_times, int n_components, const double *rate, const 
 #define BD_DAMPING_LIST(X)                                                                         \
     X(BD_DAMPING_CONSTANT, "constant") /* c while in contact (paper section 4.1) */                \
     X(BD_DAMPING_TABLE, "table")       /* c(delta), piecewise linear, its ends held */             \
-    X(BD_DAMPING_LOAD, "load")         /* c = t_c dQ/ddelta: vanishes where contact is lost */
+    X(BD_DAMPING_LOAD, "load")         /* c = t_c dQ/ddelta: vanishes where contact is lost */     \
+    X(BD_DAMPING_FILM, "film") /* of a lubricated contact, over its load: vanishes likewise */
 
 typedef enum bd_damping_law { BD_DAMPING_LIST(BD_ENUMERATOR) } bd_damping_law;
+
+/* Of the film law, with s = delta + h0: c over w = sqrt(s)/(sqrt(s) + sqrt(scale)), which goes from 0 where contact is
+ * lost towards 1, by cubics between equidistant nodes. */
+enum { BD_FILM_CELLS = 64, BD_FILM_NODES = BD_FILM_CELLS + 1 };
 
 typedef struct bd_contact {
     double kappa, h0; /* N/m^1.5; sum of both films, m */
     bd_damping_law law;
-    double c; /* N s/m (constant) or t_c in s (load) */
+    double c; /* N s/m (constant), t_c in s (load), or scale in m (film) */
     int n_table;
-    const double *table_delta, *table_c; /* (n_table) increasing; N s/m */
+    /* (n_table) increasing, and N s/m. Film: c at the nodes and its rise per cell, N s/m; both zero at the first */
+    const double *table_delta, *table_c;
 } bd_contact;
 
 /* ---------------------------------------------------------------- ball bearing (bearing.c) */
@@ -202,7 +208,7 @@ size_t bd_bearing_work_size(const bd_bearing_data *data);
 /* ---------------------------------------------------------------- model (model.c) */
 
 /* How a layer softens with the amplitude of its own strain (softening.c): beside the Maxwell branches stand a spring
- * E = F - L and a branch of modulus 2 L, of the running strain amplitude,
+ * E = F - L, a branch of modulus 2 L, and one that makes good what the Maxwell branches lack, of the running strain amplitude,
  *     F = D (1 + (A/gamma_c)^p)^(-m/p),   L = Lm (A/gamma_l)^p / (1 + (A/gamma_l)^p) */
 typedef struct bd_softening_data {
     double D, gamma_c, m, Lm, gamma_l, p;
@@ -212,7 +218,8 @@ typedef struct bd_softening_data {
     const double *strain; /* (rank) weights of y^2 in the square of the strain amplitude */
     int n_table;          /* frequencies, even in their logarithm from rate_first to rate_last */
     double rate_first, rate_last;
-    const double *table; /* (2 n_table) what the branches have too much of storage, then of loss */
+    const double
+        *table; /* (2 n_table) what the branches lack: strength of a slow branch, then loss */
 } bd_softening_data;
 
 typedef struct bd_layer_data {
@@ -288,6 +295,7 @@ void bd_model_free(bd_model *model);
 
 int bd_model_blocks(const bd_model *model);
 int bd_model_channels(const bd_model *model);
+int bd_model_bearings(const bd_model *model);
 int bd_model_coefs(const bd_model *model);
 int bd_model_layers(const bd_model *model);
 int bd_model_softening(const bd_model *model); /* how many layers soften */
@@ -365,12 +373,13 @@ typedef long long bd_count;
     X(bd_count, refreshes, sum)  /* of Newton's matrix */                                          \
     X(bd_count, refactors, sum)  /* of S, as the speed or a layer moved: counted by the caller */  \
     X(bd_count, grazing, sum)    /* steps in which balls were held where their film opens */       \
-    X(bd_count, open_steps, sum) /* with a ball pressed on a bearing's open side */                \
-    X(double, open_t, first)     /* at the first of them, -1 without */                            \
-    X(int, open_bearing, first)  /* whose it was, -1 without */                                    \
-    X(double, t, last)           /* at the end */                                                  \
-    X(double, residual, last)    /* of the last step, relative */                                  \
-    X(int, bearing, last)        /* with the largest residual, -1 without */
+    X(bd_count, open_steps,                                                                        \
+      sum)                   /* with a ball on a bearing's open side, or none on its shoulder */   \
+    X(double, open_t, first) /* at the first of them, -1 without */                                \
+    X(int, open_bearing, first) /* whose it was, -1 without */                                     \
+    X(double, t, last)          /* at the end */                                                   \
+    X(double, residual, last)   /* of the last step, relative */                                   \
+    X(int, bearing, last)       /* with the largest residual, -1 without */
 
 #define BD_REPORT_FIELD(type, name, adds) type name;
 typedef struct bd_report {
@@ -442,6 +451,9 @@ double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double
  * Notes:    before bd_prepare; without BD_OK the acceleration is void */
 bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                    bd_work *work, double *flat);
+
+/* Largest load of one ball of a bearing, N, at the end of any step marched with this work. */
+double bd_peak_load(const bd_model *model, const bd_work *work, int bearing);
 
 /* n_steps of the scheme prepared in work.
  * Given:    decimate >= 1: a row of channels is kept each time the state's step count is a multiple;

@@ -109,6 +109,15 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
             !increasing(contact->table_delta, contact->n_table))
             return BD_BAD_VALUE;
     }
+    if (contact->law == BD_DAMPING_FILM) {
+        const double *at = contact->table_delta, *rise = contact->table_c;
+        if (contact->n_table != BD_FILM_NODES)
+            return BD_BAD_SHAPE;
+        if (!(contact->c > 0.0) || !all_finite(at, BD_FILM_NODES) ||
+            !all_finite(rise, BD_FILM_NODES) || !nonnegative(at, BD_FILM_NODES) || at[0] != 0.0 ||
+            rise[0] != 0.0)
+            return BD_BAD_VALUE;
+    }
     return BD_OK;
 }
 
@@ -151,7 +160,8 @@ static bool softening_valid(const bd_softening_data *law, int rank)
            all_finite(law->strain, (size_t)rank) && nonnegative(law->strain, rank) &&
            (law->n_table < 1 ||
             (law->rate_first > 0.0 && law->rate_last > law->rate_first &&
-             isfinite(law->rate_last) && all_finite(law->table, 2 * (size_t)law->n_table)));
+             isfinite(law->rate_last) && all_finite(law->table, 2 * (size_t)law->n_table) &&
+             nonnegative(law->table, 2 * law->n_table)));
 }
 
 bd_status bd_model_check(const bd_model_data *data)

@@ -1,5 +1,7 @@
 #include "ehl.h"
 
+#include <math.h>
+
 #include "damping_table.h"
 #include "lanes.h"
 
@@ -32,6 +34,25 @@ void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *r
             c = (contact->c * 1.5 * kappa) * root;
             slope = LANES_WHERE(touching, (contact->c * 0.75 * kappa) / root);
             break;
+        case BD_DAMPING_FILM: {
+            const double *at = contact->table_delta, *rise = contact->table_c;
+            const double half = sqrt(contact->c);
+            lanes part = 1.0 / (root + half), x = BD_FILM_CELLS * (root * part);
+            lanes u = x, c0, c1, r0, r1;
+            for (int j = 0; j < BD_WIDTH; j++) {
+                const int i = bd_film_cell(x[j]);
+                u[j] -= i;
+                c0[j] = at[i], c1[j] = at[i + 1];
+                r0[j] = rise[i], r1[j] = rise[i + 1];
+            }
+            /* Hermite's cubic, and its slope by x; dx/ds = cells half part^2 / 2 root */
+            lanes over = c1 - c0, third = r0 + r1 - 2.0 * over, second = over - r0 - third;
+            c = c0 + u * (r0 + u * (second + u * third));
+            slope = r0 + u * (2.0 * second + u * (3.0 * third));
+            slope =
+                LANES_WHERE(touching, slope * ((0.5 * BD_FILM_CELLS * half) * part * part) / root);
+            break;
+        }
         case BD_DAMPING_TABLE:
             for (int j = 0; j < BD_WIDTH; j++) {
                 double slope_j;

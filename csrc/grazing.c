@@ -20,6 +20,7 @@ double bd_edge_damping(const bd_contact *contact)
     case BD_DAMPING_TABLE:
         return bd_table_damping(contact, -contact->h0, &slope);
     case BD_DAMPING_LOAD:
+    case BD_DAMPING_FILM:
         break;
     }
     return 0.0;

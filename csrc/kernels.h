@@ -20,6 +20,8 @@ typedef struct bd_kernels {
     /* balls.c: forces at coefficients z, z_rate (padded): g = sum F v; ball quantities stay in work */
     void (*force)(const bd_bearing *bearing, bd_bearing_work *work, const double *z,
                   const double *z_rate, double cage_speed, double *g);
+    /* balls.c: the largest force of each ball, after those of a step are known */
+    void (*keep_peaks)(const bd_bearing *bearing, bd_bearing_work *work);
     /* balls.c: K = dg/dz and C = dg/dz_rate at the last force, n_coefs rows of (padded) stride */
     void (*tangent)(const bd_bearing *bearing, const bd_bearing_work *work, double cage_speed,
                     int stride, double *K, double *C);

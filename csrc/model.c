@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "softening.h"
-
 const char *bd_status_text(bd_status status)
 {
 #define BD_STATUS_TEXT(name, value, text)                                                          \
@@ -219,6 +217,11 @@ static double *copy_factor(arena *a, const partition *parts, const bd_block *blo
     return L;
 }
 
+size_t bd_softening_size(const bd_layer *layer)
+{
+    return layer->softening ? (size_t)layer->padded + (size_t)BD_PADDED(BD_SOFTENING_NUMBERS) : 0;
+}
+
 /* A law with arrays of its own, or NULL. */
 static const bd_softening_data *copy_softening(arena *a, const bd_layer_data *from)
 {
@@ -252,7 +255,7 @@ static void layout_layers(arena *a, bd_model *model, const bd_model_data *data,
                 .offset = model->ranks,
                 .branch = model->branches,
                 .n_branches = from->n_branches,
-                .n_stresses = from->n_branches + (from->softening ? 2 : 0),
+                .n_stresses = from->n_branches + (from->softening ? 3 : 0),
                 .memory = model->n_softening_doubles,
                 .softening = copy_softening(a, from),
                 .stress = model->n_stress,
@@ -278,7 +281,8 @@ static bd_bearing_data copy_bearing(arena *a, const bd_bearing_data *from)
 {
     const size_t n_coefs = (size_t)from->n_coefs;
     const bd_contact *contact = &from->contact;
-    const size_t n_table = contact->law == BD_DAMPING_TABLE ? (size_t)contact->n_table : 0;
+    const bool tabled = contact->law == BD_DAMPING_TABLE || contact->law == BD_DAMPING_FILM;
+    const size_t n_table = tabled ? (size_t)contact->n_table : 0;
     bd_bearing_data own = *from;
     own.order = copy(a, from->order, n_coefs, sizeof *from->order);
     own.sine = copy(a, from->sine, n_coefs, sizeof *from->sine);
@@ -482,6 +486,11 @@ size_t bd_model_bytes(const bd_model *model)
 int bd_model_blocks(const bd_model *model)
 {
     return model->n_blocks;
+}
+
+int bd_model_bearings(const bd_model *model)
+{
+    return model->n_bearings;
 }
 
 int bd_model_channels(const bd_model *model)

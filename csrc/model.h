@@ -18,7 +18,7 @@ typedef struct bd_layer {
     int block, rank, padded;
     int offset;                         /* in padded vectors of layer rates */
     int branch, n_branches;             /* the first one's place among the branches of all layers */
-    int n_stresses;                     /* branches, and two more where the layer softens */
+    int n_stresses;                     /* branches, and three more where the layer softens */
     size_t memory;                      /* of its deviation in a state's softening */
     const bd_softening_data *softening; /* or NULL */
     size_t stress;                      /* of its first branch in a state's stress */
@@ -69,6 +69,12 @@ struct bd_model {
     const int *touched; /* (n_bearings x n_blocks) 1 where a bearing sees a block's motion */
     const double *B;    /* (n_padded x coefs): row j holds coordinate j's part in each */
 };
+
+/* Numbers that a state keeps of a layer that softens, behind its deviation (softening.c). */
+enum { BD_SOFTENING_NUMBERS = 10 };
+
+/* Doubles of both, padded; 0 where a layer does not soften. */
+size_t bd_softening_size(const bd_layer *layer);
 
 /* The matrices of one block. */
 bd_matrices bd_matrices_of(const bd_model *model, const bd_block *block);

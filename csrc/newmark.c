@@ -123,7 +123,7 @@ double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double
     return clock->reference;
 }
 
-/* A step with a ball on its bearing's open side; the first of them is kept. */
+/* A step in which a bearing runs off its shoulder; the first of them is kept. */
 static void count_open_sides(const bd_model *model, const bd_work *work, double t,
                              bd_report *report)
 {
@@ -136,6 +136,14 @@ static void count_open_sides(const bd_model *model, const bd_work *work, double 
         report->open_t = t;
         report->open_bearing = b;
     }
+}
+
+double bd_peak_load(const bd_model *model, const bd_work *work, int bearing)
+{
+    double largest = 0.0;
+    for (int j = 0; j < model->bearings[bearing].data.n_balls; j++)
+        largest = fmax(largest, work->bearings[bearing].peak[j]);
+    return largest;
 }
 
 long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work, double *flat,
@@ -184,6 +192,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         if (model->n_softening > 0)
             bd_softening_step(model, work, &state);
         count_open_sides(model, work, t, report);
+        for (int b = 0; b < model->n_bearings; b++)
+            work->kernels->keep_peaks(&model->bearings[b], &work->bearings[b]);
         if (scheme->audit)
             bd_energy_step(model, work, &state);
 

@@ -6,7 +6,7 @@
 
 /* Of a layer's block in a state, behind its deviation: both filters of d^2 and of y'^2; what S was factored with; when
  * that was; whether it was. */
-enum { A_ONCE, A_TWICE, B_ONCE, B_TWICE, SPRING, BRANCH, RATE, RENEWED, SET, NUMBERS };
+enum { A_ONCE, A_TWICE, B_ONCE, B_TWICE, SPRING, BRANCH, RATE, LIFT, RENEWED, SET };
 
 /* Shares of E that E and L may be off by in the long run: a third of a percent of E is a thousandth of a layer's
  * modulus, and so is the other of its loss. While the amplitude builds up, for `patience` memories after a renewal, S is
@@ -20,29 +20,27 @@ static const double two_pi = 6.283185307179586476925286766559;
 /* Least share of D that stays a spring, where the law is used beyond its range. */
 static const double least_spring = 1e-3;
 
-typedef struct law {
-    double spring, branch, rate; /* E, L in Pa; Omega in 1/s */
-} law;
+/* Memories that the slow branch is long: its own loss is then a thousandth of its storage. */
+static const double slow = 10.0;
 
-size_t bd_softening_size(const bd_layer *layer)
-{
-    return layer->softening ? (size_t)layer->padded + (size_t)BD_PADDED(NUMBERS) : 0;
-}
+typedef struct law {
+    double spring, branch, rate, lift; /* E, L in Pa; Omega in 1/s; the slow branch, Pa */
+} law;
 
 static double *numbers_of(const bd_layer *layer, const bd_state *state)
 {
     return state->softening + layer->memory + layer->padded;
 }
 
-/* The spring's stress, and behind it the branch's. */
+/* The spring's stress, and behind it those of the branch and of the slow one. */
 static double *stress_of(const bd_layer *layer, const bd_state *state)
 {
     return state->stress + layer->stress + (size_t)layer->n_branches * (size_t)layer->padded;
 }
 
-/* What the Maxwell branches miss of storage (0) or loss (1) at a rate: linear between the table's points, even in the
+/* What the Maxwell branches lack of strength (0) or loss (1) at a rate: linear between the table's points, even in the
  * logarithm of the rate, held outside. */
-static double missed(const bd_softening_data *data, double rate, int which)
+static double lacked(const bd_softening_data *data, double rate, int which)
 {
     const int last = data->n_table - 1;
     if (last < 0)
@@ -67,18 +65,30 @@ static law law_at(const bd_softening_data *data, const double *numbers)
     const double amplitude = sqrt(2.0 * a);
     const double rate = a > 0.0 && b > 0.0 ? sqrt(b / a) : two_pi * periods / data->memory;
     const double v = pow(amplitude / data->gamma_l, data->p);
-    const double loss = data->Lm * v / (1.0 + v) - missed(data, rate, 1);
+    const double loss = data->Lm * v / (1.0 + v);
     const double storage =
-        data->D * pow(1.0 + pow(amplitude / data->gamma_c, data->p), -data->m / data->p) -
-        missed(data, rate, 0);
-    law now = {.branch = fmax(loss, 0.0), .rate = rate};
-    now.spring = fmax(storage - now.branch, least_spring * data->D);
-    return now;
+        data->D * pow(1.0 + pow(amplitude / data->gamma_c, data->p), -data->m / data->p);
+    return (law){
+        .spring = fmax(storage - loss, least_spring * data->D),
+        .branch = loss + lacked(data, rate, 1),
+        .rate = rate,
+        .lift = lacked(data, rate, 0),
+    };
 }
 
 static law law_held(const double *numbers)
 {
-    return (law){numbers[SPRING], numbers[BRANCH], numbers[RATE]};
+    return (law){numbers[SPRING], numbers[BRANCH], numbers[RATE], numbers[LIFT]};
+}
+
+static void hold_law(double *numbers, law now, double t)
+{
+    numbers[SPRING] = now.spring;
+    numbers[BRANCH] = now.branch;
+    numbers[RATE] = now.rate;
+    numbers[LIFT] = now.lift;
+    numbers[RENEWED] = t;
+    numbers[SET] = 1.0;
 }
 
 static double square(const bd_layer *layer, const double *stress)
@@ -102,7 +112,8 @@ double bd_softening_stored(const bd_layer *layer, const bd_state *state)
     const law held = law_held(numbers_of(layer, state));
     const double *spring = stress_of(layer, state);
     return held_energy(layer, spring, held.spring) +
-           held_energy(layer, spring + layer->padded, 2.0 * held.branch);
+           held_energy(layer, spring + layer->padded, 2.0 * held.branch) +
+           held_energy(layer, spring + 2 * layer->padded, held.lift);
 }
 
 double bd_softening_loss(const bd_layer *layer, const bd_state *state)
@@ -110,8 +121,10 @@ double bd_softening_loss(const bd_layer *layer, const bd_state *state)
     if (!layer->softening)
         return 0.0;
     const law held = law_held(numbers_of(layer, state));
-    return 2.0 * held.rate *
-           held_energy(layer, stress_of(layer, state) + layer->padded, 2.0 * held.branch);
+    const double *branch = stress_of(layer, state) + layer->padded;
+    return 2.0 * (held.rate * held_energy(layer, branch, 2.0 * held.branch) +
+                  held_energy(layer, branch + layer->padded, held.lift) /
+                      (slow * layer->softening->memory));
 }
 
 double bd_softening_strain(const bd_layer *layer, const bd_state *state)
@@ -119,20 +132,16 @@ double bd_softening_strain(const bd_layer *layer, const bd_state *state)
     return layer->softening ? sqrt(2.0 * numbers_of(layer, state)[A_TWICE]) : 0.0;
 }
 
-void bd_softening_rest(const bd_model *model, const bd_state *state)
+/* The spring of a layer at rest in x: what it carries there beyond its own relaxed stiffness. */
+static void press(const bd_model *model, const bd_layer *layer, const bd_state *state)
 {
-    for (int l = 0; l < model->n_layers; l++) {
-        const bd_layer *layer = &model->layers[l];
-        if (!layer->softening)
-            continue;
-        const bd_block *block = &model->blocks[layer->block];
-        double *spring = stress_of(layer, state);
-        for (int j = 0; j < block->n; j++)
-            for (int r = 0; r < layer->rank; r++)
-                spring[r] += 2.0 * layer->softening->pressed *
-                             layer->L[(size_t)j * (size_t)layer->padded + (size_t)r] *
-                             state->x[block->offset + j];
-    }
+    const bd_block *block = &model->blocks[layer->block];
+    double *spring = stress_of(layer, state);
+    for (int j = 0; j < block->n; j++)
+        for (int r = 0; r < layer->rank; r++)
+            spring[r] += 2.0 * layer->softening->pressed *
+                         layer->L[(size_t)j * (size_t)layer->padded + (size_t)r] *
+                         state->x[block->offset + j];
 }
 
 bool bd_softening_moved(const bd_model *model, const bd_state *state)
@@ -146,12 +155,13 @@ bool bd_softening_moved(const bd_model *model, const bd_state *state)
             continue;
         const double *numbers = numbers_of(layer, state);
         const law now = law_at(layer->softening, numbers), held = law_held(numbers);
-        if (!isfinite(now.spring + now.branch + now.rate))
+        if (!isfinite(now.spring + now.branch + now.rate + now.lift))
             continue; /* the march will say so */
         const double age = (t - numbers[RENEWED]) / layer->softening->memory;
         const double slack = (age < patience ? hurry : 1.0) * held.spring;
         if (!(fabs(now.spring - held.spring) <= spring_off * slack) ||
             !(fabs(now.branch - held.branch) <= branch_off * slack) ||
+            !(fabs(now.lift - held.lift) <= spring_off * slack) ||
             !(held.branch * fabs(log(now.rate / held.rate)) <= spring_off * slack))
             return true;
     }
@@ -183,23 +193,29 @@ void bd_softening_step(const bd_model *model, const bd_work *work, const bd_stat
     }
 }
 
-/* Gives a layer's spring and branch a new law. Returned: the energy that is lost by it. */
+/* What is left of the stress of a spring whose modulus changes. */
+static double left(double now, double before)
+{
+    return before > 0.0 ? fmin(1.0, now / before) : 1.0;
+}
+
+/* Gives a layer's spring and branches a new law. Returned: the energy that is lost by it. */
 static double renew(const bd_layer *layer, const bd_state *state, law now, double t)
 {
     double *numbers = numbers_of(layer, state);
-    double *spring = stress_of(layer, state), *branch = spring + layer->padded;
+    double *spring = stress_of(layer, state);
+    double *branch = spring + layer->padded, *lift = branch + layer->padded;
     const law held = law_held(numbers);
     const double before = bd_softening_stored(layer, state);
-    const double spring_left = fmin(1.0, now.spring / held.spring);
-    const double branch_left = held.branch > 0.0 ? fmin(1.0, now.branch / held.branch) : 1.0;
+    const double spring_left = left(now.spring, held.spring);
+    const double branch_left = left(now.branch, held.branch);
+    const double lift_left = left(now.lift, held.lift);
     for (int r = 0; r < layer->rank; r++) {
         spring[r] *= spring_left;
         branch[r] *= branch_left;
+        lift[r] *= lift_left;
     }
-    numbers[SPRING] = now.spring;
-    numbers[BRANCH] = now.branch;
-    numbers[RATE] = now.rate;
-    numbers[RENEWED] = t;
+    hold_law(numbers, now, t);
     return before - bd_softening_stored(layer, state);
 }
 
@@ -215,11 +231,8 @@ void bd_soften(const bd_model *model, const bd_scheme *scheme, double *flat, boo
         double *numbers = numbers_of(layer, &state);
         const law now = law_at(layer->softening, numbers);
         if (numbers[SET] == 0.0) {
-            numbers[SPRING] = now.spring;
-            numbers[BRANCH] = now.branch;
-            numbers[RATE] = now.rate;
-            numbers[RENEWED] = t;
-            numbers[SET] = 1.0;
+            press(model, layer, &state);
+            hold_law(numbers, now, t);
         } else if (anew) {
             const double lost = renew(layer, &state, now, t);
             if (scheme->audit)
@@ -230,6 +243,7 @@ void bd_soften(const bd_model *model, const bd_scheme *scheme, double *flat, boo
         /* a spring is a branch that never relaxes: 2 E times the mean rate */
         weights[0] = (bd_branch_weights){1.0, held.spring * scheme->dt, held.spring * scheme->dt};
         weights[1] = bd_maxwell_weights(scheme->dt, 1.0 / held.rate, 2.0 * held.branch);
+        weights[2] = bd_maxwell_weights(scheme->dt, slow * layer->softening->memory, held.lift);
         work->forget[l] = -expm1(-scheme->dt / layer->softening->memory);
     }
 }

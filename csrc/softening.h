@@ -1,7 +1,8 @@
 /* softening.h - inside the core: layers that soften with their own strain.
  *
- * A layer whose rubber softens carries, beside its Maxwell branches, two stresses more: that of a spring E and that of a
- * branch of modulus 2 L and rate Omega. E, L and Omega follow the running strain amplitude
+ * A layer whose rubber softens carries, beside its Maxwell branches, three stresses more: that of a spring E, that of a
+ * branch of modulus 2 L and rate Omega, and that of a slow branch which adds at Omega what the Maxwell branches lack (and
+ * forgets a lasting load). They follow the running strain amplitude
  *
  *     d' = y' - d / memory,   a'' filtered twice from sum strain d^2,  b'' from sum strain y'^2,
  *     A = sqrt(2 a''),   Omega = sqrt(b'' / a'')
@@ -14,12 +15,6 @@
 #include <stdbool.h>
 
 #include "work.h"
-
-/* Doubles that a state keeps of a layer that softens: the deviation d, and the numbers below. */
-size_t bd_softening_size(const bd_layer *layer);
-
-/* The spring of a state at rest in x: what the layer carries there beyond its own relaxed stiffness. */
-void bd_softening_rest(const bd_model *model, const bd_state *state);
 
 /* Whether E, L or Omega has moved so far from what S was factored with that both are to be renewed. */
 bool bd_softening_moved(const bd_model *model, const bd_state *state);

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "softening.h"
-
 /* ---------------------------------------------------------------- clock */
 
 /* Where the clock's parts lie at the head of a state; a flag is 1 or 0, a count a whole number. */
@@ -91,7 +89,6 @@ void bd_state_set(const bd_model *model, double *flat, double t, const double *x
         state.x[model->slot[i]] = x[i];
         state.v[model->slot[i]] = v[i];
     }
-    bd_softening_rest(model, &state);
 }
 
 void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,

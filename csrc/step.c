@@ -245,6 +245,7 @@ extern const bd_kernels BD_NAMED(bd_kernels);
 const bd_kernels BD_NAMED(bd_kernels) = {
     .turn = BD_NAMED(bd_bearing_turn),
     .force = BD_NAMED(bd_bearing_force),
+    .keep_peaks = BD_NAMED(bd_bearing_keep_peaks),
     .tangent = BD_NAMED(bd_bearing_tangent),
     .predict = predict,
     .observe = observe,

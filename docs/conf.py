@@ -41,6 +41,7 @@ autodoc_type_aliases = {"ArrayLike": "ArrayLike", "Array": "Array", "Float": "Ar
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True
+napoleon_attr_annotations = False  # types stand in the signatures
 default_role = "code"
 add_module_names = False
 nitpicky = True

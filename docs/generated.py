@@ -1,4 +1,4 @@
-"""What the pages show and a build makes: the picture of the rooms, and the first hour as it runs."""
+"""What the pages show and a build makes: pictures, tables, and the first hour as it runs."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 import architecture
+import sheet_figure
 
 HERE = Path(__file__).parent
 STATIC = HERE / "_static"
@@ -26,11 +27,28 @@ def make() -> None:
     (STATIC / "warnings.txt").write_text(warnings_table(), encoding="utf-8")
     (STATIC / "names.txt").write_text(names(), encoding="utf-8")
     architecture.draw(STATIC / "architecture.svg")
+    sheet_figure.draw(STATIC / "sheet.svg")
+    squeezed_picture(STATIC / "squeezed.png")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))
         shutil.copy(Path("out", "first_hour.png"), STATIC)
     (STATIC / "first_hour.txt").write_text(printed.getvalue(), encoding="utf-8")
+
+
+def squeezed_picture(path: Path) -> None:
+    """The rings of the guide's page on squeeze: bonded with recessed ends, and slid in without friction."""
+    import matplotlib.pyplot as plt
+
+    import bearingdyn as bd
+
+    rubber = bd.Maxwell(G0=1e6, G=[1e6, 2e6], tau=[1e-3, 1e-4], K=2e9, density=1150.0)
+    figure, axes = plt.subplots(1, 2, figsize=(10, 3.2), layout="constrained")
+    for ax, recess, how, squeeze in ((axes[0], 1.2e-3, "bonded", 0.05), (axes[1], 0.0, "slip", 0.10)):
+        ring = bd.Layer(r_inner=0.020, r_outer=0.024, width=0.012, material=rubber, recess=recess)
+        bd.plot.squeezed_section(ring.assembled(squeeze=squeeze, inside=how, outside=how), ax=ax)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
 
 
 def warnings_table() -> str:

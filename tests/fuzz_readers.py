@@ -408,6 +408,24 @@ def _gmsh() -> Reader:
     return Reader(write, lambda f: bd.read_mesh(f / "m.msh", upgrade=True))
 
 
+def _dma_kinds() -> Reader:
+    """Every kind of file that tests/fuzz_dma.py has a sound one of, each read as that file asks for."""
+    import bearingdyn as bd
+    from fuzz_dma import seeds
+
+    files = [(f"seed{k}{ending}", content) for k, (ending, content) in enumerate(seeds())]
+
+    def write(folder: Path) -> None:
+        for name, content in files:
+            (folder / name).write_bytes(content)
+
+    def read(folder: Path) -> None:
+        for name, content in files:
+            bd.read_dma(folder / name, mode="shear" if b"tan" not in content else None)
+
+    return Reader(write, read)
+
+
 READERS: dict[str, Callable[[], Reader]] = {
     "matrix_market": _matrix_market,
     "matrix_market_array": _matrix_market_array,
@@ -423,6 +441,7 @@ READERS: dict[str, Callable[[], Reader]] = {
     "store": _store,
     "material": _material,
     "dma": _dma,
+    "dma_kinds": _dma_kinds,
     "abaqus_mesh": _abaqus_mesh,
     "gmsh": _gmsh,
 }

@@ -85,3 +85,23 @@ def friswell() -> Application:
     for end in ("left", "right"):
         app.ground(f"rotor.{end}", stiffness=(1e6, 1e6, 0, 0, 0, 0))
     return app
+
+
+def jis_rotor(r_inner: float = 40.1e-3, r_outer: float = 63.9e-3) -> Application:
+    """A rigid rotor on one JIS 6306, loaded along x; radii of the raceways, m."""
+    app = Application()
+    app.add("rotor", RigidBody(20.0, (0.1, 0.1, 0.1)))
+    app.ground("rotor.centre", damping=(200, 200, 200, 0.1, 0.1, 0.1))
+    bearing = BallBearing(
+        8,
+        (r_outer - r_inner) / 2,
+        (r_outer + r_inner) / 2,
+        0.52,
+        0.52,
+        clearance=40e-6,
+        kappa=13.34e9,
+        cage_ratio=r_inner / (r_inner + r_outer),
+    )
+    app.bearing("ball", bearing, inner="rotor.centre", outer="ground")
+    app.load("rotor.centre", (196.0, 0, 0, 0, 0, 0))
+    return app

@@ -7,7 +7,8 @@ const char bd_py_march_doc[] = PyDoc_STR(
     "march(state, steps, decimate, scheme, start, progress) -> record, state, report\n\n"
     "scheme: a dict, see core.Scheme. The GIL is released. A new state is returned; the one given\n"
     "is not touched. progress(done, total) is called every 0.05 s. report: a dict of\n"
-    "REPORT_FIELDS. An interrupt (Ctrl-C) ends the march with the status INTERRUPTED and what was\n"
+    "REPORT_FIELDS, and of peaks, the largest load of one ball of each bearing. An interrupt "
+    "(Ctrl-C) ends the march with the status INTERRUPTED and what was\n"
     "recorded, be it in the last of its steps.");
 
 static bool all_finite(const double *values, size_t n)
@@ -16,6 +17,21 @@ static bool all_finite(const double *values, size_t n)
     for (size_t i = 0; i < n; i++)
         poison += 0.0 * values[i];
     return poison == 0.0;
+}
+
+/* The largest ball load of every bearing, a tuple of floats. */
+static PyObject *peaks_of(const bd_model *model, const bd_work *work)
+{
+    const int n = bd_model_bearings(model);
+    PyObject *peaks = PyTuple_New(n);
+    for (int b = 0; peaks && b < n; b++) {
+        PyObject *load = PyFloat_FromDouble(bd_peak_load(model, work, b));
+        if (!load)
+            Py_CLEAR(peaks);
+        else
+            PyTuple_SET_ITEM(peaks, b, load);
+    }
+    return peaks;
 }
 
 PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
@@ -118,10 +134,12 @@ PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
 
     PyObject *used = PySequence_GetSlice(record, 0, (Py_ssize_t)kept);
     PyObject *report = used ? bd_py_report_dict(&total) : NULL;
-    if (report)
+    PyObject *peaks = report ? peaks_of(model, work) : NULL;
+    if (peaks && PyDict_SetItemString(report, "peaks", peaks) == 0)
         result = PyTuple_Pack(3, used, state, report);
     Py_XDECREF(used);
     Py_XDECREF(report);
+    Py_XDECREF(peaks);
 done:
     bd_work_free(work);
     Py_XDECREF(state);

@@ -144,7 +144,7 @@ static int read_double(PyObject *value, const char *what, const char *name, doub
     return 0;
 }
 
-/* Names the first key that is none of the fields. Always returns -1. */
+/* Names the first key that is not a field. Always returns -1. */
 static int raise_unknown(PyObject *dict, const char *what, const bd_py_field *fields, size_t n)
 {
     PyObject *key, *value;

@@ -17,7 +17,7 @@ from bearingdyn.bearing import BallBearing, PointContact, Walther
 from bearingdyn.bearing.catalogue import bearing
 from bearingdyn.material import Elastic, Maxwell
 from bearingdyn.parts import Disc, Layer, RigidBody, Section, Shaft
-from bearingdyn.progress import Progress
+from bearingdyn.progress import Progress, told
 
 RPM = math.pi / 30
 HARRIS = "T. A. Harris, Rolling Bearing Analysis"
@@ -165,21 +165,23 @@ FAMILIES: tuple[Callable[[], Iterator[Check]], ...] = (
 )  # fmt: skip
 
 
-def check(progress: Progress | None = None) -> list[Check]:
+def check(progress: Progress | bool | None = None) -> list[Check]:
     """Check the installed package: every case; one that raises an exception is a row that does not hold.
 
     Parameters
     ----------
     progress
-        Called with (families done, families in all).
+        True for a bar, False for none, or a function called with (families done, families in all); None for
+        a bar where standard error is a terminal.
     """
     found: list[Check] = []
-    for done, family in enumerate(FAMILIES):
-        try:
-            found += family()
-        except Exception as error:
-            raised = f"{type(error).__name__}: {error}"
-            found.append(Check(family.__name__, "", math.nan, math.nan, 0.0, raised))
-        if progress is not None:
-            progress(done + 1, len(FAMILIES))
+    with told(progress, "family") as tell:
+        for done, family in enumerate(FAMILIES):
+            try:
+                found += family()
+            except Exception as error:
+                raised = f"{type(error).__name__}: {error}"
+                found.append(Check(family.__name__, "", math.nan, math.nan, 0.0, raised))
+            if tell is not None:
+                tell(done + 1, len(FAMILIES))
     return found

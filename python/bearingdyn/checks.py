@@ -24,8 +24,8 @@ def require(ok: bool, field: str, value: object, remedy: str) -> None:
 def number(field: str, value: object, remedy: str = "give one finite number") -> float:
     """Check a number: the value as a finite float; ValueError if it is anything else."""
     # True is no length, and an array of one entry no number
-    other = isinstance(value, (str, bytes, bool, np.bool_)) or np.ndim(value) > 0  # type: ignore[arg-type]
     try:
+        other = isinstance(value, (str, bytes, bool, np.bool_)) or np.ndim(value) > 0  # type: ignore[arg-type]
         x = math.nan if other else float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{field} is {value!r}; {remedy}") from None
@@ -110,6 +110,20 @@ def items(field: str, value: object, remedy: str) -> list[Any]:
 def instance(field: str, value: object, kinds: type | tuple[type, ...], remedy: str) -> None:
     """Check that the value is an instance of one of the kinds, else raise ValueError."""
     require(isinstance(value, kinds), field, value, remedy)
+
+
+def truth(field: str, value: object) -> bool:
+    """Check a truth: True or False, or 1 or 0; ValueError for anything else."""
+    good = isinstance(value, bool | np.bool_) or (isinstance(value, int) and value in (0, 1))
+    require(good, field, value, "it must be True or False")
+    return bool(value)
+
+
+def table(field: str, value: object, holding: Sequence[str], maker: str) -> None:
+    """Check an xarray.Dataset that has these variables, the result of `maker`; ValueError for all else."""
+    good = hasattr(value, "data_vars") and all(name in value for name in holding)  # type: ignore[operator]
+    told = value if not hasattr(value, "data_vars") else f"a Dataset of {sorted(map(str, value))}"  # type: ignore[call-overload]
+    require(good, field, told, f"it must be the result of `{maker}`, with {', '.join(holding)}")
 
 
 def named(field: str, value: object, remedy: str) -> dict[str, Any]:

@@ -6,6 +6,7 @@ Everything here is arrays in, arrays out; what the arrays mean is said in csrc/b
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
+from itertools import zip_longest
 from typing import Any, Protocol
 
 import numpy as np
@@ -168,6 +169,7 @@ class Report:
     """The core's report of where and how a march ended (bd_report); the sum of two is of one after the other.
 
     The fields are those of REPORT_FIELDS, which says of each whether it adds, or the first or last counts.
+    `peaks` is the largest load of one ball at the end of any step, N, of each bearing in their order.
     """
 
     status: int = 0
@@ -182,6 +184,7 @@ class Report:
     t: float = 0.0
     residual: float = 0.0
     bearing: int = -1
+    peaks: tuple[float, ...] = ()
 
     def __add__(self, later: Report) -> Report:
         mine, its = vars(self), vars(later)
@@ -191,7 +194,9 @@ class Report:
                 return a + b
             return a if how == "first" and a >= 0 else b
 
-        return Report(**{n: both(mine[n], its[n], how) for n, how in REPORT_FIELDS.items()})
+        fields = {n: both(mine[n], its[n], how) for n, how in REPORT_FIELDS.items()}
+        peaks = tuple(max(pair) for pair in zip_longest(self.peaks, later.peaks, fillvalue=0.0))
+        return Report(**fields, peaks=peaks)
 
     @property
     def counts(self) -> dict[str, int]:

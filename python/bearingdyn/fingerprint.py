@@ -44,14 +44,15 @@ def describe(value: Any, *, strict: bool = True, within: tuple[Any, ...] = ()) -
     value
         Anything a result may be computed from.
     strict
-        Refuse what has no content to tell it by.
+        Refuse a value that has no content to tell it by.
     within
         What the value is a part of: one that holds itself is told by its name there.
 
     Raises
     ------
     ValueError
-        For what has no content to tell it by, such as an open file. If not strict, its class stands for it.
+        For a value that has no content to tell it by, such as an open file. If not strict, its
+        class stands for it.
     """
 
     def told(part: Any) -> Any:

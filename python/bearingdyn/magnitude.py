@@ -161,7 +161,9 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "pitch diameter": Magnitude(
             "m", (1e-6, 10.0), (1e-4, 10.0), "slewing bearings have metres", _LENGTHS
         ),
-        "groove": Magnitude("", (0.5, math.inf), (0.5, 1.0), "a groove's radius is 0.51 to 0.56 Dw"),
+        "groove": Magnitude(
+            "", (0.5, 1e4), (0.5, 1.0), "a groove's radius is 0.51 to 0.56 Dw, and 100 Dw is flat"
+        ),
         "clearance": Magnitude(
             "of Dw", (0.0, 0.1), (0.0, 0.04), "radial clearances (ISO 5753) are below Dw/80"
         ),

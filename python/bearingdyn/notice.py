@@ -39,12 +39,13 @@ class FitWarning(Notice):
 
 
 class OpenSideWarning(Notice):
-    """Notice: a march pressed balls onto the side of an angular contact bearing that has no shoulder.
+    """Notice: an angular contact bearing of a march was pressed where it has no shoulder, or not onto it.
 
     The motion computed from then on is that of a bearing with two shoulders.
 
     When: a march in which a ball that carries (1 % of the largest ball load) stood beyond the bottom of its
-    groove, on the open side. The bearing, the first time and the number of steps are named.
+    groove, on the open side, or in which all that carry stood on the bottom, no axial load pressing them onto
+    the shoulder. The bearing, the first time and the number of steps are named.
 
     Remedy: more preload, or the bearing hung the other way round, `bearing.mirrored()`; with shoulders on
     both sides it has `open_side=None`.
@@ -73,7 +74,7 @@ class BearingWarning(Notice):
 
 
 class PassedOver(Notice):
-    """A designation says something that the model of a bearing does not know.
+    """Notice: a designation says something that the model of a bearing does not know.
 
     When: `catalogue.bearing` reads a maker's name, seals, shields, a cage, a tolerance class, or a clearance
     class beside a given clearance. The text says how the rest was read.
@@ -105,8 +106,30 @@ class BeyondData(Notice):
     """
 
 
+class StrainedLayer(Notice):
+    """Notice: a layer's linear stiffness is wrong at the static displacement that an equilibrium gives it.
+
+    When: `equilibrium` displaces the surfaces of a Layer against each other, across the axis, by more than
+    4 % of its thickness: there its stiffness has risen by 1 %. The text says by how much the state itself,
+    and a small motion about it, is wrong. Along the axis the linear stiffness is good to 1 % up to 20 % of
+    the thickness, and nothing warns.
+
+    Remedy: less load or a thicker layer; or take the figures of the text as the error of the answer.
+    """
+
+
+class MeshDependent(Notice):
+    """Notice: the answer of a squeezed part changes by more than 1 % between two meshes.
+
+    When: `assembled` finds another force or static stiffness on a coarser mesh; at the sharp edge of a bond
+    the strain is singular, and near to folding the mesh decides.
+
+    Remedy: a greater `refinement`; a recess at the edges of the bonds; `compare=False` where it is known.
+    """
+
+
 class BeyondSweep(Notice):
-    """A rubber vibrates with more strain than its law of softening was found from.
+    """Notice: a rubber vibrates with more strain than its law of softening was found from.
 
     When: a response or a march with a law of softening (`payne`) reaches a strain above the highest of the
     strain sweep.
@@ -151,6 +174,17 @@ class MixedRuns(Notice):
     When: `master_curve` gets points of several runs, as a column of the table names them, that nobody chose.
 
     Remedy: `dma.select(run="a")` for one run; `dma.select(run=["a", "b"])` says that they are meant together.
+    """
+
+
+class UnequalRuns(Notice):
+    """Runs (specimens) of one measurement stand at different levels.
+
+    When: `master_curve` finds that the moduli of a run have to be multiplied by a factor more than 2 % and
+    three standard errors from 1, so that all runs follow one law; or cannot tell the level of a run.
+
+    Remedy: check the specimens' thickness and clamping; choose one run by `dma.select(run=...)`, or give
+    `levels={run: factor}`; `levels=None` leaves moduli as measured.
     """
 
 
@@ -231,6 +265,16 @@ class TensionAsShear(Notice):
     When: `fit_maxwell` is given a master curve in tension.
 
     Remedy: `master.to_shear(K=...)` or `to_shear(nu=...)` beforehand says how it is meant.
+    """
+
+
+class FoldedMesh(Notice):
+    """Notice: elements of a mesh overlap, one folded into its neighbours, and its volume counts twice.
+
+    When: two elements of a mesh lie on the same side of a face that they share. gmsh writes such tetrahedra
+    beside pyramids now and then.
+
+    Remedy: mesh again with other sizes, or without pyramids; the text names the element and the place.
     """
 
 

@@ -6,8 +6,8 @@ A block (header or chunk) is its length and CRC-32 (two unsigned little-endian n
 as many bytes. The CRC is of the block's place in the file, its length (8 bytes each) and its bytes: neither
 zeros, as a power cut leaves them, nor a block that was moved pass for one. The header is JSON; a chunk is
 rows of recorded channels and the state after them, so that the march goes on from it bit for bit, and before
-both their sizes and what the core counted, by name, as JSON. Killed at any moment, the file holds every
-finished chunk; a torn tail is ignored.
+both their sizes and what the core counted, by name, as JSON, with the largest ball load of each bearing, N
+(`peaks`). Killed at any moment, the file holds every finished chunk; a torn tail is ignored.
 
 One march at a time writes a file: it holds the system's lock (flock) on it, which ends with the process.
 
@@ -57,7 +57,8 @@ class Chunk:
 
     def packed(self) -> bytes:
         """As bytes."""
-        counts = json.dumps(self.report.counts).encode()
+        counted = {**self.report.counts, "peaks": list(self.report.peaks)}
+        counts = json.dumps(counted).encode()
         counts += b" " * (-len(counts) % 8)  # numbers lie at multiples of their size
         front = _CHUNK.pack(len(self.rows), self.state.size, len(counts))
         return front + counts + self.rows.tobytes() + self.state.tobytes()
@@ -69,7 +70,7 @@ class Chunk:
         Raises
         ------
         ValueError
-            For bytes that are no chunk of so many channels.
+            For bytes that do not make a chunk of so many channels.
         """
         front = _CHUNK_1 if version == 1 else _CHUNK
         if len(data) < front.size:
@@ -87,6 +88,12 @@ class Chunk:
         else:
             counts = _json(data[front.size : at])
         known = Report().counts
+        # files written before peaks were kept have none
+        peaks = counts.pop("peaks", []) if isinstance(counts, dict) else []
+        if not (
+            isinstance(peaks, list) and all(type(p) in (int, float) and 0 <= p < math.inf for p in peaks)
+        ):
+            raise ValueError(f"its peaks are {peaks!r:.200}; they must be the largest ball loads, N")
         if not isinstance(counts, dict) or not counts.keys() <= known.keys():
             raise ValueError(f"it counts {counts!r:.200}; known are {sorted(known)}")
         if not all(type(c) is int and 0 <= c <= _LARGEST for c in counts.values()):
@@ -96,8 +103,8 @@ class Chunk:
         origin, count, dt = state[:3].tolist()
         t = origin + count * dt
         if not (math.isfinite(t) and 0 <= count <= _LARGEST):
-            raise ValueError(f"its state begins with {[origin, count, dt]}, which is no time")
-        return cls(rows, state, Report(**counts, t=t))
+            raise ValueError(f"its state begins with {[origin, count, dt]}, which cannot be a time")
+        return cls(rows, state, Report(**counts, t=t, peaks=tuple(map(float, peaks))))
 
 
 def report_of(chunks: Sequence[Chunk]) -> Report:
@@ -143,7 +150,7 @@ def _parsed(data: bytes, path: str | os.PathLike[str]) -> tuple[dict[str, Any], 
     try:
         facts = _facts(_json(header))
     except ValueError as error:
-        raise ValueError(f"{os.fspath(path)} has a header that is none of a run: {error}") from None
+        raise ValueError(f"{os.fspath(path)} does not have the header of a run: {error}") from None
     chunks: list[Chunk] = []
     while True:
         block, after = _block(data, at, version)
@@ -152,14 +159,15 @@ def _parsed(data: bytes, path: str | os.PathLike[str]) -> tuple[dict[str, Any], 
         try:
             chunks.append(Chunk.unpacked(block, len(facts["channels"]), version))
         except ValueError as error:
-            raise ValueError(f"{os.fspath(path)}: chunk {len(chunks)} is none of a run: {error}") from None
+            which = f"{os.fspath(path)}: chunk {len(chunks)}"
+            raise ValueError(f"{which} does not belong to a run: {error}") from None
         if chunks[-1].state.size != chunks[0].state.size:
             raise ValueError(f"{os.fspath(path)}: chunk {len(chunks) - 1} has a state of another size")
         at = after
 
 
 def _json(text: bytes) -> Any:
-    """What JSON says; ValueError for all that is none, however deep or long."""
+    """What JSON says; ValueError for anything that is not JSON, however deep or long."""
     try:
         return json.loads(text)
     except RecursionError:

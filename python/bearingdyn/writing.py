@@ -27,7 +27,7 @@ def write_whole(path: str | os.PathLike[str], data: bytes | memoryview) -> None:
     ------
     OSError
         Naming the file and what is wrong: no such folder, no room, no permission, or something at that place
-        that is no file (a folder, a device, a pipe). What was there before is unchanged.
+        that is not a file (a folder, a device, a pipe). What was there before is unchanged.
     """
     mode = check_target(path)
     target = Path(os.path.realpath(path))

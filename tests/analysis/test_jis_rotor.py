@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 
 from bearingdyn.analysis import Equilibrium, equilibrium, transient
-from bearingdyn.application import Application
-from bearingdyn.bearing import BallBearing
-from bearingdyn.parts import RigidBody
+from rotors import jis_rotor
 
 Z, R_INNER, R_OUTER = 8, 40.1e-3, 63.9e-3
 PER_PASSAGE, KEPT = 256, 64
@@ -24,22 +22,7 @@ SETTLE = 5.0
 
 @pytest.fixture(scope="module")
 def rotor() -> Equilibrium:
-    app = Application()
-    app.add("rotor", RigidBody(20.0, (0.1, 0.1, 0.1)))
-    app.ground("rotor.centre", damping=(200, 200, 200, 0.1, 0.1, 0.1))
-    bearing = BallBearing(
-        Z,
-        (R_OUTER - R_INNER) / 2,
-        (R_OUTER + R_INNER) / 2,
-        0.52,
-        0.52,
-        clearance=40e-6,
-        kappa=13.34e9,
-        cage_ratio=R_INNER / (R_INNER + R_OUTER),
-    )
-    app.bearing("ball", bearing, inner="rotor.centre", outer="ground")
-    app.load("rotor.centre", (196.0, 0, 0, 0, 0, 0))
-    return equilibrium(app)
+    return equilibrium(jis_rotor(R_INNER, R_OUTER))
 
 
 def motion(rotor: Equilibrium, rpm: float) -> tuple[int, float]:

@@ -64,6 +64,28 @@ def test_a_thrust_reversal_in_a_march_warns_with_bearing_and_time():
     assert z.max() - z.min() > 0.4e-3  # the issue's 0.46 mm: it has jumped through the play
 
 
+@pytest.mark.parametrize("held", [False, True])
+def test_a_radial_load_alone_is_refused_in_an_application(held):
+    """Free along z, or held there by a soft spring, which takes none of the radial load."""
+    app = bd.Application()
+    app.add("rotor", bd.RigidBody(0.5, (1e-3, 1e-3, 1e-3), rotating=True))
+    app.bearing("front", bearing("7205"), inner="rotor.centre", outer="ground")
+    app.ground("rotor.centre", stiffness=[0, 0, 1e3 if held else 0, 100, 100, 0])
+    app.load("rotor.centre", (0, -50.0, 0, 0, 0, 0))
+    with pytest.raises(ValueError, match=r"bearing 'front' .*leans on the shoulder"):
+        bd.equilibrium(app)
+    with pytest.raises(ValueError, match="leans on the shoulder"):
+        bd.transient(app, speed=10.0, dt=1e-5, steps=1, record=["rotor.centre.y"])
+
+
+def test_a_thrust_that_fades_in_a_march_warns():
+    """200 N fall to nothing while 300 N press radially: the balls slide down to the bottom."""
+    app = reversing(bearing("7205", damping=100.0), -200.0)
+    app.load("rotor.centre", (0, -300.0, 0, 0, 0, 0))
+    with pytest.warns(bd.notice.OpenSideWarning, match="or none of them onto its shoulder"):
+        bd.transient(app, speed=100.0, dt=1e-5, steps=3000, record=["rotor.centre.z"])
+
+
 @pytest.mark.parametrize(
     ("ball", "after"),
     [

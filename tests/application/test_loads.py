@@ -233,7 +233,7 @@ def test_force_through_layer_bearing_and_supports_is_that_of_the_bodies_between(
         (["ground.θx"], ["ring.centre.y"], "the ground moves along"),
         (["shaft.end.y"], ["left.force.θx"], "bearing 'left' offers"),
         (["shaft.end.y"], ["layer.middle.force.y"], r"'layer' has \['inner', 'outer'\]"),
-        (["shaft.end.y"], ["axle.a.force.y"], "no bearing and no interface"),
+        (["shaft.end.y"], ["axle.a.force.y"], "neither a bearing nor an interface"),
         (["shaft.end.y"], ["layer.inner.force.w"], "not 'w'"),
         (["shaft.end.y"], ["ground.ring.centre.y"], "'ring.centre' is no interface that the ground holds"),
     ],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -111,7 +112,7 @@ def test_fits_inside_its_boundary(name):
 
 @pytest.mark.parametrize("name", list(CATALOGUE)[::7])  # every series, and every size in one of them
 def test_finds_its_equilibrium_from_a_thousandth_to_all_of_its_rating(name):
-    brg = made(name)
+    brg = replace(made(name), open_side=None)  # else a radial load alone on an angular contact is refused
     C0 = brg.static_rating
     radial, axial = np.array([1.0, 0, 0, 0, 0, 0]), np.array([0, 0, 1.0, 0, 0, 0])
     scale = np.array([1, 1, 1, brg.arm, brg.arm, 1])

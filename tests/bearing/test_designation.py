@@ -120,3 +120,7 @@ def test_what_holds_no_number_is_refused(nonsense):
 def test_no_clearance_outside_the_table(bore, group):
     with pytest.raises(ValueError, match=r"^(bore|group) is "):
         clearance_range(bore, group)
+
+
+def test_a_designation_leads_to_its_lines():
+    assert bearing("6205").lines(1797 * math.pi / 30)["BPFO"] == pytest.approx(107.36, abs=5e-3)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from bearingdyn.bearing import BallBearing, TabulatedDamping
+from bearingdyn.bearing import BallBearing, FilmDamping, TabulatedDamping
 
 FILM, C = 2e-6, (10.0, 30.0)  # m, N s/m
 TABLE = (2e-6, 8e-6)  # m
@@ -43,3 +43,50 @@ def test_the_table_covers_all_three_cases() -> None:
         for z in (-1e-6, 1e-6, 12e-6, 40e-6)
     ]
     assert -FILM < deltas[0] < 0 < deltas[1] < TABLE[0] < deltas[2] < TABLE[1] < deltas[3]
+
+
+W = np.linspace(0, 1, 65)
+FADING = FilmDamping(2e-6, 40 * W**3 * (1.4 - 0.5 * W))
+
+
+def test_film_damping_is_the_curve_of_its_nodes() -> None:
+    ball = BallBearing(8, 12.303e-3, 52e-3, 0.52, 0.53, contact_angle=0.4, film=FILM, damping=FADING)
+    A = 0.05 * ball.Dw
+    for z in (-4e-6, -1e-6, 1e-6, 12e-6, 60e-6):
+        length = math.hypot(A * math.sin(0.4) + z, A * math.cos(0.4))
+        sine, s = (A * math.sin(0.4) + z) / length, length - A + FILM
+        w = math.sqrt(s) / (math.sqrt(s) + math.sqrt(2e-6))
+        # cubics between nodes 1/64 apart follow a quartic to (1/64)³ of its bends
+        assert ball.damping_matrix([0, 0, z, 0, 0, 0])[2, 2] == pytest.approx(
+            8 * sine**2 * 40 * w**3 * (1.4 - 0.5 * w), rel=2e-3
+        )
+
+
+def test_force_and_tangent_vanish_together_where_contact_is_lost() -> None:
+    ball = BallBearing(8, 12.303e-3, 52e-3, 0.52, 0.53, contact_angle=0.4, film=FILM, damping=FADING)
+    A = 0.05 * ball.Dw
+    # the film opens where the line between the groove centres is FILM shorter than A
+    lost = math.sqrt((A - FILM) ** 2 - (A * math.cos(0.4)) ** 2) - A * math.sin(0.4)
+    last = np.inf
+    for step in (1e-7, 1e-8, 1e-9):
+        q = [0, 0, lost + step, 0, 0, 0]
+        # both parts fall as s^1.5, to .03 for a tenth of s; round-off of s spoils the last
+        force = abs(ball.force(q, velocity=[0, 0, 1e-2, 0, 0, 0])[2])
+        assert force < 0.2 * last
+        last = force
+    assert ball.damping_matrix([0, 0, lost - 1e-9, 0, 0, 0])[2, 2] == 0
+
+
+@pytest.mark.parametrize(
+    ("scale", "c", "message"),
+    [
+        (0.0, W, "damping.scale is 0.0"),
+        (1e-6, W + 1, r"damping.c\[0\] is 1.0"),
+        (1e-6, -W, "damping.c is "),
+        (1e-6, W[1:], "damping.c "),
+        (1e-6, np.where(W == 1, np.nan, W), "damping.c"),
+    ],
+)
+def test_bad_film_damping_is_named(scale: float, c: np.ndarray, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        FilmDamping(scale, c)

@@ -87,8 +87,24 @@ def test_pairs_bear_both_ways_but_a_tandem_does_not():
         Pair(row.mirrored(), "DB", 0.015)
 
 
-def test_the_bottom_of_the_groove_still_carries():
-    """A contact at α = 0, or a few degrees beyond, lies on the groove: there is no shoulder to miss."""
-    kernel = bearing("7205").kernel()
-    assert math.degrees(math.asin(kernel.open_sine)) == pytest.approx(5.0)
-    assert bearing("7205").displacement([0, -50.0, 0, 0, 0, 0])[1] < 0
+def test_a_radial_load_alone_is_refused():
+    """The ring slides along z until the balls stand on the bottom, at α = 0, where no shoulder begins."""
+    ball = bearing("7205")
+    assert math.degrees(math.asin(ball.kernel().open_sine)) == pytest.approx(5.0)
+    for row in (ball, ball.mirrored(), bearing("6205", clearance=1e-5, open_side="-z")):
+        with pytest.raises(
+            ValueError, match=r"none of its \d loaded balls leans on the shoulder.*at -?0\.0°"
+        ):
+            row.displacement([0, -50.0, 0, 0, 0, 0])
+    with pytest.raises(ValueError, match="in the first row none of its"):
+        Pair(ball, "DT", 0.015).displacement([0, -50.0, 0, 0, 0, 0])
+    # two set against each other hold one another, and a groove with two shoulders needs no hold
+    assert Pair(ball, "DB", 0.015, preload_force=100.0).displacement([0, -50.0, 0, 0, 0, 0])[1] < 0
+    assert replace(ball, open_side=None).displacement([0, -50.0, 0, 0, 0, 0])[1] < 0
+
+
+def test_single_balls_may_stand_on_the_bottom_while_others_lean():
+    """A fifth of the radial load as thrust: the heaviest ball stands below the free angle, others above."""
+    ball = bearing("7205")
+    q = ball.displacement([0, -300.0, 60.0, 0, 0, 0])
+    np.testing.assert_allclose(ball.force(q)[:3], [0, -300.0, 60.0], atol=1e-5)

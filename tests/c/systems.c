@@ -78,6 +78,13 @@ bd_bearing_data deep_groove(bd_damping_law law)
 {
     static const int order[] = {1, 1, 0, 1, 1}, sine[] = {0, 1, 0, 0, 1};
     static const double table_delta[] = {-1e-6, 2e-6, 1e-5}, table_c[] = {0.0, 60.0, 25.0};
+    static double film_c[BD_FILM_NODES], film_rise[BD_FILM_NODES];
+    for (int i = 1; i < BD_FILM_NODES; i++) {
+        const double w = (double)i / BD_FILM_CELLS;
+        film_c[i] = 40.0 * w * w * (1.5 - w);
+        film_rise[i] = (120.0 * w * (1.0 - w)) / BD_FILM_CELLS;
+    }
+    const bool film = law == BD_DAMPING_FILM;
     const double A = 0.04 * 11.5e-3, clearance = 10e-6, y0 = A - 0.5 * clearance;
     return (bd_bearing_data){
         .n_balls = 8,
@@ -91,10 +98,12 @@ bd_bearing_data deep_groove(bd_damping_law law)
         .contact = {.kappa = 1e10,
                     .h0 = law == BD_DAMPING_CONSTANT ? 0.0 : 3e-7,
                     .law = law,
-                    .c = law == BD_DAMPING_LOAD ? 1e-5 : 30.0,
-                    .n_table = 3,
-                    .table_delta = table_delta,
-                    .table_c = table_c},
+                    .c = law == BD_DAMPING_LOAD ? 1e-5
+                         : film                 ? 2e-6
+                                                : 30.0,
+                    .n_table = film ? BD_FILM_NODES : 3,
+                    .table_delta = film ? film_c : table_delta,
+                    .table_c = film ? film_rise : table_c},
         .cage_ratio = 0.38,
         .angle0 = 0.2,
     };

@@ -43,6 +43,11 @@ static double damping_of(const bd_contact *contact, double delta, double s)
         return contact->c;
     if (contact->law == BD_DAMPING_LOAD)
         return contact->c * 1.5 * contact->kappa * sqrt(s);
+    if (contact->law == BD_DAMPING_FILM) {
+        /* the cubic that deep_groove has its nodes on */
+        const double w = sqrt(s) / (sqrt(s) + sqrt(contact->c));
+        return 40.0 * w * w * (1.5 - w);
+    }
     if (delta <= x[0])
         return c[0];
     for (int i = 1; i < contact->n_table; i++)
@@ -177,8 +182,9 @@ static void turned_by_one_pitch_a_bearing_is_itself(void)
 
 int main(void)
 {
-    static const bd_damping_law laws[] = {BD_DAMPING_CONSTANT, BD_DAMPING_TABLE, BD_DAMPING_LOAD};
-    for (int i = 0; i < 3; i++) {
+    static const bd_damping_law laws[] = {BD_DAMPING_CONSTANT, BD_DAMPING_TABLE, BD_DAMPING_LOAD,
+                                          BD_DAMPING_FILM};
+    for (int i = 0; i < 4; i++) {
         contact_pushes_and_never_pulls(laws[i]);
         contact_tangent_is_the_derivative_of_its_force(laws[i]);
         bearing_tangent_is_the_derivative_of_its_force(laws[i], false);

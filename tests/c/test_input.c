@@ -193,6 +193,29 @@ static void a_damping_table_is_sorted_and_finite(void)
     CHECK_EQUAL("an empty table", bd_bearing_check(&bearing), BD_BAD_SHAPE);
 }
 
+static void a_film_law_begins_at_zero(void)
+{
+    double at[BD_FILM_NODES] = {0}, rise[BD_FILM_NODES] = {0};
+    bd_bearing_data bearing = deep_groove(BD_DAMPING_FILM);
+    bearing.contact.table_delta = at;
+    bearing.contact.table_c = rise;
+    CHECK_EQUAL("a good law", bd_bearing_check(&bearing), BD_OK);
+    rise[BD_FILM_CELLS] = NAN;
+    CHECK_EQUAL("NaN at the end", bd_bearing_check(&bearing), BD_BAD_VALUE);
+    rise[BD_FILM_CELLS] = 1.0;
+    at[1] = -1.0;
+    CHECK_EQUAL("negative damping", bd_bearing_check(&bearing), BD_BAD_VALUE);
+    at[1] = 0.0;
+    at[0] = 1.0;
+    CHECK_EQUAL("a jump where contact is lost", bd_bearing_check(&bearing), BD_BAD_VALUE);
+    at[0] = 0.0;
+    bearing.contact.c = 0.0;
+    CHECK_EQUAL("no scale", bd_bearing_check(&bearing), BD_BAD_VALUE);
+    bearing.contact.c = 1e-6;
+    bearing.contact.n_table = BD_FILM_CELLS;
+    CHECK_EQUAL("a node too few", bd_bearing_check(&bearing), BD_BAD_SHAPE);
+}
+
 /* A table of one point, met by a displacement that is not a number: nothing is read beyond its end. */
 static void a_table_is_not_read_beyond_its_end(void)
 {
@@ -423,6 +446,7 @@ int main(void)
     every_branch_is_checked();
     every_number_of_a_bearing_is_checked();
     a_damping_table_is_sorted_and_finite();
+    a_film_law_begins_at_zero();
     a_table_is_not_read_beyond_its_end();
     a_load_table_is_sorted_and_finite();
     a_channel_exists();

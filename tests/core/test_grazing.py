@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,9 @@ import pytest
 from scipy.optimize import brentq
 
 from bearingdyn import core
-from bearingdyn.bearing import BallBearing, LoadDamping, TabulatedDamping
+from bearingdyn.bearing import BallBearing, FilmDamping, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.contact_damping import Damping
+from bearingdyn.system import assemble
 from core_models import stepping
 
 NO_TABLE = np.zeros(0)
@@ -131,10 +133,12 @@ def law_of(name: str, rng: np.random.Generator) -> Damping | float:
         return float(c)
     if name == "table":
         return TabulatedDamping([-1e-6, 3e-6, 2e-5], [c, 0.5 * c, 0.2 * c])
+    if name == "film":
+        return FilmDamping(10 ** rng.uniform(-7, -5), c * np.linspace(0, 1, 65) ** 3)
     return LoadDamping(10 ** rng.uniform(-6, -4))
 
 
-@pytest.mark.parametrize("name", ["constant", "table", "load"])
+@pytest.mark.parametrize("name", ["constant", "table", "load", "film"])
 def test_no_rattling_bearing_stops_a_march(name: str) -> None:
     """c from 1 to 1000 N s/m, steps of 1 to 20 µs, 1 to 26 balls that come and go."""
     grazing = 0
@@ -144,7 +148,7 @@ def test_no_rattling_bearing_stops_a_march(name: str) -> None:
         assert np.ptp(rows) > 0
         grazing += report.grazing
     # the test is of something only where balls did graze
-    assert grazing > 10 if name != "load" else grazing == 0
+    assert grazing > 10 if name in ("constant", "table") else grazing == 0
 
 
 @pytest.mark.slow
@@ -168,3 +172,30 @@ def test_the_spalled_bench_runs_for_three_seconds(dt: float, monkeypatch: pytest
     assert found.attrs["complete"] == 1
     # with 5 µs it is the jump that stopped it; with 1 µs the steps may miss it
     assert found.attrs["grazing"] > 0 or dt < 5e-6
+
+
+@pytest.mark.slow
+def test_on_oil_no_ball_of_the_spalled_bench_grazes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The bench of the test above, its bearings on films and damping of VG 46 at 60 °C."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "examples"))
+    import fault_bench
+
+    import bearingdyn as bd
+    from bearingdyn.bearing import Lubricant, Walther
+
+    app = fault_bench.bench(fault_bench.rubber_ring(), (fault_bench.SPALL,))
+    supply = bd.OilSupply(Lubricant(Walther.iso_vg(46)), 60.0, 188.2)
+    system = assemble(app)
+    oiled = tuple(
+        replace(t, bearing=replace(t.bearing, lubrication=supply))
+        if isinstance(t.bearing, BallBearing)
+        else t
+        for t in system.bearings
+    )
+    state = bd.equilibrium(replace(system, bearings=oiled))
+    assert all(isinstance(t.bearing.damping, FilmDamping) for t in state.system.bearings)
+    found = bd.transient(
+        state, speed=188.2, dt=5e-6, steps=200_000, decimate=1000, record=[fault_bench.SENSOR]
+    )
+    assert found.attrs["complete"] == 1
+    assert found.attrs["grazing"] == 0

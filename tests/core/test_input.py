@@ -191,7 +191,7 @@ def test_a_bad_load_is_refused(bad: Any) -> None:
 @pytest.mark.parametrize(
     "bad",
     [
-        (8, P, 0, 0),
+        (9, P, 0, 0),
         (-1, P, 0, 0),
         (0, P[:-1], 0, 0),
         (0, None, 0, 0),
@@ -206,6 +206,8 @@ def test_a_bad_load_is_refused(bad: Any) -> None:
         (6, None, 3, 0),
         (7, None, 0, 99),
         (7, None, 0, -1),
+        (8, None, 0, 99),
+        (8, None, 0, -1),
         [0, P, 0, 0],
         "0Pxx",
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 from functools import cache
@@ -244,8 +245,10 @@ def test_the_resonance_agrees_with_a_power_law_through_one_isotherm() -> None:
         rubber_mass = 2 * m.rig.density * m.rig.area * m.rig.thickness
         f = math.sqrt(k / (m.rig.moving + rubber_mass / 3)) / (2 * math.pi)
         # 3.3 % for the softening of the ring, which the spring leaves out; 1 % for 2.6 K; the tolerance is
-        # for a constant δ
-        assert computed.frequency == pytest.approx(f * (1 - 0.033 - 0.01), rel=0.02)
+        # for a constant δ over 1.2 (heavy) to 1.7 (light) decades: tan δ is lower at first, and rises
+        assert computed.frequency == pytest.approx(
+            f * (1 - 0.033 - 0.01), rel=0.015 * math.log10(computed.frequency / 10)
+        )
 
 
 @needs_data
@@ -295,6 +298,7 @@ def test_the_strain_of_the_rings_is_below_that_of_the_dma_and_does_not_explain_i
 
 @needs_data
 def test_the_other_causes_are_small_or_go_the_wrong_way() -> None:
+    missed: list[float] = []
     for k in range(4):
         change = {label: pair[0] for label, pair in otherwise(k).items()}
         assert -0.005 < change["Poisson's ratio 0.474"] < 0  # less bulk, more bending; the rings shear
@@ -308,10 +312,12 @@ def test_the_other_causes_are_small_or_go_the_wrong_way() -> None:
         rig = measured()[k].rig
         lost = 1 - (rig.r_outer - 5e-4) ** 2 / rig.r_outer**2
         assert -lost / 2 < change["outer 0.5 mm not bonded"] < 0
-        # a lossless compliance would explain the frequency, and miss the height by more than 10 %
+        # a lossless compliance would explain the frequency, and miss the height by 10 % (mean of the masses:
+        # accelerometers are good to 5 %)
         series = otherwise(k)["lossless spring in series"][1]
         said, computed = peaks()[k]
-        assert computed.height * (1 + series) / said.height > 1.10
+        missed.append(computed.height * (1 + series) / said.height)
+    assert np.mean(missed) > 1.10
 
 
 @needs_data
@@ -339,3 +345,44 @@ def test_without_the_measurement_the_example_says_so(
     monkeypatch.setattr(shaker, "DATA", tmp_path / "absent")
     assert shaker.main() == 0
     assert "skipped" in capsys.readouterr().out
+
+
+# ---------------------------------------------------------------- amplitude
+
+
+def answer_of(grams: int, level: str, capsys: pytest.CaptureFixture[str]) -> dict[str, dict[str, float]]:
+    """What the command line says of a run."""
+    folder = shaker.DATA
+    run, rig = folder / f"shaker_{level}_{grams}g.csv", folder / f"shaker_{grams}g.json"
+    capsys.readouterr()
+    assert shaker.main(["--json", "--run", str(run), "--rig", str(rig)]) == 0
+    told: dict[str, dict[str, float]] = json.loads(capsys.readouterr().out)
+    return told
+
+
+@needs_data
+def test_softening_by_the_strain_sweep_predicts_the_runs_at_1_g(capsys: pytest.CaptureFixture[str]) -> None:
+    """573 g: −4.88 % and 8.02 were computed independently; −3.92 % and 8.03 measured."""
+    low, high = (answer_of(573, level, capsys) for level in ("0.1g", "1g"))
+    drop = {
+        side: 100 * (high[side]["frequency"] / low[side]["frequency"] - 1)
+        for side in ("measured", "predicted")
+    }
+    assert drop["predicted"] == pytest.approx(-4.88, abs=0.1)
+    assert drop["predicted"] == pytest.approx(drop["measured"], abs=1.0)
+    assert high["predicted"]["height"] == pytest.approx(8.02, rel=5e-3)
+    assert high["predicted"]["height"] == pytest.approx(high["measured"]["height"], rel=0.05)
+    assert high["predicted"]["strain"] == pytest.approx(
+        6.4e-3, rel=0.05
+    )  # nominal .64 %, a sandwich has less
+    light = answer_of(118, "1g", capsys)
+    assert light["predicted"]["height"] == pytest.approx(light["measured"]["height"], rel=0.12)
+
+
+def test_a_run_needs_its_rig(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        shaker.main(["--json", "--run", "none.csv"])
+    assert "belong together" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        shaker.main(["--json", "--run", "none.csv", "--rig", "none.json"])
+    assert "no such file" in capsys.readouterr().err

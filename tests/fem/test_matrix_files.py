@@ -313,7 +313,7 @@ def test_files_that_do_not_fit_are_named(block, tmp_path):
         (lambda: read_matrices(tmp_path / "few.sti"), "rows up to 36, while .* names 2"),
         (lambda: read_matrices(tmp_path / "bad.sti"), "not node.direction"),
         (lambda: read_nodes(tmp_path / "x.inp"), r"has no \*NODE block"),
-        (lambda: read_nodes(tmp_path / "y.inp"), "y.inp, line 2: .*'1, a, b' is no node"),
+        (lambda: read_nodes(tmp_path / "y.inp"), "y.inp, line 2: .*'1, a, b' is not a node"),
     ):
         with pytest.raises(ValueError, match=message):
             call()

@@ -397,7 +397,7 @@ def test_faults_of_a_mesh_are_named(tmp_path, what, message):
         ),
         (
             TET_INP.replace("\n3, 0, 1, 0", "\n3, 0, one, 0"),
-            r"line 4: \*NODE: '3, 0, one, 0' is no node: 'one' is not",
+            r"line 4: \*NODE: '3, 0, one, 0' is not a node: 'one' is not",
         ),
         (TET_INP + "*INSTANCE, NAME=i, PART=p\n0, 0, 1\n", "line 22: .*its part p is not defined"),
         (

@@ -60,7 +60,7 @@ REFUSED = {
     ),
     "number of 5000 digits": (
         {"a.inp": BLOCK.replace("\n3, ", "\n" + "9" * 5000 + ", ")},
-        "line 4: .*is no node",
+        "line 4: .*is not a node",
     ),
     "number with underscores": (
         {"a.inp": BLOCK.replace("\n3, ", "\n3_3, ")},

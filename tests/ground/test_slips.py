@@ -30,7 +30,7 @@ def test_an_application_marches_from_its_own_equilibrium() -> None:
         ("mass.centre.y", r"give a list of channels, \['mass.centre.y'\]"),
         (["mass.center.y"], "did you mean 'mass.centre'"),
         (["mass.centre"], "is a place; add what of it is meant, as 'mass.centre.y'"),
-        (["lft.loaded"], "'lft' is no bearing"),
+        (["lft.loaded"], "'lft' is not a bearing"),
     ],
 )
 def test_a_slip_in_a_channel_is_answered_with_the_remedy(record, message) -> None:

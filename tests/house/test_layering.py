@@ -346,9 +346,12 @@ def test_types_spell_out_the_words_of_c(name: str) -> None:
 
 
 def test_a_report_has_the_fields_that_c_lists() -> None:
-    assert [(f.name, str(f.type)) for f in dataclasses.fields(core.Report)] == [
+    """In their order, and behind them what is not one number."""
+    *numbers, peaks = dataclasses.fields(core.Report)
+    assert [(f.name, str(f.type)) for f in numbers] == [
         (name, "float" if name in ("open_t", "t", "residual") else "int") for name in core.REPORT_FIELDS
     ]
+    assert peaks.name == "peaks"
 
 
 def test_c_files_include_one_another_without_circles() -> None:
@@ -375,7 +378,9 @@ FORBIDDEN = frozenset(
 ALLOCATORS = frozenset("malloc calloc realloc aligned_alloc posix_memalign strdup free".split())
 
 # Memory is taken when something is created or set up, and by one bearing asked by itself; never in a step.
-MAY_ALLOCATE = re.compile(r"bd_(\w+_(create|free)|prepare|start|work_choose|profile_take|bearing_single)$")
+MAY_ALLOCATE = re.compile(
+    r"bd_(\w+_(create|free)|prepare|prepare_softened|start|work_choose|profile_take|bearing_single)$"
+)
 
 WRITABLE = re.compile(r"\.(data|bss|tdata|tbss)(?!\.rel\.ro)|COMMON")
 

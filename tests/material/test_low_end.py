@@ -33,8 +33,8 @@ def curve(low: float, high: float = 1e5, seed: int = 1, noise: float = 0.01) -> 
 
 
 def epdm70() -> MasterCurve:
-    """The measured rubber without the resonance of its fixture."""
-    return bd.master_curve(measured("epdm70").select(f_max=20.0), T_ref=20.0)
+    """The measured rubber without the resonance of its fixture, its two runs taken for one as published."""
+    return bd.master_curve(measured("epdm70").select(f_max=20.0), T_ref=20.0, levels=None)
 
 
 @pytest.mark.parametrize("seed", range(5))

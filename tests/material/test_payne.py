@@ -87,10 +87,15 @@ def test_the_measured_sweep_is_rendered_as_published(sweep):
     for gamma in (3e-3, 1e-2):
         a, b = (law.change(1.0, gamma) for law in (found, fixed))
         assert a == pytest.approx(b, abs=0.02e6)  # 0.3 % of G′, as the fits
-    assert fixed.fit.storage_max < 3e-3
-    # published for D = 1.6 MPa, by another weighting of the points: γc .4107 %, m .7502
-    assert fixed.gamma_c == pytest.approx(4.107e-3, rel=0.06)
-    assert fixed.m == pytest.approx(0.7502, rel=0.03)
+    assert fixed.fit.storage_max < 3.1e-3
+    # published for D = 1.6 MPa: γc .4107 %, m .7502, and for 2.0344 MPa .3588 %, .4817; to their last digit
+    assert fixed.gamma_c == pytest.approx(4.107e-3, abs=5e-7)
+    assert fixed.m == pytest.approx(0.7502, abs=5e-5)
+    given = bd.fit_payne(sweep, strain_of_isotherms=1.5e-3, lowest_trusted=1.46e-3, D=LAW.D)
+    for name, digit in (("gamma_c", 5e-7), ("m", 5e-5), ("Lm", 50.0), ("gamma_l", 5e-7)):
+        assert getattr(given, name) == pytest.approx(getattr(LAW, name), abs=digit), name
+    assert given.fit.storage_max == pytest.approx(2.7e-3, abs=5e-5)
+    assert given.fit.tan_delta_max < 5e-3
 
 
 def test_the_fit_depends_on_the_order_of_rows_in_nothing(sweep):

@@ -66,7 +66,7 @@ def test_bonded_strip_does_not_lock_with_the_cure_and_does_without(element, inco
     assert ratio == pytest.approx(published, abs=0.005)
 
 
-def test_tetrahedra_do_not_lock_either_but_converge_slowly():
+def test_tetrahedra_with_a_bubble_do_not_lock_either():
     six = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
     found = {}
     for n in (2, 4):
@@ -77,10 +77,9 @@ def test_tetrahedra_do_not_lock_either_but_converge_slowly():
             found[n, cure] = strip_over_theory(SolidMesh(p, elements), cure)
     print("bonded strip, tetrahedra:", {k: round(v, 4) for k, v in found.items()})
     assert found[2, False] > 1.15  # locked
-    # a constant pressure converges with the first power of h, and from below: 1 is not crossed
-    assert found[2, True] < found[4, True] < 1.0
-    assert 1 - found[2, True] < 0.08
-    assert 1 - found[4, True] < 0.7 * (1 - found[2, True])
+    # linear pressure: second order, 2 % with two through the thickness (7 % too soft without the bubble)
+    assert abs(1 - found[2, True]) < 0.03
+    assert abs(1 - found[4, True]) < 0.25 * abs(1 - found[2, True])
 
 
 # each half of a brick, the axis of the wedge along z, y or x of the strip
@@ -92,7 +91,7 @@ WEDGES = {
 
 
 @pytest.mark.parametrize("axis", WEDGES)
-def test_wedges_do_not_lock_either_but_converge_slowly(axis):
+def test_wedges_with_a_bubble_do_not_lock_either(axis):
     found = {}
     for n in (2, 4):
         box = box_mesh(np.linspace(-10, 10, 10 * n + 1), np.linspace(0, 1, n + 1), [0.0, 0.5])
@@ -102,10 +101,10 @@ def test_wedges_do_not_lock_either_but_converge_slowly(axis):
             found[n, cure] = strip_over_theory(SolidMesh(p, elements), cure)
     print(f"bonded strip, wedges {axis}:", {k: round(v, 4) for k, v in found.items()})
     assert found[2, False] > 1.1  # locked
-    # a pressure constant in the triangles converges with the first power of h or better, from below where
-    # they lie in the plane of the flow; across, the linear part carries it: 1 % of theory
-    assert abs(1 - found[4, True]) < max(0.01, 0.7 * abs(1 - found[2, True]))
-    assert abs(1 - found[2, True]) < 0.25
+    # as they lie; without the bubble, whose pressure was constant in the triangles, .78, .91 and 1.00.
+    # The formula is of a thin strip, good to half a per cent here (27-node bricks: .9915 and .9928)
+    assert abs(1 - found[2, True]) < 0.01
+    assert abs(1 - found[4, True]) < 0.005
 
 
 def test_bonded_ring_of_bricks_is_as_stiff_as_the_body_of_revolution():

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
 import bearingdyn as bd
 from bearingdyn.material import Elastic, Maxwell
-from bearingdyn.notice import BeyondData
+from bearingdyn.notice import BeyondData, MeshDependent, StrainedLayer
 from bearingdyn.parts import Layer, Squeezed
+from bearingdyn.parts.squeezed import compare_meshes
 
 MM = 1e-3
 G, K = 1e6, 2e9
@@ -188,3 +191,61 @@ def test_static_state_beyond_the_data_warns() -> None:
     rubber = Maxwell(G, [2e6], [1e-4], K=K, density=1100.0, band=(10.0, 5e3))
     with pytest.warns(BeyondData):
         layer(0.0, rubber, 0.5).assembled(squeeze=0.05, inside="slip", outside="slip")
+
+
+def test_a_mesh_that_decides_warns() -> None:
+    """Two answers 2 % apart are told of; two of the same ring on neighbouring meshes are not."""
+    fine, other = (
+        layer(0.0, RUBBER, 0.5).assembled(squeeze=s, inside="slip", outside="slip", compare=False)
+        for s in (0.100, 0.102)
+    )
+    with pytest.warns(MeshDependent, match=r"times its refinement, \d"):
+        compare_meshes(fine, lambda: other)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MeshDependent)
+        layer(0.0, RUBBER, 1.0).assembled(squeeze=0.03)
+
+
+def test_an_equilibrium_tells_of_a_layer_strained_beyond_its_linear_stiffness() -> None:
+    """rubber.md: secant +.5 % at 5 %, +2 % at 10 % of the thickness; the tangent three times that."""
+    for share, told in ((0.05, ("5.0%", "0.5%", "1.5%")), (0.10, ("10.0%", "2.0%", "6.0%"))):
+        ring = layer(0.0, maxwell(), 0.5)
+        app = bd.Application()
+        app.add("ring", ring)
+        app.free("ring.inner")
+        app.ground("ring.outer")
+        force = share * ring.thickness * ring.stiffness()[0, 0].real
+        app.load("ring.inner", (0.0, -force, 0.0, 0.0, 0.0, 0.0))
+        with pytest.warns(StrainedLayer) as caught:
+            bd.equilibrium(app)
+        text = str(caught[0].message)
+        assert all(figure in text for figure in told), text
+
+
+def test_a_squeezed_layer_takes_the_place_of_the_layer() -> None:
+    material = maxwell()
+    ring = layer(0.0, material, 0.5)
+    fitted = ring.assembled(squeeze=0.10, inside="slip", outside="slip", compare=False)
+    sag = []
+    for part in (ring, fitted):
+        app = bd.Application()
+        app.add("ring", part)
+        app.free("ring.inner")
+        app.ground("ring.outer")
+        app.load("ring.inner", (0.0, -10.0, 0.0, 0.0, 0.0, 0.0))
+        sag.append(bd.equilibrium(app).displacement("ring.inner")[1])
+        assert -10.0 / part.stiffness()[1, 1].real == pytest.approx(sag[-1], rel=1e-6)
+    assert sag[1] / sag[0] == pytest.approx(2748.1 / 3897.3, rel=5e-3)  # rubber.md §2
+
+
+def test_the_squeezed_section_is_drawn() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    fitted = layer(1.2 * MM, RUBBER, 0.5).assembled(squeeze=0.05, compare=False)
+    ax = bd.plot.squeezed_section(fitted)
+    labels = [line.get_label() for line in ax.lines]
+    assert f"outer: {fitted.pressure / 1e6:.2f} MPa" in labels
+    assert "before" in labels
+    with pytest.raises(ValueError, match="squeezed is"):
+        bd.plot.squeezed_section(layer())  # type: ignore[arg-type]
+    matplotlib.pyplot.close("all")

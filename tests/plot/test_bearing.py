@@ -80,7 +80,7 @@ def test_film_and_lambda_over_speed():
     speeds = np.geomspace(50, 1000, 4)
     ax = drawn(plot.film(BRG, oil, [40, 70], speeds, load, roughness=(30e-9, 20e-9)))
     assert len(ax.lines) == 4
-    point = lubricate(BRG, oil, 70, speeds[2], load, roughness=(30e-9, 20e-9))
+    point = lubricate(BRG, oil, 70, speeds[2], load, law="nijenbanning-venner-moes", roughness=(30e-9, 20e-9))
     assert ax.lines[3].get_xydata()[2] == pytest.approx([speeds[2] / RPM, point.film_outer * 1e6])
     lower = next(other for other in ax.figure.axes if other is not ax)
     assert lower.get_ylabel() == "λ ratio"

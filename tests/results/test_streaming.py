@@ -157,7 +157,7 @@ def test_counters_of_a_file_go_by_name(start: bd.Equilibrium, tmp_path: Path) ->
     bd.transient(start, stream=path, **ARGUMENTS)
     chunk = runfile.read(path)[1][3]
     packed = chunk.packed()
-    named = json.dumps(chunk.report.counts).encode()
+    named = json.dumps({**chunk.report.counts, "peaks": chunk.report.peaks}).encode()
     other = json.dumps({"grazing": 5, "steps": 700}).encode()
     assert named in packed
     changed = packed.replace(named, other.ljust(len(named)))
@@ -403,20 +403,20 @@ def test_odd_content_behind_a_valid_checksum_is_refused_by_name(tmp_path: Path) 
     row = np.zeros(1).tobytes()
     good = chunk((1, 4, 16), counts, row, state.tobytes())
     for header, blocks, message in (
-        ([1], [], "a header that is none of a run: it is"),
+        ([1], [], "does not have the header of a run: it is"),
         ({**facts, "channels": 5}, [], "channels is 5"),
         ({**facts, "units": []}, [], "1 channels have 0 units"),
         ({**facts, "dt": "1"}, [], "dt is '1'"),
         ({**facts, "decimate": 0}, [good], "decimate is 0"),
         ({**facts, "speed": [[0.0], [1.0, 2.0]]}, [good], "speed is"),
         ({**facts, "steps": 10**40}, [good], "steps is"),
-        (facts, [good, b"x"], r"chunk 1 is none of a run: it has 1 bytes"),
+        (facts, [good, b"x"], r"chunk 1 does not belong to a run: it has 1 bytes"),
         (facts, [chunk((2**60, 4, 16), counts, row, state.tobytes())], "do not fill 80 bytes"),
-        (facts, [chunk((1, 4, 16), b"[" * 16, row, state.tobytes())], "chunk 0 is none of a run"),
+        (facts, [chunk((1, 4, 16), b"[" * 16, row, state.tobytes())], "chunk 0 does not belong to a run"),
         (facts, [chunk((1, 4, 16), b'{"steps":"9"}   ', row, state.tobytes())], "it counts"),
         (facts, [chunk((1, 4, 16), b'{"loops":1}     ', row, state.tobytes())], "it counts"),
-        (facts, [chunk((1, 4, 16), counts, row, np.full(4, np.nan).tobytes())], "which is no time"),
-        (facts, [chunk((1, 4, 16), counts, row, np.full(4, 1e300).tobytes())], "which is no time"),
+        (facts, [chunk((1, 4, 16), counts, row, np.full(4, np.nan).tobytes())], "which cannot be a time"),
+        (facts, [chunk((1, 4, 16), counts, row, np.full(4, 1e300).tobytes())], "which cannot be a time"),
     ):
         data = runfile.MAGIC
         for block in (json.dumps(header).encode(), *blocks):

@@ -394,7 +394,7 @@ def test_table_carries_units_and_becomes_a_frame():
     cases = [study.Case({"k": float(i)}, {"f": 2.0 * i}) for i in range(3)]
     table = study.table(cases, {"k": "N/m", "f": "Hz"})
     assert (table["k"].attrs["units"], table["f"].attrs["units"]) == ("N/m", "Hz")
-    with pytest.raises(ValueError, match="'z', which is no column"):
+    with pytest.raises(ValueError, match="'z', which is not a column"):
         study.table(cases, {"z": "m"})
     pytest.importorskip("pandas")
     frame = table.to_dataframe()
@@ -425,9 +425,13 @@ def test_pareto_of_one_aim_is_its_minimum_and_a_parameter_may_be_an_aim():
 
 @pytest.mark.parametrize(
     ("aims", "message"),
-    [({}, "at least one"), ({"minimise": ["z"]}, "'z' is no number"), ({"minimise": ["error"]}, "no number"),
-     ({"minimise": ["a"], "maximise": ["a"]}, "named twice")],
-)  # fmt: skip
+    [
+        ({}, "at least one"),
+        ({"minimise": ["z"]}, "'z' is not a number"),
+        ({"minimise": ["error"]}, "not a number"),
+        ({"minimise": ["a"], "maximise": ["a"]}, "named twice"),
+    ],
+)
 def test_bad_aims_are_refused(aims, message):
     table = study.table([study.Case({"w": 1.0}, {"a": 1.0})])
     with pytest.raises(ValueError, match=message):

@@ -18,6 +18,23 @@ def contact_damping(spec: Any, delta: Any, s: Any) -> tuple[Any, Any]:
     if spec.damping_law == "load":
         root = np.sqrt(s)
         return spec.damping_c * 1.5 * spec.kappa * root, spec.damping_c * 0.75 * spec.kappa / root
+    if spec.damping_law == "film":
+        root, half = np.sqrt(s), np.sqrt(spec.damping_c)
+        at, rise = np.asarray(spec.damping_table).T
+        cells = len(at) - 1
+        x = cells * root / (root + half)
+        i = min(int(np.real(x)), cells - 1)
+        u = x - i
+        # Hermite's basis
+        c = (
+            at[i] * (1 + 2 * u) * (1 - u) ** 2
+            + at[i + 1] * u**2 * (3 - 2 * u)
+            + rise[i] * u * (1 - u) ** 2
+            - rise[i + 1] * u**2 * (1 - u)
+        )
+        by_u = 6 * u * (1 - u) * (at[i + 1] - at[i])
+        by_u += rise[i] * (1 - u) * (1 - 3 * u) + rise[i + 1] * u * (3 * u - 2)
+        return c, by_u * cells * half / (root + half) ** 2 / (2 * root)
     table = np.asarray(spec.damping_table)
     x, c = table[:, 0], table[:, 1]
     i = int(np.searchsorted(x, np.real(delta), side="left")) - 1

@@ -9,9 +9,10 @@ import numpy as np
 from bearingdyn.analysis import campbell, equilibrium, frequency_response, modes
 from bearingdyn.application import Application
 from bearingdyn.fem import Section
-from bearingdyn.material import STEEL, Elastic
-from bearingdyn.parts import Disc, RigidBody, Shaft
+from bearingdyn.material import STEEL
+from bearingdyn.parts import RigidBody, Shaft
 from bearingdyn.system import System
+from rotors import friswell
 from verified.row import RPM, Row, rows
 
 FORMULA = "closed form"
@@ -51,23 +52,7 @@ def weight() -> list[Row]:
 
 def whirl() -> list[Row]:
     """The two-disc rotor of Friswell et al., its modes followed from standstill to 4000 rpm."""
-    metal = Elastic(211e9, 211e9 / (2 * 81.2e9) - 1, 7810.0)
-    shaft = Shaft(
-        [Section(1.5, 0.05)],
-        seats={"left": 0.0, "right": 1.5},
-        discs=[
-            Disc.cylinder(0.5, 0.28, 0.07, 0.05, material=metal),
-            Disc.cylinder(1.0, 0.35, 0.07, 0.05, material=metal),
-        ],
-        material=metal,
-        f_max=3e3,
-        element_length=0.25,
-    )
-    app = Application()
-    app.add("rotor", shaft)
-    for end in ("left", "right"):
-        app.ground(f"rotor.{end}", stiffness=(1e6, 1e6, 0, 0, 0, 0))
-    found = campbell(app, np.linspace(0.0, 4000.0, 21) * RPM, count=8, damped=False)
+    found = campbell(friswell(), np.linspace(0.0, 4000.0, 21) * RPM, count=8, damped=False)
     omega = 2 * math.pi * found.frequency.values
     names = ("1st, backward", "1st, forward", "2nd, backward", "2nd, forward", "torsion", "3rd, backward")
     published = (85.39, 87.80, 251.78, 294.71, 650.41, 600.18)

@@ -6,12 +6,10 @@ import math
 
 import numpy as np
 
-from bearingdyn.analysis import Equilibrium, equilibrium, transient
-from bearingdyn.application import Application
-from bearingdyn.bearing import BallBearing
+from bearingdyn.analysis import equilibrium, transient
 from bearingdyn.material import Maxwell
-from bearingdyn.parts import RigidBody
-from verified.row import INDEPENDENT, MM, RPM, Row, rows, to_the_digit
+from rotors import jis_rotor
+from verified.row import INDEPENDENT, RPM, Row, rows, to_the_digit
 
 
 def maxwell() -> list[Row]:
@@ -51,30 +49,9 @@ def maxwell() -> list[Row]:
     return exact + rows("§1", 0.02, "two digits are given", INDEPENDENT, discrete)
 
 
-def jis_rotor() -> Equilibrium:
-    """A rigid rotor on one JIS 6306, loaded along x."""
-    r_i, r_o = 40.1 * MM, 63.9 * MM
-    app = Application()
-    app.add("rotor", RigidBody(20.0, (0.1, 0.1, 0.1)))
-    app.ground("rotor.centre", damping=(200, 200, 200, 0.1, 0.1, 0.1))
-    brg = BallBearing(
-        8,
-        (r_o - r_i) / 2,
-        (r_o + r_i) / 2,
-        0.52,
-        0.52,
-        clearance=40e-6,
-        kappa=13.34e9,
-        cage_ratio=r_i / (r_i + r_o),
-    )
-    app.bearing("ball", brg, inner="rotor.centre", outer="ground")
-    app.load("rotor.centre", (196.0, 0, 0, 0, 0, 0))
-    return equilibrium(app)
-
-
 def varying_compliance() -> list[Row]:
     """Periods in ball passages, and peak to peak, of the varying-compliance rotor."""
-    rotor = jis_rotor()
+    rotor = equilibrium(jis_rotor())
     ratio = 8 * rotor.system.bearings[0].bearing.cage_ratio
     per, kept = 256, 64
     periods, peaks = [], []

@@ -1,5 +1,6 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
+from bearingdyn.analysis.bearing_sheet import bearing_sheet, sheet_html, sheet_text, single_bearing
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.dissipation import dissipation
@@ -9,14 +10,23 @@ from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.frequency_response import frequency_response
 from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.modes import modes
+from bearingdyn.analysis.operating_point import (
+    OperatingPoint,
+    ThermalRunaway,
+    estimated_network,
+    operating_point,
+)
 from bearingdyn.analysis.orbit import orbit
 from bearingdyn.analysis.orders import order_spectrum, track_orders
 from bearingdyn.analysis.radiated_power import radiated_power
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
 from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
+from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
 from bearingdyn.analysis.steady import steady_state
+from bearingdyn.analysis.stiffness_table import export_stiffness, ross_table, stiffness_table
+from bearingdyn.analysis.thermal_network import ThermalNetwork
 from bearingdyn.analysis.transient import transient, transients
 from bearingdyn.analysis.unbalance_response import unbalance_response
 from bearingdyn.analysis.waterfall import waterfall
@@ -25,24 +35,38 @@ __all__ = [
     "BearingState",
     "Equilibrium",
     "MovedSurface",
+    "OperatingPoint",
+    "StateSpace",
+    "ThermalNetwork",
+    "ThermalRunaway",
     "ball_channels",
+    "bearing_sheet",
     "campbell",
     "contact_statistics",
     "dissipation",
     "energy_shares",
     "envelope_spectrum",
     "equilibrium",
+    "estimated_network",
+    "export_stiffness",
     "frequency_response",
     "mode_shapes",
     "mode_surfaces",
     "modes",
+    "operating_point",
     "orbit",
     "order_spectrum",
     "radiated_power",
+    "ross_table",
     "shaft_angle",
+    "sheet_html",
+    "sheet_text",
+    "single_bearing",
     "spectrum",
+    "state_space",
     "static_summary",
     "steady_state",
+    "stiffness_table",
     "track_orders",
     "transient",
     "transients",

@@ -13,7 +13,7 @@ from bearingdyn.analysis.mode_directions import directions
 from bearingdyn.analysis.mode_whirl import whirl
 from bearingdyn.analysis.modes import modes
 from bearingdyn.application import Application
-from bearingdyn.checks import numbers, whole
+from bearingdyn.checks import numbers, truth, whole
 from bearingdyn.system import System, system_of
 from bearingdyn.types import Array, Complex
 
@@ -67,7 +67,7 @@ def campbell(
         For speeds that are not finite, a count below 1, and as `modes`.
     """
     given = numbers("speeds", speeds, "speeds must be one or more finite values, in rad/s")
-    count = whole("count", count, 1)
+    count, damped = whole("count", count, 1), truth("damped", damped)
     if not isinstance(source, Equilibrium):
         source = system_of("source", source)
     system = source.system if isinstance(source, Equilibrium) else source

@@ -22,7 +22,7 @@ def channel_of(system: System, name: str) -> tuple[CoreChannel, str]:
     Raises
     ------
     ValueError
-        For a name that is no channel of this system; says what there is.
+        For an unknown channel of this system; says what there is.
     """
     bearings = [b.name for b in system.bearings]
     channel = Channel.parse(name)
@@ -47,7 +47,7 @@ def channel_of(system: System, name: str) -> tuple[CoreChannel, str]:
             f"force.z"
         )
     if channel.quantity == "force" or re.fullmatch(r"loaded|loss|ball\d*", channel.component):
-        raise ValueError(f"channel {name!r}: {channel.at!r} is no bearing; there are {bearings}")
+        raise ValueError(f"channel {name!r}: {channel.at!r} is not a bearing; there are {bearings}")
     if channel.component == "strain" and not channel.quantity:
         soft = {name: k for name, k in zip(layer_names(system), softening_layers(system), strict=True)}
         if channel.at not in soft:

@@ -17,6 +17,7 @@ import numpy as np
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import Application
+from bearingdyn.checks import table
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 
@@ -59,6 +60,7 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
     ValueError
         For modes of another system, and for bearings without an equilibrium.
     """
+    table("found", found, ["shape", "eigenvalue"], "modes")
     system = linear(source).system
     if not system.parts:
         raise ValueError("the system does not know its parts; pass an application or its equilibrium")

@@ -8,6 +8,7 @@ import numpy as np
 
 from bearingdyn.analysis.recorded_channels import sampling_time, signal_of, unit_of
 from bearingdyn.analysis.spectrum import amplitudes, check_window
+from bearingdyn.checks import vector
 
 if TYPE_CHECKING:
     import xarray
@@ -50,7 +51,7 @@ def envelope_spectrum(
     n, dt = signal.size, sampling_time(result)
     if n < 4:
         raise ValueError(f"channel {channel!r} holds {n} samples; a spectrum needs four or more")
-    low, high = (float(f) for f in band)
+    low, high = vector("band", band, (2,), "lowest and highest frequency, Hz").tolist()
     if not 0 <= low < high <= 0.5 / dt * (1 + 1e-12):
         raise ValueError(f"band is {low:g} to {high:g} Hz; it must rise and end below {0.5 / dt:g} Hz")
     lines = np.fft.fft(signal)

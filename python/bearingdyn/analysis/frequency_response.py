@@ -194,7 +194,7 @@ def frequency_response(
 
 
 def _levels(amplitude: Any, inputs: Sequence[str], system: System) -> Array:
-    """Size of each input (levels, i); ValueError for sizes that are none, and where nothing softens."""
+    """Size of each input (levels, i); ValueError for sizes that are not valid, and where nothing softens."""
     if not softening_layers(system):
         raise ValueError(
             f"amplitude is {amplitude!r}, and no layer has a law of softening: give its material one, "

@@ -156,7 +156,8 @@ class Output:
         owner = next((term for term in system.parts if f"{place}.".startswith(f"{term.name}.")), None)
         if owner is None:
             raise ValueError(
-                f"{name!r}: {place!r} is no bearing and no interface of the system; there are bearings "
+                f"{name!r}: {place!r} is neither a bearing nor an interface of the system; there are "
+                f"bearings "
                 f"{[b.name for b in system.bearings]} and parts {[t.name for t in system.parts]}"
             )
         interfaces = {str(Place(owner.name, n)): index for n, index in owner.element.interfaces.items()}

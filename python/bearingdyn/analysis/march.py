@@ -20,7 +20,7 @@ from bearingdyn.analysis.softening import memory_of
 from bearingdyn.analysis.step_size import warn_if_coarse
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
-from bearingdyn.checks import positive, whole
+from bearingdyn.checks import instance, positive, require, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.progress import part_of
@@ -106,6 +106,8 @@ class March:
             "decimate": whole("decimate", decimate, 1),
         }
         drive = drive_of(speed)
+        if scheme is not None:
+            instance("scheme", scheme, core.Scheme, "it must be a bd.Scheme(...)")
         if isinstance(source, Application):
             source = equilibrium(source)
         elif not isinstance(source, Equilibrium):
@@ -173,6 +175,8 @@ class March:
             For a result without a state, for the state of another application, and for a state that holds a
             number no march could have reached.
         """
+        remedy = "give the result of `transient`"
+        require(hasattr(result, "data_vars"), "resume", result, remedy)
         if "state" not in result:
             raise ValueError(
                 f"resume holds {sorted(map(str, result))} and no state; give the result of `transient`"
@@ -295,12 +299,12 @@ class March:
             yield rows, state, report
 
     def _tell_open_side(self, report: core.Report) -> None:
-        """Warn of the first step with a ball on the open side of a bearing."""
+        """Warn of the first step in which a bearing did not hold together on its shoulder."""
         name = self.system.bearings[report.open_bearing].name
         warn(
             f"bearing {name!r}: from t = {report.open_t:.6g} s on, in {report.open_steps} of the "
             f"{report.steps} steps marched, balls are pressed onto its open side, where no shoulder holds "
-            f"them; {OPEN_SIDE_REMEDY}",
+            f"them, or none of them onto its shoulder; {OPEN_SIDE_REMEDY}",
             OpenSideWarning,
         )
 

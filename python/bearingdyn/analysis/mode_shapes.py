@@ -10,10 +10,10 @@ import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.application import COMPONENTS, Application, arm
-from bearingdyn.checks import name_list
+from bearingdyn.checks import name_list, table, whole
 from bearingdyn.parts import Outlined
 from bearingdyn.short_repr import short
-from bearingdyn.system import System, assemble
+from bearingdyn.system import System, system_of
 from bearingdyn.types import Array, Complex, Index
 
 if TYPE_CHECKING:
@@ -130,8 +130,7 @@ def mode_surfaces(
     """
     system, shape = _of_one_system(source, found)
     parts = None if parts is None else name_list("parts", parts, "parts")
-    if not 0 <= mode < len(shape):
-        raise ValueError(f"mode is {mode}; there are modes 0 to {len(shape) - 1}")
+    mode = whole("mode", mode, 0, len(shape) - 1, f"there are modes 0 to {len(shape) - 1}")
     moved = []
     for term in system.parts:
         place = system.positions.get(f"{term.name}.{next(iter(term.element.interfaces), None)}")
@@ -157,9 +156,8 @@ def _of_one_system(
     source: Equilibrium | Application | System, found: xarray.Dataset
 ) -> tuple[System, Complex]:
     """The system, and the shapes (mode, coordinate) of its modes."""
-    if isinstance(source, Application):
-        source = assemble(source)
-    system = source.system if isinstance(source, Equilibrium) else source
+    table("found", found, ["shape"], "modes")
+    system = source.system if isinstance(source, Equilibrium) else system_of("source", source)
     shape = found["shape"].values
     if shape.shape[1] != system.n:
         raise ValueError(

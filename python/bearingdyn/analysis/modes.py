@@ -10,6 +10,7 @@ import scipy
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import Application
+from bearingdyn.checks import number, truth, whole
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 
@@ -71,6 +72,9 @@ def modes(
     >>> bd.modes(app)["frequency"].values.round(2).tolist()  # √(k/m)/2π, three times each
     [112.54, 112.54, 112.54, 159.15, 159.15, 159.15]
     """
+    if count is not None:
+        count = whole("count", count, 0)
+    damped, speed = truth("damped", damped), number("speed", speed, "it must be a speed in rad/s")
     system = source.linearised() if isinstance(source, Equilibrium) else linear(source).system
     system.check_speed(speed)
     if damped:

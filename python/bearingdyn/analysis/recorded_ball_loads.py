@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.analysis.recorded_channels import sampling_time, signal_of
+from bearingdyn.analysis.recorded_channels import recorded, sampling_time, signal_of
+from bearingdyn.checks import instance
 from bearingdyn.system import System
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ def ball_channels(source: Equilibrium | System, bearing: str) -> list[str]:
     ValueError
         For an unknown bearing.
     """
+    remedy = "it must be an Equilibrium, bd.equilibrium(app), or a system"
+    instance("source", source, (Equilibrium, System), remedy)
     system = source.system if isinstance(source, Equilibrium) else source
     for term in system.bearings:
         if term.name == bearing:
@@ -64,6 +67,7 @@ def contact_statistics(result: xarray.Dataset, bearing: str) -> xarray.Dataset:
     ValueError
         If not all balls were recorded, or the record is empty.
     """
+    recorded(result)
     known = [str(c) for c in result["channel"].values]
     prefix = f"{bearing}.ball"
     numbers = sorted(int(c.removeprefix(prefix)) for c in known if c.startswith(prefix))

@@ -6,14 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.checks import table
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
     import xarray
 
 
+def recorded(result: object) -> None:
+    """Check what `transient` returned; ValueError for anything else."""
+    table("result", result, ["record", "channel", "time"], "transient")
+
+
 def signal_of(result: xarray.Dataset, channel: str) -> Array:
     """Samples (n,) of a recorded channel; ValueError for one that was not recorded."""
+    recorded(result)
     known = [str(c) for c in result["channel"].values]
     if channel not in known:
         raise ValueError(f"channel {channel!r} was not recorded; there are {known}")

@@ -36,7 +36,7 @@ def static_summary(eq: Equilibrium) -> xarray.Dataset:
     Raises
     ------
     ValueError
-        For a state that is no equilibrium, or without layers.
+        For a state that is not an equilibrium, or without layers.
 
     Examples
     --------

@@ -17,7 +17,7 @@ from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.step_size import STEP_ERROR_MADE, step_error
 from bearingdyn.application import Application
-from bearingdyn.checks import name_list, whole
+from bearingdyn.checks import instance, items, name_list, named, whole
 from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import System
@@ -131,7 +131,9 @@ def transient(
     Warns
     -----
     BearingWarning
-        Where a contact pressure was above 4.2 GPa (ISO 76) at the end, or by what was recorded.
+        Where a contact pressure was above 4.2 GPa (ISO 76) at the end of a step.
+    OpenSideWarning
+        Where balls of an angular contact bearing were pressed onto its open side, or none onto its shoulder.
 
     References
     ----------
@@ -151,6 +153,10 @@ def transient(
     True
     """
     record = name_list("record", record)
+    if initial is not None:
+        initial = named("initial", initial, "it must be displacements by place, as {'shaft.left': [...]}")
+    if stream is not None:
+        instance("stream", stream, (str, os.PathLike), "it must be the path of a file")
     if resume is not None and stream is not None:
         raise ValueError(
             "resume and stream are both given; a stream continues by itself, so give one of them"
@@ -185,7 +191,7 @@ def transient(
             plain=np.array([channel[0] == core.CHANNEL_KINDS["loaded"] for channel, _ in found], dtype=bool),
             past=None if resume is None else march.past(resume, record),
         )
-    warn_of_overload(march, model, state, record, rows)
+    warn_of_overload(march, report)
     energies = march.energies(model, state) if audit else {}
     error: dict[str, Any] = {}
     if check_step and report.status == 0:
@@ -198,7 +204,12 @@ def transient(
     return march.ended(result, report)
 
 
-def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -> list[xarray.Dataset]:
+def transients(
+    cases: Sequence[Mapping[str, Any]],
+    threads: int | None = None,
+    *,
+    progress: Progress | bool | None = None,
+) -> list[xarray.Dataset]:
     """Many transients at once over threads.
 
     The marches share nothing and hold no lock.
@@ -209,6 +220,9 @@ def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -
         Of each march the arguments of `transient` by name, `source` too.
     threads
         How many marches run at a time; by default as many as there are cores.
+    progress
+        True for a bar, False for none, or a function called with (marches done, marches in all); None for a
+        bar where standard error is a terminal. The marches themselves show none.
 
     Returns
     -------
@@ -219,11 +233,21 @@ def transients(cases: Sequence[Mapping[str, Any]], threads: int | None = None) -
     ------
     Exception
         What the first failing case, in their order, raised; after all have ended.
+    ValueError
+        Before, for cases that are no mappings.
     """
-    from concurrent.futures import ThreadPoolExecutor
+    from concurrent.futures import ThreadPoolExecutor, as_completed
 
     if threads is not None:
         threads = whole("threads", threads, 1)
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        marches = [pool.submit(transient, **case) for case in cases]
+    remedy = "it must be a list of mappings, each the arguments of `transient` by name"
+    asked = [named(f"cases[{k}]", case, remedy) for k, case in enumerate(items("cases", cases, remedy))]
+    with (
+        told(progress, "march") as tell,
+        ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool,
+    ):
+        marches = [pool.submit(transient, **{"progress": False, **case}) for case in asked]
+        for done, _ in enumerate(as_completed(marches), 1):
+            if tell is not None:
+                tell(done, len(marches))
     return [march.result() for march in marches]

@@ -9,6 +9,7 @@ import numpy as np
 from bearingdyn.analysis.recorded_channels import sampling_time, signal_of, unit_of
 from bearingdyn.analysis.shaft_speed import speed_profile
 from bearingdyn.analysis.spectrum import amplitudes, check_window
+from bearingdyn.checks import number, positive
 
 if TYPE_CHECKING:
     import xarray
@@ -46,7 +47,8 @@ def waterfall(
     check_window(window)
     signal = signal_of(result, channel)
     dt = sampling_time(result)
-    n = round(length / dt) if length > 0 and np.isfinite(length) else 0
+    length, overlap = positive("length", length, "it must be a time, s"), number("overlap", overlap)
+    n = round(length / dt)
     if not 4 <= n <= signal.size:
         raise ValueError(
             f"length is {length} s, {n} samples; it must hold four or more and at most the record's "

@@ -246,7 +246,7 @@ class Application:
         Raises
         ------
         ValueError
-            If this is no bearing, a name is unknown or taken, the raceway has another arm, the offset is not
+            If it is not a bearing, a name is unknown or taken, the raceway has another arm, the offset is not
             finite, or a ring does not fit.
 
         Warns

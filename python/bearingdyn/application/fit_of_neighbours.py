@@ -159,7 +159,7 @@ def _check_shoulder(own: RoundFace, room: tuple[float, float] | None, name: str,
 
 
 def _check_carried(own: RoundFace, seat: RoundFace, name: str, neighbour: str, *, least: float) -> None:
-    """Refuse what has less than the share `least` of its width on its seat; warn of what has not all."""
+    """Refuse a neighbour with less than the share `least` of its width on its seat; warn if not all is."""
     length = own.z[1] - own.z[0]
     on = min(own.z[1], seat.z[1]) - max(own.z[0], seat.z[0])
     share = max(on, 0.0) / length

@@ -28,9 +28,9 @@ def rigid_shapes(element: Superelement) -> Array | None:
     if not element.interfaces:
         return None
     K = np.array(element.K)
-    for term in element.viscoelastic:  # any positive modulus serves
+    for term in element.viscoelastic:  # any modulus serves at which K is positive, stressed parts' too
         firm, shear = np.abs(K).max(), np.abs(term.H).max()
-        K += (1e-3 * firm / shear if firm > 0 and shear > 0 else 1.0) * term.H
+        K += (firm / shear if firm > 0 and shear > 0 else 1.0) * term.H
     first = next(iter(element.interfaces.values()))
     others = np.setdiff1d(np.arange(element.n), first)
     R = np.zeros((element.n, 6))

@@ -120,7 +120,7 @@ class BearingJoint:
     Raises
     ------
     ValueError
-        If this is no bearing, both rings are at one place, or the offset is not finite.
+        If this is not a bearing, both rings are at one place, or the offset is not finite.
     """
 
     name: str
@@ -193,7 +193,7 @@ def _check_springs(joint: Support | Bush, what: str) -> None:
 
 
 def _check_bearing(field: str, bearing: object) -> None:
-    """Refuse what is no bearing, and say what to give instead."""
+    """Refuse anything but a bearing, and say what to give instead."""
     if isinstance(bearing, BallBearing):
         return
     if isinstance(bearing, Pair):

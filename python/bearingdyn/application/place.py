@@ -45,7 +45,7 @@ class Place:
         Raises
         ------
         ValueError
-            If the text has no dot, or nothing before or after it, or is no text.
+            If the text has no dot, or nothing before or after it, or is not a text.
         """
         if isinstance(text, Place):
             return text

@@ -87,7 +87,7 @@ class Plan:
         Raises
         ------
         ValueError
-            If the name is none of a place, or there is no such part.
+            If the name is not that of a place, or there is no such part.
         """
         place = Place.parse(name)
         if place.part not in self.parts:
@@ -101,7 +101,7 @@ class Plan:
         Raises
         ------
         ValueError
-            If there is no such interface; a raceway is none.
+            If there is no such interface; a raceway is not an interface.
         """
         place = self.place(name)
         element = self.parts[place.part]

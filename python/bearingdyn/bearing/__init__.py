@@ -11,11 +11,13 @@ from bearingdyn.bearing.characteristic_frequencies import Frequencies
 from bearingdyn.bearing.contact_damping import (
     ConstantDamping,
     Damping,
+    FilmDamping,
     LoadDamping,
     TabulatedDamping,
     resultant_damping,
 )
 from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure
+from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
@@ -25,18 +27,25 @@ from bearingdyn.bearing.kernel import BearingKernel
 from bearingdyn.bearing.load_distribution import LoadDistribution, load_distribution
 from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Lubricant, Walther
-from bearingdyn.bearing.lubrication import Lubrication, lubricate
+from bearingdyn.bearing.lubrication import Lubrication, lubricate, lubricated
 from bearingdyn.bearing.mounting import Mounting, Seat
+from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off
 from bearingdyn.bearing.pairs import Pair
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
 from bearingdyn.bearing.random_surfaces import WavinessSpectrum, diameter_scatter
 from bearingdyn.bearing.rating import (
+    Friction,
+    FrictionModel,
     LoadCases,
+    Phase,
     Ratings,
+    Supply,
     equivalent_life,
     equivalent_load,
     equivalent_static_load,
+    friction,
+    in_hours,
     iso_ratings,
     life_factor,
     life_of_loads,
@@ -61,7 +70,10 @@ __all__ = [
     "ConstantDamping",
     "Damping",
     "Film",
+    "FilmDamping",
     "Frequencies",
+    "Friction",
+    "FrictionModel",
     "Geometry",
     "Imperfections",
     "LoadCases",
@@ -72,20 +84,24 @@ __all__ = [
     "Lubrication",
     "Mounting",
     "NoBalance",
+    "OilSupply",
     "Pair",
     "Passage",
+    "Phase",
     "Pit",
     "PointContact",
     "RacewaySeries",
     "Ratings",
     "Running",
     "Seat",
+    "Supply",
     "TabulatedDamping",
     "Walther",
     "Waviness",
     "WavinessSpectrum",
     "catalogue",
     "check_bearing_pressure",
+    "clearance_range",
     "contact_modulus",
     "dent",
     "diameter_scatter",
@@ -93,19 +109,23 @@ __all__ = [
     "equivalent_load",
     "equivalent_static_load",
     "fault_lines",
+    "friction",
     "hamrock_dowson",
+    "in_hours",
     "iso_ratings",
     "life_factor",
     "life_of_loads",
     "load_cases",
     "load_distribution",
     "lubricate",
+    "lubricated",
     "minimum",
     "modified_life",
     "nijenbanning_venner_moes",
     "passage",
     "rating_life",
     "ratings_of",
+    "read_designation",
     "resultant_damping",
     "resultant_deflection_coefficient",
     "runs_off",

@@ -26,10 +26,11 @@ from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_defle
 from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.kernel import BearingKernel
 from bearingdyn.bearing.load_and_motion_checks import check_load, check_motion
+from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, runs_off, shoulder
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
-from bearingdyn.checks import nonnegative, number, positive, require, vector
+from bearingdyn.checks import nonnegative, number, positive, require, vector, whole
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.types import Array
@@ -82,7 +83,7 @@ class BallBearing:
         Central film thickness of both contacts of a ball together, h_i + h_o, m: F = κ (δ + film)^{3/2}.
     damping
         Damping of one ball, both contacts in series: a number in N s/m, or ConstantDamping, TabulatedDamping,
-        LoadDamping.
+        LoadDamping, FilmDamping.
     kappa
         Deflection coefficient of one ball, both contacts in series, instead of Hertz's, N/m^1.5.
     cage_ratio
@@ -105,6 +106,9 @@ class BallBearing:
         None. A load that presses balls onto the open side is refused.
     boundary
         (bore, outside, width), m, against which an application checks shaft and housing; None: not known.
+    lubrication
+        OilSupply: `bd.equilibrium` then puts film and damping of the loads that it finds in place of `film`
+        and `damping`. None: film and damping as given.
     overrides
         For `dataclasses.replace` only: carries kappa, cage_ratio and arm as given, so that a changed geometry
         changes what was not given.
@@ -142,6 +146,7 @@ class BallBearing:
     turning: Turning | None
     open_side: OpenSide
     boundary: tuple[float, float, float] | None
+    lubrication: OilSupply | None
     overrides: Overrides
 
     def __repr__(self) -> str:
@@ -181,6 +186,7 @@ class BallBearing:
         turning: Turning | None = None,
         open_side: OpenSide = "auto",
         boundary: tuple[float, float, float] | None = None,
+        lubrication: OilSupply | None = None,
         overrides: Overrides = Overrides(),  # noqa: B008 (immutable)
     ) -> None:
         Geometry(Z, Dw, Dpw, fi, fo, clearance, contact_angle)
@@ -205,6 +211,8 @@ class BallBearing:
         shoulder(open_side, contact_angle)
         if boundary is not None:
             boundary = _measures(boundary, Dpw, Dw)
+        remedy = "give an OilSupply(lubricant, temperature, speed), or None"
+        require(isinstance(lubrication, OilSupply | None), "lubrication", lubrication, remedy)
         waves, pits, sizes = checked(int(Z), waviness, defects, oversize)
         values = {
             "Z": int(Z),
@@ -227,6 +235,7 @@ class BallBearing:
             "turning": turning,
             "open_side": open_side,
             "boundary": boundary,
+            "lubrication": lubrication,
             "overrides": given,
         }
         for name, value in values.items():
@@ -320,6 +329,31 @@ class BallBearing:
             return self.geometry.frequencies(*rings)
         loaded = abs(number("contact_angle", contact_angle, "it must be a finite angle in rad"))
         return Geometry(self.Z, self.Dw, self.Dpw, self.fi, self.fo, contact_angle=loaded).frequencies(*rings)
+
+    def lines(
+        self, speed: float, *, harmonics: int = 1, contact_angle: float | None = None
+    ) -> dict[str, float]:
+        """Name -> frequency, Hz, of localised defects and the cage, as `fault_lines` gives them.
+
+        Parameters
+        ----------
+        speed
+            Of the shaft, rad/s.
+        harmonics
+            How many multiples of the ball passes and of 2 BSF.
+        contact_angle
+            Of the loaded state, rad; None: nominal.
+        """
+        whole("harmonics", harmonics, 1, 10_000)
+        f = self.frequencies(number("speed", speed), contact_angle)
+        found = {"shaft": abs(speed) / (2 * math.pi), "FTF": f.FTF}
+        for k in range(1, harmonics + 1):
+            found |= {
+                f"{k} BPFO" if k > 1 else "BPFO": k * f.BPFO,
+                f"{k} BPFI" if k > 1 else "BPFI": k * f.BPFI,
+                f"{2 * k} BSF": 2 * k * f.BSF,
+            }
+        return found
 
     def turned(self, angle: float) -> BallBearing:
         """The bearing as it stands with its cage at `angle`, rad, from now on called zero.

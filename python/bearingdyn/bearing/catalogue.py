@@ -101,7 +101,7 @@ def estimate(
     kind: Kind = "deep groove",
     contact_angle: float | None = None,
 ) -> Entry:
-    """Typical internal geometry for boundary dimensions in m: an estimate, no maker's design.
+    """A catalogue's entry for boundary dimensions in m: an estimate of typical geometry, no maker's design.
 
     Pitch diameter midway. Balls: the largest in steps of 1/64 inch up to 0.3 of the section (outside − bore);
     in narrow bearings, up to 0.7 of the width. Deep groove: as many as can be filled in over 196°; angular
@@ -221,7 +221,7 @@ ALTERNATIVES: dict[str, tuple[Entry, ...]] = {
 
 
 def entry(designation: str | int, *, balls: int | None = None) -> Entry:
-    """Geometry of a designation, and its source.
+    """The catalogue's entry for a designation: typical geometry, and its source.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def entry(designation: str | int, *, balls: int | None = None) -> Entry:
 
 
 def _read(designation: str | int) -> Designation:
-    """The designation taken apart; the error of one that is none names the nearest listed."""
+    """The designation taken apart; the error of an unknown one names the nearest listed."""
     try:
         return read_designation(designation)
     except ValueError as error:
@@ -274,6 +274,27 @@ def _listed(designation: str | int, read: Designation, balls: int | None) -> Ent
         counts = " or ".join(str(e.Z) for e in (found, *others))
         raise ValueError(f"balls is {balls!r}; {read.number} is known with {counts} balls")
     return other
+
+
+def series_of(bearing: BallBearing) -> str | None:
+    """Series of a bearing by its boundary dimensions, such as "62" or "619"; None where none has them.
+
+    Parameters
+    ----------
+    bearing
+        With its boundary known.
+    """
+    if bearing.boundary is None:
+        return None
+    angular = bearing.contact_angle is not None
+    for name, listed in CATALOGUE.items():
+        same = all(
+            math.isclose(a, b, rel_tol=1e-9)
+            for a, b in zip(bearing.boundary, (listed.bore, listed.outside, listed.width), strict=True)
+        )
+        if same and angular == (listed.contact_angle is not None):
+            return name.rstrip("ABC")[:-2]
+    return None
 
 
 def bearing(

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.film_thickness import film_scales
+from bearingdyn.bearing.film_thickness import moes_groups
 from bearingdyn.bearing.hertz import PointContact, resultant_deflection_coefficient
 from bearingdyn.checks import nonnegative, number, positive, require, vector
 from bearingdyn.magnitude import plausible
@@ -39,7 +41,7 @@ def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) ->
     return math.fsum(nonnegative("c", c) * math.pow(kappa / k, 4 / 3) for k, c in (inner, outer))
 
 
-Law: TypeAlias = Literal["constant", "table", "load"]
+Law: TypeAlias = Literal["constant", "table", "load", "film"]
 KernelFields: TypeAlias = tuple[Law, float, Array]
 
 
@@ -134,16 +136,80 @@ class LoadDamping:
         return "load", float(self.time), np.zeros((0, 2))
 
 
-Damping: TypeAlias = ConstantDamping | TabulatedDamping | LoadDamping
+FILM_NODES = 65
+"""Nodes of FilmDamping over w, the core's BD_FILM_NODES."""
+
+
+@dataclass(frozen=True, eq=False)
+class FilmDamping:
+    """Damping of a lubricated contact over its load, which vanishes smoothly where contact is lost.
+
+    c over w = √s/(√s + √scale), s = δ + h0 = (Q/κ)^{2/3}, by monotone cubics between nodes of equal distance
+    in w, from c = 0 with a level slope at w = 0 to the value at w = 1: force and tangent are continuous
+    everywhere. `bearing.lubricate` makes one from the film of both contacts.
+
+    Parameters
+    ----------
+    scale
+        The s at which w is a half, m.
+    c
+        (65,) damping of one ball, N s/m, at w = 0, 1/64, …, 1; zero at the first.
+
+    Raises
+    ------
+    ValueError
+        If scale is not positive, or a value is negative, not finite, or not zero at w = 0.
+    """
+
+    scale: float
+    c: Array
+
+    __repr__ = short
+
+    def __init__(self, scale: float, c: ArrayLike) -> None:
+        positive("damping.scale", scale, "an approach in metres must be positive and finite")
+        plausible("offset", "damping.scale", scale)
+        y = vector("damping.c", c, (FILM_NODES,), "dampings in N s/m at w = 0, 1/64, …, 1")
+        require(bool((y >= 0).all()), "damping.c", c, "it must be zero or positive")
+        require(y[0] == 0, "damping.c[0]", float(y[0]), "it must be zero, where contact is lost")
+        plausible("contact damping", "the largest damping.c", float(y.max()))
+        y = y.copy()
+        y.flags.writeable = False
+        object.__setattr__(self, "scale", float(scale))
+        object.__setattr__(self, "c", y)
+
+    @cached_property
+    def _rises(self) -> Array:
+        """Slopes by cells at the nodes, (65,): monotone where c is (F. N. Fritsch, R. E. Carlson 1980)."""
+        rises = scipy.interpolate.PchipInterpolator(np.arange(FILM_NODES), self.c).derivative()(
+            np.arange(FILM_NODES)
+        )
+        rises[0] = 0.0
+        return np.asarray(rises)
+
+    def at(self, s: ArrayLike) -> Array:
+        """c, N s/m, at s = δ + h0, m, any shape."""
+        root = np.sqrt(np.maximum(np.asarray(s, dtype=float), 0.0))
+        w = root / (root + math.sqrt(self.scale))
+        nodes = np.arange(FILM_NODES)
+        curve = scipy.interpolate.CubicHermiteSpline(nodes, self.c, self._rises)
+        return np.asarray(curve((FILM_NODES - 1) * w))
+
+    def kernel_fields(self) -> KernelFields:
+        """Law, scale and nodes as the kernel takes them."""
+        return "film", self.scale, np.column_stack([self.c, self._rises])
+
+
+Damping: TypeAlias = ConstantDamping | TabulatedDamping | LoadDamping | FilmDamping
 
 
 def as_damping(damping: object) -> Damping:
     """A law of contact damping, or a plain number of N s/m as ConstantDamping; ValueError otherwise."""
-    if isinstance(damping, ConstantDamping | TabulatedDamping | LoadDamping):
+    if isinstance(damping, ConstantDamping | TabulatedDamping | LoadDamping | FilmDamping):
         return damping
     remedy = (
         "give the damping of one ball in N s/m, zero or positive, "
-        "or ConstantDamping, TabulatedDamping or LoadDamping"
+        "or ConstantDamping, TabulatedDamping, LoadDamping or FilmDamping"
     )
     return ConstantDamping(nonnegative("damping", number("damping", damping, remedy), remedy))
 
@@ -158,26 +224,15 @@ def wijnant_damping(contact: PointContact, F: float, us: float, eta0: float, alp
 
     Parameters
     ----------
-    contact
-        Point contact with Rx ≤ Ry.
-    F
-        Load, N.
-    us
-        Sum of the surface speeds u1 + u2, m/s.
-    eta0
-        Dynamic viscosity at ambient pressure, Pa s.
-    alpha
-        Pressure–viscosity coefficient, 1/Pa.
+    contact, F, us, eta0, alpha
+        As in `nijenbanning_venner_moes`.
 
     Raises
     ------
     ValueError
         If a value is not positive, Rx > Ry, or L ≥ 58.8, where r vanishes.
     """
-    E, Rx = film_scales(contact)
-    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
-    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
-    L = positive("alpha", alpha) * E * speed**0.25
+    M, L, _ = moes_groups(contact, F, us, eta0, alpha)
     require(
         L < 58.8,
         "alpha",

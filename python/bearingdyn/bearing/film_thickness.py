@@ -69,11 +69,8 @@ def nijenbanning_venner_moes(contact: PointContact, F: float, us: float, eta0: f
     ValueError
         If a value is not positive, or Rx > Ry.
     """
-    E, Rx = film_scales(contact)
-    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
-    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
-    L = positive("alpha", alpha) * E * speed**0.25
-    return dimensionless_film(M, L, Rx / contact.Ry) * Rx * math.sqrt(speed)
+    M, L, speed = moes_groups(contact, F, us, eta0, alpha)
+    return dimensionless_film(M, L, contact.Rx / contact.Ry) * contact.Rx * math.sqrt(speed)
 
 
 def dimensionless_film(M: float, L: float, D: float) -> float:
@@ -98,6 +95,11 @@ def dimensionless_film(M: float, L: float, D: float) -> float:
     for name, value in (("M", M), ("L", L), ("D", D)):
         positive(name, value)
     require(D <= 1, "D", D, "it must be at most 1: rolling across the minor axis of the contact")
+    return film_formula(M, L, D)
+
+
+def film_formula(M: float, L: float, D: float) -> float:
+    """`dimensionless_film` of numbers that are known to be positive, D ≤ 1."""
     phi = 1 + 0.006 * math.log(D) + 0.63 * D ** (4 / 7)
     rigid_iso = 145 * (1 + 0.796 * D ** (14 / 15)) ** (-15 / 7) / (D * M**2)
     elastic_iso = 3.18 * phi ** (-14 / 25) * D ** (-1 / 15) * M ** (-2 / 15)
@@ -119,3 +121,14 @@ def film_scales(contact: PointContact) -> tuple[float, float]:
         f"it must not exceed Ry, {contact.Ry!r} m: the formulas hold for rolling across the minor axis",
     )
     return 2 * contact.modulus, contact.Rx
+
+
+def moes_groups(
+    contact: PointContact, F: float, us: float, eta0: float, alpha: float
+) -> tuple[float, float, float]:
+    """Load M and lubricant L of H. Moes for the film formulas, and the speed η0 us/(E′ Rx); ValueErrors."""
+    E, Rx = film_scales(contact)
+    speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
+    M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75
+    L = positive("alpha", alpha) * E * speed**0.25
+    return M, L, speed

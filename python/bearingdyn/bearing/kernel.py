@@ -46,9 +46,9 @@ class BearingKernel:
     """Film thickness of both contacts of a ball together, m."""
     damping_law: Law
     damping_c: float
-    """c in N s/m ("constant") or the damping time in s ("load"); 0 for "table"."""
+    """c in N s/m ("constant"), the damping time in s ("load"), or the scale in m ("film"); 0 for "table"."""
     damping_table: Array = field(default_factory=lambda: np.zeros((0, 2)))
-    """(n, 2) rows (δ in m, c in N s/m); empty unless the law is "table"."""
+    """(n, 2) rows (δ in m, c in N s/m), "table", or (c and its rise per cell, N s/m), "film"; else empty."""
     cage_ratio: float = 0.5
     """Cage speed over shaft speed."""
     angle0: float = 0.0

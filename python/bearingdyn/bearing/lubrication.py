@@ -7,17 +7,27 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.bearing import ehl
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.contact_damping import ConstantDamping, resultant_damping, wijnant_damping
+from bearingdyn.bearing.contact_damping import FILM_NODES, FilmDamping
 from bearingdyn.bearing.film_thickness import hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.load_distribution import load_distribution
 from bearingdyn.bearing.lubricant import Lubricant
-from bearingdyn.checks import positive, require, vector
+from bearingdyn.bearing.oil_supply import OilSupply
+from bearingdyn.checks import one_of, positive, require, vector
 from bearingdyn.magnitude import check_speed_value, plausible
 
-FilmLaw = Literal["nijenbanning-venner-moes", "hamrock-dowson"]
+FilmLaw = Literal["ehl", "nijenbanning-venner-moes", "hamrock-dowson"]
+Method = Literal["table", "solve"]
+_RACES = ("inner", "outer")
+_WIDE = (
+    10.0  # load at w = ½ of FilmDamping over that at which a ball turns from a rigid one to a Hertz contact
+)
+_RIGID = 3  # c of rigid bodies on a film is as Q³: film as Q^−2, damping as film^−3/2
 
 
 @dataclass(frozen=True)
@@ -34,23 +44,38 @@ class Lubrication:
     """Central film of the inner contact."""
     film_outer: float
     """Central film of the outer contact."""
+    h0_inner: float
+    """Film h0 of the inner contact's law Q = κ(δ + h0)^{3/2}; the central film where a formula gives it."""
+    h0_outer: float
+    """The same of the outer contact."""
     lambda_inner: float
     """Central film over composite roughness, inner contact; inf without roughness. Below 1 surfaces touch."""
     lambda_outer: float
     """The same of the outer contact."""
+    damping_inner: float
+    """Damping of the inner contact at low frequency under Q, N s/m; NaN outside of the table."""
+    damping_outer: float
+    """The same of the outer contact."""
     damping: float
-    """Damping of one ball, both contacts in series, by `wijnant_damping`, N s/m. UNVERIFIED."""
+    """Damping of one ball, both contacts in series, N s/m."""
+    law: FilmDamping | None
+    """That damping over the load; None outside of the table."""
 
     @property
     def film(self) -> float:
-        """Both films of a ball together, h_i + h_o: the `film` of BallBearing (both act on one spring)."""
-        return self.film_inner + self.film_outer
+        """Both films of a ball together, h0_i + h0_o: the `film` of BallBearing (both act on one spring)."""
+        return self.h0_inner + self.h0_outer
 
-    def applied(self, bearing: BallBearing, *, damping: bool = False) -> BallBearing:
-        """The bearing with this film, and with this damping too if asked for (it is unverified)."""
-        if damping:
-            return dataclasses.replace(bearing, film=self.film, damping=ConstantDamping(self.damping))
-        return dataclasses.replace(bearing, film=self.film)
+    def applied(self, bearing: BallBearing, *, damping: bool = True) -> BallBearing:
+        """The bearing with this film and this damping over the load; its own damping for `damping=False`."""
+        wet = dataclasses.replace(bearing, film=self.film, lubrication=None)
+        if not damping:
+            return wet
+        if self.law is None:
+            raise ValueError(
+                f"damping is {damping!r}; the table of contacts ends before this point: pass damping=False"
+            )
+        return dataclasses.replace(wet, damping=self.law)
 
 
 def lubricate(
@@ -60,7 +85,8 @@ def lubricate(
     speed: float,
     load: ArrayLike,
     *,
-    law: FilmLaw = "nijenbanning-venner-moes",
+    law: FilmLaw = "ehl",
+    method: Method = "table",
     starvation: float = 1.0,
     roughness: tuple[float, float] | None = None,
 ) -> Lubrication:
@@ -80,63 +106,173 @@ def lubricate(
     load
         (6,) on the inner ring, N and N m.
     law
-        Film formula.
+        "ehl": the equations of the lubricated contact; or a formula of the film, divided by the oil's
+        relative density at the Hertz pressure, because formulas are fits of an oil that does not yield.
+    method
+        Where the figures of "ehl" come from: the "table", or "solve" the equations for both contacts, which
+        takes some seconds and knows no limits of a table. The damping over other loads is the table's, in
+        proportion.
     starvation
         Film over fully flooded film, in 0..1. Grease soon runs starved, at about half the flooded film: a
-        rule of thumb, unverified; the factor is approximate by nature.
+        rule of thumb, unverified; the factor is approximate by nature. Damping is that of the flooded film.
     roughness
         Rms roughness of race and ball, m.
 
     Raises
     ------
     ValueError
-        Naming the field: a value out of range, a temperature outside the oil's viscosity law, no loaded ball.
+        Naming the field: a value out of range, a temperature outside the oil's viscosity law, no loaded ball,
+        a contact outside of the table.
     ArithmeticError
         If the bearing finds no equilibrium.
     """
     require(isinstance(bearing, BallBearing), "bearing", bearing, "give a BallBearing")
-    require(isinstance(lubricant, Lubricant), "lubricant", lubricant, "give a Lubricant")
-    require(
-        law in ("nijenbanning-venner-moes", "hamrock-dowson"),
-        "law",
-        law,
-        'it must be "nijenbanning-venner-moes" or "hamrock-dowson"',
-    )
-    omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
-    check_speed_value("speed", omega, bearing.Dpw)
-    require(omega != 0, "speed", speed, "it must not be zero: without speed there is no film")
-    turns = bearing.ring_speeds
-    rolling = turns[0] != turns[1]
-    require(rolling, "bearing.turning", bearing.turning, "both rings turn alike: without rolling no film")
-    share = positive("starvation", starvation)
-    require(share <= 1, "starvation", starvation, "it must be at most 1, fully flooded")
+    supply = OilSupply(lubricant, temperature, speed, starvation)
+    one_of("law", law, ("ehl", "nijenbanning-venner-moes", "hamrock-dowson"))
+    one_of("method", method, ("table", "solve"))
     sigma = 0.0
     if roughness is not None:
         given = vector("roughness", roughness, (2,), "rms roughness of race and ball, in m")
         race, ball = (plausible("roughness", "roughness", positive("roughness", r)) for r in given.tolist())
         sigma = math.hypot(race, ball)
-    eta0, alpha = lubricant.viscosity(temperature), lubricant.alpha
-    dry = dataclasses.replace(bearing, film=0.0)
+    _check_rolling(bearing, supply)
+    dry = dataclasses.replace(bearing, film=0.0, lubrication=None)
     state = load_distribution(dry, dry.displacement(load))
     require(state.loaded > 0, "load", load, "no ball is loaded: there is no contact to lubricate")
     Q = float(state.load_inner.sum() / state.loaded)
-    gamma = bearing.Dw / bearing.Dpw * math.cos(float(state.angle_inner[int(state.load_inner.argmax())]))
-    us = bearing.Dpw / 2 * abs(omega * (turns[0] - turns[1])) * (1 - gamma**2)
+    angle = float(state.angle_inner[int(state.load_inner.argmax())])
+    return lubricated(bearing, supply, Q, angle, law=law, method=method, roughness=sigma)
+
+
+def lubricated(
+    bearing: BallBearing,
+    supply: OilSupply,
+    Q: float,
+    angle: float,
+    *,
+    law: FilmLaw = "ehl",
+    method: Method = "table",
+    roughness: float = 0.0,
+) -> Lubrication:
+    """The lubrication of a bearing whose loaded balls carry Q on average.
+
+    Parameters
+    ----------
+    bearing
+        Its film and damping are not used.
+    supply
+        Oil, temperature, speed of the shaft and starvation.
+    Q
+        Mean load of the loaded balls, N.
+    angle
+        Contact angle, rad.
+    law, method
+        As in `lubricate`.
+    roughness
+        Composite rms roughness of race and ball, m.
+
+    Raises
+    ------
+    ValueError
+        As `lubricate`.
+    """
+    _check_rolling(bearing, supply)
+    turns = bearing.ring_speeds
+    gamma = bearing.Dw / bearing.Dpw * math.cos(angle)
+    us = bearing.Dpw / 2 * abs(supply.speed * (turns[0] - turns[1])) * (1 - gamma**2)
+    oil, T = supply.lubricant, supply.temperature
+    eta0, alpha = oil.viscosity(T), oil.alpha
     contacts = (bearing.inner_contact, bearing.outer_contact)
-    if law == "hamrock-dowson":
-        flooded = [hamrock_dowson(c, Q, us / 2, eta0, alpha).central for c in contacts]
+    found: list[ehl.LubricatedContact | None] = []
+    for race, contact in zip(_RACES, contacts, strict=True):
+        if method == "solve" and law == "ehl":
+            found.append(ehl.solve(contact, oil, Q, us, T))
+            continue
+        try:
+            found.append(ehl.look_up(contact, oil, Q, us, T))
+        except ValueError as outside:
+            if law == "ehl":
+                raise ValueError(
+                    f"{race} race under {Q:.4g} N: {outside}, here method='solve', or a formula by law=…"
+                ) from None
+            found.append(None)
+    if law == "ehl":
+        centre = [c.hc for c in found if c is not None]
+        h0 = [c.h0 for c in found if c is not None]
     else:
-        flooded = [nijenbanning_venner_moes(c, Q, us, eta0, alpha) for c in contacts]
-    inner, outer = (share * h for h in flooded)
-    kappas = [c.kappa for c in contacts]
-    c_i, c_o = (wijnant_damping(c, Q, us, eta0, alpha) for c in contacts)
+        centre = []
+        for contact in contacts:
+            if law == "hamrock-dowson":
+                film = hamrock_dowson(contact, Q, us / 2, eta0, alpha).central
+            else:
+                film = nijenbanning_venner_moes(contact, Q, us, eta0, alpha)
+            centre.append(film / float(ehl.relative_density(contact.pressure(Q))))
+        h0 = centre
+    inner, outer = found
+    single = [math.nan if c is None else c.c0 for c in found]
+    together = math.nan if inner is None or outer is None else in_series(inner, outer)
+    share = supply.starvation
     return Lubrication(
         Q=Q,
         us=us,
         viscosity=eta0,
-        film_inner=inner,
-        film_outer=outer,
-        lambda_inner=inner / sigma if sigma else math.inf,
-        lambda_outer=outer / sigma if sigma else math.inf,
-        damping=resultant_damping((kappas[0], c_i), (kappas[1], c_o)),
+        film_inner=share * centre[0],
+        film_outer=share * centre[1],
+        h0_inner=share * h0[0],
+        h0_outer=share * h0[1],
+        lambda_inner=share * centre[0] / roughness if roughness else math.inf,
+        lambda_outer=share * centre[1] / roughness if roughness else math.inf,
+        damping_inner=single[0],
+        damping_outer=single[1],
+        damping=together,
+        law=_over_load(bearing, oil, us, T, Q, together),
     )
+
+
+def in_series(inner: ehl.LubricatedContact, outer: ehl.LubricatedContact) -> float:
+    """Damping of two contacts under one force at low frequency, N s/m: c = k²(c_i/k_i² + c_o/k_o²)."""
+    k = 1 / (1 / inner.k0 + 1 / outer.k0)
+    return k**2 * (inner.c0 / inner.k0**2 + outer.c0 / outer.k0**2)
+
+
+def _over_load(
+    bearing: BallBearing, oil: Lubricant, us: float, T: float, Q: float, c: float
+) -> FilmDamping | None:
+    """Damping of a ball over its load: the table's, in proportion so that it is c under Q; else None."""
+    contacts = (bearing.inner_contact, bearing.outer_contact)
+    ends = [_table_ends(contact, oil, us, T) for contact in contacts]
+    if math.isnan(c) or any(end is None for end in ends):
+        return None
+    low, high = max(e[0] for e in ends if e), min(e[1] for e in ends if e)
+
+    def damping(F: float) -> float:
+        held = min(max(F, low), high)
+        at = in_series(*(ehl.look_up(contact, oil, held, us, T) for contact in contacts))
+        return at * min(F / low, 1.0) ** _RIGID
+
+    turn = max(e[2] for e in ends if e)
+    scale = (_WIDE * turn / bearing.kappa) ** (2 / 3)
+    w = np.linspace(0, 1, FILM_NODES)
+    loads = bearing.kappa * (scale * (w[1:-1] / (1 - w[1:-1])) ** 2) ** 1.5
+    values = [0.0, *(damping(float(F)) for F in loads)]
+    values.append(values[-1])
+    return FilmDamping(scale, np.array(values) * (c / damping(Q)))
+
+
+def _table_ends(
+    contact: PointContact, oil: Lubricant, us: float, T: float
+) -> tuple[float, float, float] | None:
+    """Least and largest load of a contact in the table, N, and that where it turns from rigid to Hertz's."""
+    M, L, D = ehl.scales(contact, 1.0, us, oil.viscosity(T), oil.alpha)
+    if not ehl.in_table(L, D):
+        return None
+    low, high = ehl.loads_between(D)
+    # a hair inside, for round-off
+    return low / M * (1 + 1e-9), high / M * (1 - 1e-9), ehl.turning_load(D) / M
+
+
+def _check_rolling(bearing: BallBearing, supply: OilSupply) -> None:
+    check_speed_value("speed", supply.speed, bearing.Dpw)
+    turns = bearing.ring_speeds
+    rolling = turns[0] != turns[1]
+    require(rolling, "bearing.turning", bearing.turning, "both rings turn alike: without rolling no film")

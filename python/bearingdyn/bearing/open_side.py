@@ -1,7 +1,9 @@
 """The side on which a bearing has no shoulder, and whether balls are pressed onto it.
 
 An angular contact bearing bears axial load one way. The other way there is no shoulder: the balls run off
-the bottom of the groove and the bearing comes apart.
+the bottom of the groove and the bearing comes apart. A radial load alone does that too: nothing holds the
+ring against the groove's flank, and it slides away from the shoulder until the balls stand on the bottom,
+which is cut down to there.
 """
 
 from __future__ import annotations
@@ -20,10 +22,13 @@ if TYPE_CHECKING:
 OpenSide: TypeAlias = Literal["auto", "+z", "-z"] | None
 
 _BOTTOM = math.radians(5)
-"""How far beyond the bottom of the groove a ball still finds it: half of a contact ellipse, some 0.1 Dw wide,
+"""How far about the bottom of the groove a ball still finds it: half of a contact ellipse, some 0.1 Dw wide,
 seen from the middle of the ball. The low shoulder of an angular contact bearing is cut down to there."""
 _CARRIES = 0.01
 """Of the largest ball load: a ball that only brushes the groove does not carry."""
+_LEANS = 0.2
+"""Of the open sine, 1° of 5°: a ball that leans on the shoulder at all. Bearings in ordinary use have ten
+times as much radial load as thrust, and contact angles of 4°."""
 
 
 def shoulder(open_side: OpenSide, contact_angle: float | None) -> int:
@@ -46,7 +51,9 @@ def open_sine(alpha0: float) -> float:
 
 
 def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str | None:
-    """Which balls are pressed onto the open side, in words; None where there are none.
+    """Why a bearing does not hold together on its shoulder, in words; None where it does.
+
+    Either a ball that carries is pressed onto the open side, or none leans on the shoulder.
 
     Parameters
     ----------
@@ -59,28 +66,37 @@ def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str 
     turn
         Azimuth of the first ball, rad.
     """
-    if kernel.shoulder == 0:
+    if kernel.shoulder == 0 or not loads.max() > 0.0:
         return None
     psi = turn + 2 * math.pi * np.arange(kernel.Z) / kernel.Z
     basis = _basis(kernel, psi)
     axial = kernel.x0 + (z * (kernel.axial == 1)) @ basis
     radial = kernel.y0 + (z * (kernel.axial == 0)) @ basis
     alpha = np.arctan2(axial, radial)
-    astray = (kernel.shoulder * np.sin(alpha) < -kernel.open_sine) & (loads > _CARRIES * loads.max())
-    if not astray.any():
+    sine, carries = kernel.shoulder * np.sin(alpha), loads > _CARRIES * loads.max()
+    astray = carries & (sine < -kernel.open_sine)
+    if not astray.any() and (carries & (sine > _LEANS * kernel.open_sine)).any():
         return None
-    j = int(np.argmax(np.where(astray, loads, 0.0)))
     side = "−z" if kernel.shoulder > 0 else "+z"
+    at_fault = astray if astray.any() else carries
+    j = int(np.argmax(np.where(at_fault, loads, 0.0)))
+    worst = f"(ball {j + 1}: {loads[j]:.4g} N at {math.degrees(alpha[j]):.1f}°)"
+    if astray.any():
+        return (
+            f"{int(astray.sum())} of {kernel.Z} balls are pressed onto the open side, where no shoulder "
+            f"holds them {worst}: the inner ring is not carried towards {side}"
+        )
     return (
-        f"{int(astray.sum())} of {kernel.Z} balls are pressed onto the open side, where no shoulder holds "
-        f"them (ball {j + 1}: {loads[j]:.4g} N at {math.degrees(alpha[j]):.1f}°): the inner ring is not "
-        f"carried towards {side}"
+        f"none of its {int(carries.sum())} loaded balls leans on the shoulder, all stand on the bottom of "
+        f"the groove {worst}: it bears no axial load to speak of, and nothing keeps the inner ring "
+        f"from sliding off towards {side}"
     )
 
 
 OPEN_SIDE_REMEDY = (
-    "hang the bearing the other way round, bearing.mirrored(), or set it against a second one that carries "
-    "this direction (a Pair, or a preload by offset=); one with shoulders on both sides has open_side=None"
+    "load it towards its shoulder, hang it the other way round, bearing.mirrored(), or set it against a "
+    "second one that carries this direction (a Pair, or a preload by offset=); one with shoulders on both "
+    "sides has open_side=None"
 )
 
 

@@ -119,7 +119,7 @@ def diameter_scatter(Z: int, deviation: float, seed: int) -> tuple[float, ...]:
     Raises
     ------
     ValueError
-        For a Z or seed that is no whole number, or a negative deviation.
+        For a Z or seed that is not a whole number, or a negative deviation.
     """
     require(isinstance(Z, int) and Z >= 1, "Z", Z, "it must be a whole number of balls")
     require(isinstance(seed, int) and seed >= 0, "seed", seed, "it must be a whole number, zero or more")

@@ -16,7 +16,7 @@ def ring_speeds(turning: Turning | None) -> tuple[float, float]:
     Raises
     ------
     ValueError
-        For an unknown word, or what is no pair of finite numbers.
+        For an unknown word, or anything else that is not a pair of finite numbers.
     """
     if turning is None:
         return _WORDS["inner"]

@@ -39,16 +39,7 @@ def fault_lines(
     (107.36, 162.19)
     """
     instance("bearing", bearing, BallBearing, "give a BallBearing")
-    _whole("harmonics", harmonics)
-    f = bearing.frequencies(number("speed", speed), contact_angle)
-    lines = {"shaft": abs(speed) / (2 * math.pi), "FTF": f.FTF}
-    for k in range(1, harmonics + 1):
-        lines |= {
-            f"{k} BPFO" if k > 1 else "BPFO": k * f.BPFO,
-            f"{k} BPFI" if k > 1 else "BPFI": k * f.BPFI,
-            f"{2 * k} BSF": 2 * k * f.BSF,
-        }
-    return lines
+    return bearing.lines(speed, harmonics=harmonics, contact_angle=contact_angle)
 
 
 def waviness_lines(
@@ -79,7 +70,7 @@ def waviness_lines(
     Raises
     ------
     ValueError
-        For an odd order of a ball, or a value that is no positive whole number.
+        For an odd order of a ball, or a value that is not a positive whole number.
     """
     instance("bearing", bearing, BallBearing, "give a BallBearing")
     _whole("multiples", multiples)

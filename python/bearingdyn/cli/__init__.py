@@ -1,4 +1,4 @@
-"""The command line: `bearingdyn fit`, `show`, `check`, `demo` and `version`.
+"""The command line: `bearingdyn fit`, `show`, `bearing`, `check`, `demo` and `version`.
 
 Results go to standard output; progress, and warnings and errors of one line each, to standard error. The exit
 code is 0, 1 where a check does not hold, 2 for a command or input that cannot be used, 130 after Ctrl-C.
@@ -13,7 +13,8 @@ import warnings
 from collections.abc import Sequence
 from typing import Literal
 
-from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, run_fit
+from bearingdyn.cli.bearing import run_bearing
+from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, LAW, T_REF, run_fit
 from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
 from bearingdyn.cli.own import run_check, run_demo, run_version
 from bearingdyn.cli.show import run_show
@@ -22,7 +23,10 @@ from bearingdyn.results import versions
 EPILOG = """\
 examples:
   bearingdyn fit rubber.csv --n 5 --band 10 5000 --out rubber.json
+  bearingdyn fit sweep_20C.csv --temperature 20 --n auto
+  bearingdyn fit trios.txt --step "Frequency sweep" --run a b
   bearingdyn show result.nc
+  bearingdyn bearing 6205/C3 --radial 2000 --axial 300 --rpm 3000 --oil VG32 --temperature 70
   bearingdyn check
   bearingdyn demo --out demo
 
@@ -95,18 +99,19 @@ def _parser() -> argparse.ArgumentParser:
         "fit",
         run_fit,
         "a Maxwell model from measured DMA data",
-        "Shift the isotherms of a DMA measurement to a master curve and fit a Maxwell model to it.",
+        "Shift the isotherms of a DMA measurement to a master curve and fit a Maxwell model to it. A single "
+        "sweep, such as a supplier's finished curve, and a single relaxation are fitted as they are.",
     )
-    fit.add_argument("data", help="table of isothermal frequency sweeps, with a header")
+    fit.add_argument(
+        "data", nargs="+", help="table of isothermal frequency sweeps, with a header; or several, one each"
+    )
     fit.add_argument("--n", type=_branches, default=5, help='number of branches, or "auto" (default 5)')
     fit.add_argument(
         "--band", type=float, nargs=2, metavar=("LOW", "HIGH"), help="frequencies to fit between at T-ref, Hz"
     )
+    fit.add_argument("--T-ref", type=float, metavar="T", help=f"reference temperature, C (default {T_REF:g})")
     fit.add_argument(
-        "--T-ref", type=float, default=20.0, metavar="T", help="reference temperature, C (default 20)"
-    )
-    fit.add_argument(
-        "--law", choices=("wlf", "arrhenius", "joined", "free"), default="wlf", help="shift law (default wlf)"
+        "--law", choices=("wlf", "arrhenius", "joined", "free"), help=f"shift law (default {LAW})"
     )
     fit.add_argument("--K", type=float, help=f"bulk modulus, Pa (default {BULK_MODULUS:g}, usual for rubber)")
     fit.add_argument("--density", type=float, help=f"kg/m3 (default {DENSITY:g}, usual for rubber)")
@@ -125,6 +130,29 @@ def _parser() -> argparse.ArgumentParser:
         help="""titles of columns the header does not make plain: storage="G' (kPa)" """,
     )
     fit.add_argument("--mode", choices=("shear", "tension"), help="where the header does not say it")
+    fit.add_argument(
+        "--temperature",
+        type=float,
+        nargs="+",
+        metavar="T",
+        help="of all points, C, where the table has no such column; one for each file",
+    )
+    fit.add_argument(
+        "--step",
+        nargs="+",
+        metavar="STEP",
+        help="steps (or sheets) to read: parts of names, or numbers from 1",
+    )
+    fit.add_argument(
+        "--run", nargs="+", dest="run_names", metavar="RUN", help="only these runs, as a column names them"
+    )
+    fit.add_argument(
+        "--isotherms", type=float, nargs=2, metavar=("LOW", "HIGH"), help="temperatures to use, C"
+    )
+    fit.add_argument("--sort", action="store_true", help="sort the points instead of refusing unsorted ones")
+    fit.add_argument(
+        "--drop-invalid", action="store_true", help="leave out rows whose numbers are not positive"
+    )
     fit.add_argument("--f-max", type=float, metavar="F", help="leave out what was measured above, Hz")
     fit.add_argument("--no-clean", action="store_true", help="keep points that look like fixture resonance")
     fit.add_argument("--out", metavar="FILE", help="write the model there, as Maxwell.from_json reads it")
@@ -141,6 +169,37 @@ def _parser() -> argparse.ArgumentParser:
     )
     show.add_argument("result", help="file written by bearingdyn.save")
 
+    sheet = add(
+        "bearing",
+        run_bearing,
+        "the sheet of one bearing: load, life, film, friction, stiffness, lines",
+        "What a bearing bears, how long, how warm and how stiff, by its designation and load; the inner ring "
+        "turns, the shaft holds it upright.",
+    )
+    sheet.add_argument("designation", help='as people write it: 6205, "SKF 6203-2RS/C3", "7014 ACD"')
+    sheet.add_argument("--radial", type=float, default=0.0, metavar="N", help="radial load, N (default 0)")
+    sheet.add_argument("--axial", type=float, default=0.0, metavar="N", help="axial load, N (default 0)")
+    sheet.add_argument("--rpm", type=float, default=0.0, metavar="N", help="speed of the shaft, rpm")
+    sheet.add_argument("--oil", metavar="GRADE", help="ISO viscosity grade, as VG32 (default: no oil)")
+    sheet.add_argument(
+        "--temperature", type=float, default=40.0, metavar="T", help="of the oil, C (default 40)"
+    )
+    sheet.add_argument(
+        "--clearance", type=float, metavar="UM", help="diametral, micrometres (default: by the class)"
+    )
+    sheet.add_argument(
+        "--contamination",
+        default="normal cleanliness",
+        metavar="E",
+        help='e_C from 0 to 1, or words as "high cleanliness" (default "normal cleanliness")',
+    )
+    sheet.add_argument(
+        "--reliability", type=float, default=90.0, metavar="R", help="90 to 99 percent (default 90)"
+    )
+    sheet.add_argument(
+        "--friction", choices=("palmgren", "four-term"), default="palmgren", help="model (default palmgren)"
+    )
+    sheet.add_argument("--html", metavar="FILE", help="also write the sheet there as one page")
     add(
         "check",
         run_check,

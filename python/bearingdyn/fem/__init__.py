@@ -7,6 +7,15 @@ all three.
 
 from bearingdyn.fem.beam import Section, assemble_beam, bending_wavelength
 from bearingdyn.fem.factors import Factors, factorise, order_of
+from bearingdyn.fem.finite_strain import (
+    CURRENT,
+    SEPARABLE,
+    NoBalance,
+    RevolvedElements,
+    RevolvedState,
+    Wall,
+    balance,
+)
 from bearingdyn.fem.lowest_modes import lowest_modes
 from bearingdyn.fem.matrix_files import (
     MM_TONNE,
@@ -51,22 +60,29 @@ from bearingdyn.fem.solid_matrices import SolidMatrices, assemble_solid
 __all__ = [
     "ALL_COMPONENTS",
     "AXIAL",
+    "CURRENT",
     "MM_TONNE",
     "SAME",
+    "SEPARABLE",
     "TORSION",
     "FEMatrices",
     "Factors",
     "Harmonic",
+    "NoBalance",
     "Rectangle",
     "RevolutionMesh",
+    "RevolvedElements",
+    "RevolvedState",
     "Section",
     "SolidMatrices",
     "SolidMesh",
     "SurfaceSamples",
     "Units",
+    "Wall",
     "assemble_beam",
     "assemble_harmonic",
     "assemble_solid",
+    "balance",
     "bending_wavelength",
     "block_with_bore",
     "box_mesh",

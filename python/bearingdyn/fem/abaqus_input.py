@@ -193,4 +193,4 @@ def node(line: str) -> tuple[int, tuple[float, float, float]]:
         x, y, z = (real(v) for v in (*place, "", "", "")[:3])
         return whole(number), (x, y, z)
     except ValueError as error:
-        raise ValueError(f"{line[:80]!r} is no node: {error}") from error
+        raise ValueError(f"{line[:80]!r} is not a node: {error}") from error

@@ -203,6 +203,8 @@ def deviatoric_strains(
 
     Parameters
     ----------
+    mesh
+        The section in (r, z).
     order, components
         Of the harmonic that u is of.
     u

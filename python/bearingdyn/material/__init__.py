@@ -1,6 +1,6 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
-from bearingdyn.material.amplitude import Payne, PayneFit, StrainSweep, fit_payne, read_strain_sweep
+from bearingdyn.material.amplitude import Payne, PayneFit
 from bearingdyn.material.beyond_data import warn_beyond
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
@@ -8,15 +8,28 @@ from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.hyperelastic import NEO_HOOKE, Hyperelastic, MooneyRivlin, NeoHooke, Yeoh
-from bearingdyn.material.identification import fit_dense, fit_maxwell
+from bearingdyn.material.identification import fit_dense, fit_maxwell, fit_payne
 from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.reading import ReadingError, read_dma, sample_dma_path
+from bearingdyn.material.reading import (
+    ReadingError,
+    StrainSweep,
+    read_dma,
+    read_strain_sweep,
+    sample_dma_path,
+)
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
 from bearingdyn.material.superposition import LIMIT as KK_LIMIT
-from bearingdyn.material.superposition import MasterCurve, Suspect, kk_ratio, master_curve, suspects
+from bearingdyn.material.superposition import (
+    MasterCurve,
+    Suspect,
+    kk_ratio,
+    master_curve,
+    one_curve,
+    suspects,
+)
 
 __all__ = [
     "KK_LIMIT",
@@ -53,6 +66,7 @@ __all__ = [
     "group_isotherms",
     "kk_ratio",
     "master_curve",
+    "one_curve",
     "read_dma",
     "read_strain_sweep",
     "sample_dma_path",

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import positive, require
 from bearingdyn.magnitude import check_density, check_waves, plausible
-from bearingdyn.material.amplitude.law import Payne, Softening
+from bearingdyn.material.amplitude import Payne, Softening
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.low_end import LowEnd
@@ -211,7 +211,9 @@ class PowerLaw(Softening):
     ValueError
         If a value is outside its range or not finite.
 
-    Reference: paper §3.2.
+    References
+    ----------
+    Paper §3.2.
     """
 
     modulus: float
@@ -281,7 +283,9 @@ class FractionalZener(Softening):
     ValueError
         If a value is outside its range or not finite.
 
-    Reference: T. Pritz, J. Sound Vib. 195 (1996) 103.
+    References
+    ----------
+    T. Pritz, J. Sound Vib. 195 (1996) 103.
     """
 
     G0: float

@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, number, positive, real, require, vector
 from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
-from bearingdyn.material.amplitude.law import Payne, Softening
-from bearingdyn.material.amplitude.rest import Rest, rest_of
+from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd
@@ -264,7 +263,9 @@ class Maxwell(Retunable, Softening):
         ValueError
             If a frequency is not finite.
 
-        Reference: paper eqs 17-19.
+        References
+        ----------
+        Paper eqs 17-19.
         """
         omega = np.asarray(omega, dtype=np.float64)
         if not np.all(np.isfinite(omega)):
@@ -352,7 +353,9 @@ class Maxwell(Retunable, Softening):
         ValueError
             If a step is not positive, a rate not finite, or the lengths differ.
 
-        Reference: paper eqs 7-11 with the branch stress as the state (theory, §1).
+        References
+        ----------
+        Paper eqs 7-11 with the branch stress as the state (theory, §1).
         """
         rate = np.asarray(strain_rate, dtype=np.float64)
         if rate.ndim == 0 or rate.shape[0] == 0:

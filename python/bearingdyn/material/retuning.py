@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from bearingdyn.checks import positive, require
-from bearingdyn.material.amplitude.law import Payne
+from bearingdyn.material.amplitude import Payne
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.types import Array, Complex
 

@@ -70,7 +70,9 @@ class WLF:
     ValueError
         If a constant is not positive or not finite.
 
-    Reference: M.L. Williams, R.F. Landel, J.D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701.
+    References
+    ----------
+    M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701.
     """
 
     C1: float

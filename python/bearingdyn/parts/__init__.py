@@ -11,6 +11,7 @@ from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.node_set import NodeSet, at_radius
 from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
+from bearingdyn.parts.prestress import Prestress
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
@@ -19,7 +20,9 @@ from bearingdyn.parts.ring import Ring
 from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.parts.specimen import specimen_factor
 from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.parts.strain import Strain
 
 __all__ = [
     "Cylinder",
@@ -40,6 +43,7 @@ __all__ = [
     "Outline",
     "Outlined",
     "Patch",
+    "Prestress",
     "Region",
     "Revolved",
     "RevolvedModes",
@@ -51,9 +55,11 @@ __all__ = [
     "Shaft",
     "Solid",
     "Squeezed",
+    "Strain",
     "ViscoelasticSolid",
     "Where",
     "at_radius",
     "damping_sample",
     "quadrilaterals",
+    "specimen_factor",
 ]

@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, one_of, positive, require
 from bearingdyn.cms import Superelement, check_moduli
-from bearingdyn.fem import revolution_mesh
-from bearingdyn.fem.finite_strain import NoBalance
+from bearingdyn.fem import (
+    NoBalance,
+    revolution_mesh,
+)
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline
@@ -21,7 +23,7 @@ from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.round_face import RoundFace
-from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
 from bearingdyn.parts.strain import Strain
 from bearingdyn.types import Array, Complex
 
@@ -125,6 +127,7 @@ class Layer:
         law: Hyperelastic | None = None,
         branches: str = "current",
         after: float | None = None,
+        compare: bool = True,
     ) -> Squeezed:
         """The layer as it is squeezed between shaft and bore, at finite strain; it takes the layer's place.
 
@@ -147,6 +150,8 @@ class Layer:
             "current" or "separable": what of the stiffness depends on the frequency; see Revolved.assembled.
         after
             Take the static modulus G(t) after this time, s, instead of the relaxed one.
+        compare
+            Solve on a coarser mesh too, and warn where the two differ by more than 1 %.
 
         Raises
         ------
@@ -158,6 +163,8 @@ class Layer:
         -----
         BeyondData
             Where the data of the material do not speak of the time at which it stands.
+        MeshDependent
+            Where force or static stiffness change by more than 1 % on a coarser mesh.
 
         Examples
         --------
@@ -167,7 +174,7 @@ class Layer:
         >>> fitted = layer.assembled(squeeze=0.10, inside="slip", outside="slip")
         >>> k, rest = fitted.stiffness()[0, 0].real, layer.stiffness()[0, 0].real
         >>> f"{fitted.pressure / 1e6:.2f} MPa, radially {k / rest - 1:.0%} stiffer"
-        '0.55 MPa, radially 42% stiffer'
+        '0.43 MPa, radially 42% stiffer'
         """
         require(
             (squeeze is None) != (interference is None),
@@ -188,15 +195,21 @@ class Layer:
         for side, name, how in (("inside", "inner", inside), ("outside", "outer", outside)):
             one_of(side, how, ("bonded", "slip"))
             slip += [name] if how == "slip" else []
+        press = {"outer": share * self.thickness}
+
+        def on(ring: Layer) -> Squeezed:
+            return ring.body.squeezed(press, slip=slip, law=law, branches=branches, after=after)
+
         try:
-            return self.body.squeezed(
-                {"outer": share * self.thickness}, slip=slip, law=law, branches=branches, after=after
-            )
+            found = on(self)
         except NoBalance as failure:
             raise ValueError(
                 f"{asked[0]} is {asked[1]}; {failure.share * share:.3g} of the thickness is reached: "
                 f"{failure.reason}"
             ) from None
+        if compare and share > 0.0 and COARSER * self.refinement >= 0.25:
+            compare_meshes(found, lambda: on(replace(self, refinement=COARSER * self.refinement)))
+        return found
 
     def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
         """Quasi-static stiffness (12, 12), inner interface then outer, N/m, N, N m: solved anew at G*(ω).
@@ -232,6 +245,21 @@ class Layer:
         """Cylinders at its interfaces, against which an application checks the neighbours."""
         return {k: tuple(replace(f, bonded=True) for f in v) for k, v in self.body.round_faces().items()}
 
+    def eccentricity(self, relative: ArrayLike) -> Array:
+        """Largest displacement across the axis at either end of the layer, over the thickness.
+
+        Parameters
+        ----------
+        relative
+            (..., 6) motion of one interface against the other, m and rad. Returns (...,).
+        """
+        q = np.asarray(relative, dtype=np.float64)
+        ends = [
+            np.hypot(q[..., 0] + s * q[..., 4], q[..., 1] - s * q[..., 3])
+            for s in (-0.5 * self.width, 0.5 * self.width)
+        ]
+        return np.asarray(np.maximum(*ends) / self.thickness)
+
     def strain(self, relative: ArrayLike, modulus: float | None = None) -> Strain:
         """Shear strain of the rubber under a relative motion of the interfaces, by the strain at each place.
 
@@ -260,7 +288,7 @@ class Layer:
         >>> layer = bd.Layer(r_inner=0.020, r_outer=0.022, width=0.017, material=rubber)
         >>> g = layer.strain([10e-6, 0, 0, 0, 0, 0])  # 10 µm across 2 mm of rubber, radially
         >>> f"{100 * g.rms:.2f} % rms, {100 * g.logarithmic:.2f} % where the energy is"
-        '0.95 % rms, 1.45 % where the energy is'
+        '2.87 % rms, 4.36 % where the energy is'
         """
         q = np.asarray(relative)
         require(

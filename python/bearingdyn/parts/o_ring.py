@@ -9,8 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from bearingdyn.checks import nonnegative, positive, require
-from bearingdyn.fem import RevolutionMesh, disc_section, quadrilaterals
-from bearingdyn.fem.finite_strain import NoBalance
+from bearingdyn.fem import (
+    NoBalance,
+    RevolutionMesh,
+    disc_section,
+    quadrilaterals,
+)
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic
 from bearingdyn.parts.regions import Patch, ViscoelasticSolid
@@ -52,7 +56,7 @@ class ORing:
     >>> rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
     >>> seal = bd.ORing(radius=0.022, cord=0.004, material=rubber).assembled(squeeze=0.10)
     >>> f"{seal.force:.0f} N all around, {seal.widths['outer'] * 1e3:.1f} mm wide at the bore"
-    '99 N all around, 1.3 mm wide at the bore'
+    '99 N all around, 1.2 mm wide at the bore'
     """
 
     radius: float
@@ -123,14 +127,18 @@ class ORing:
         """
         remedy = "it must be a share of the cord, above 0 and less than 1: unsqueezed it has no stiffness"
         require(0.0 < nonnegative("squeeze", squeeze, remedy) < 1.0, "squeeze", squeeze, remedy)
-        try:
-            return self.body.squeezed(
+
+        def on(ring: ORing) -> Squeezed:
+            return ring.body.squeezed(
                 {"outer": squeeze * self.cord},
                 slip=("inner", "outer"),
                 law=law,
                 branches=branches,
                 after=after,
             )
+
+        try:
+            return on(self)
         except NoBalance as failure:
             raise ValueError(
                 f"squeeze is {squeeze}; {failure.share * squeeze:.3g} of the cord is reached: "

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import meant, number, one_of, require
-from bearingdyn.fem import SAME, RevolutionMesh
-from bearingdyn.fem.finite_strain import (
+from bearingdyn.fem import (
     CURRENT,
+    SAME,
     SEPARABLE,
+    NoBalance,
+    RevolutionMesh,
     RevolvedElements,
     RevolvedState,
     Wall,
@@ -27,6 +29,7 @@ from bearingdyn.types import Array, Index
 
 Travel = float | tuple[float, float]
 STABLE = 1e-3  # least modulus of a further change of shape, over the first, that counts as stable
+DOUBTFUL = 0.1  # below which the law is to blame where a search for balance ends
 FOLDED = 1e-6  # how far past a rigid face, over the section's size, a free surface is folded over it
 
 FOLD = (
@@ -260,7 +263,7 @@ def squeeze(
     Raises
     ------
     ValueError
-        For names that are none of a face, a face that slips and is pulled, one that is left without contact.
+        For unknown names of faces, a face that slips and is pulled, one that is left without contact.
     NoBalance
         Where no balance is found: it has the share of the squeeze that was reached, and what stopped it.
     """
@@ -338,7 +341,15 @@ def squeeze(
                 return FOLD.format(name=name)
         return None
 
-    found = balance(body.state, 2 * mesh.r.size, free, at[inside], move[inside], walls, refused)
+    try:
+        found = balance(body.state, 2 * mesh.r.size, free, at[inside], move[inside], walls, refused)
+    except NoBalance as failure:
+        least = float(failure.state.elements.stability.min())
+        if least < DOUBTFUL:
+            failure.reason = UNSTABLE.format(
+                least=least, stretch=float(failure.state.elements.stretches.max())
+            )
+        raise
     state: RevolvedState = found.state
     touched = {}
     for name, touch, wall in zip(slip, found.touching, walls, strict=True):

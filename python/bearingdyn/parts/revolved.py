@@ -30,13 +30,13 @@ from bearingdyn.fem import (
     AXIAL,
     TORSION,
     Harmonic,
+    NoBalance,
     RevolutionMesh,
     assemble_harmonic,
     deviatoric_strains,
     lowest_modes,
     revolution_mesh,
 )
-from bearingdyn.fem.finite_strain import NoBalance
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline, azimuths, revolved
@@ -315,7 +315,7 @@ class Revolved:
         ------
         ValueError
             Naming the share of the squeeze that was reached, where elements turn inside out, a free surface
-            folds over the edge of a bond, or the law is not stable; for names that are no interface, a body
+            folds over the edge of a bond, or the law is not stable; for names of no interface, a body
             with raceways, or one that is squeezed already.
 
         References

@@ -34,7 +34,7 @@ from bearingdyn.types import Array, Index
 
 KINDS: tuple[Literal["shaft", "bore"], ...] = ("shaft", "bore")
 _SAME_SEAT = 0.01  # of the radius: a taper or a relief, no shoulder
-ELEMENTS_PER_WAVE = 30  # the error of a bending frequency is then below 1e-3 at f_max, 2e-4 at half of it
+ELEMENTS_PER_WAVE = 30  # error of a bending frequency: 1.3e-3 at most at f_max, 3.3e-4 at half of it
 
 
 @dataclass(frozen=True)

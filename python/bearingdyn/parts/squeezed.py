@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from bearingdyn.cms import Superelement
+from bearingdyn.fem import NoBalance
+from bearingdyn.notice import MeshDependent, warn
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.short_repr import short
 from bearingdyn.types import Complex
+
+COARSER = 0.7  # refinement of the second mesh over that of the first
+SAME_ANSWER = 0.01  # change between the two above which an answer is in doubt
 
 
 class _Part(Protocol):
@@ -106,3 +113,25 @@ class Squeezed:
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, where they are now."""
         return self.part.round_faces()
+
+
+def compare_meshes(fine: Squeezed, coarser: Callable[[], Squeezed]) -> None:
+    """Warn (MeshDependent) where force or static stiffness differ by more than 1 % on a coarser mesh.
+
+    Where the coarser mesh finds no balance there is nothing to compare.
+    """
+    try:
+        coarse = coarser()
+    except NoBalance:
+        return
+    pairs = [("force", fine.force, coarse.force)]
+    own, other = (np.diag(one.stiffness().real)[-6:] for one in (fine, coarse))
+    names = ("radial", "axial", "tilting", "torsional")
+    pairs += [(f"{name} stiffness", own[i], other[i]) for name, i in zip(names, (0, 2, 3, 5), strict=True)]
+    name, a, b = max(pairs, key=lambda pair: abs(pair[2] - pair[1]) / max(abs(pair[1]), 1e-300))
+    if abs(b - a) > SAME_ANSWER * abs(a):
+        warn(
+            f"the {name} of the squeezed part is {a:.4g} on its mesh and {b:.4g} on one of {COARSER:g} times "
+            f"its refinement, {abs(b / a - 1):.1%} apart; raise refinement, or recess the ends",
+            MeshDependent,
+        )

@@ -20,6 +20,7 @@ from bearingdyn.plot.mode_shape import mode_shape
 from bearingdyn.plot.orbit import orbit
 from bearingdyn.plot.orders import order_spectrum, orders
 from bearingdyn.plot.spectrum import spectrum
+from bearingdyn.plot.squeezed_section import squeezed_section
 from bearingdyn.plot.time_traces import time
 from bearingdyn.plot.trade_off import trade_off
 from bearingdyn.plot.unbalance_response import unbalance_response
@@ -47,6 +48,7 @@ __all__ = [
     "shifts",
     "spectrum",
     "spectrum_of",
+    "squeezed_section",
     "time",
     "trade_off",
     "unbalance_response",

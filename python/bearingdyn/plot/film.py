@@ -66,7 +66,14 @@ def film(
     found = {
         float(T): [
             lubricate(
-                bearing, lubricant, float(T), float(s), load, roughness=roughness, starvation=starvation
+                bearing,
+                lubricant,
+                float(T),
+                float(s),
+                load,
+                law="nijenbanning-venner-moes",
+                roughness=roughness,
+                starvation=starvation,
             )
             for s in omega
         ]

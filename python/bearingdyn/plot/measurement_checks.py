@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -82,12 +82,7 @@ def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: A
     """
     letter = letter_of(data.mode)
     with style():
-        ax = ax or new_axes(width=5.0, height=4.0)
-        _scatter(ax, data, data.storage / 1e6, data.loss / 1e6)
-        if maxwell is not None:
-            modulus = _model(data, maxwell)
-            ax.plot(modulus.real / 1e6, modulus.imag / 1e6, color=COLOURS[1], label=_name(maxwell))
-        ax.set_xscale("log")
+        ax = _free_of_frequency(data, maxwell, ax, lambda G: (G.real / 1e6, G.imag / 1e6))
         ax.set_yscale("log")
         ax.set_xlabel(f"storage modulus {letter}′, MPa")
         ax.set_ylabel(f"loss modulus {letter}″, MPa")
@@ -118,15 +113,7 @@ def van_gurp_palmen(
     """
     letter = letter_of(data.mode)
     with style():
-        ax = ax or new_axes(width=5.0, height=4.0)
-        magnitude = np.hypot(data.storage, data.loss)
-        _scatter(ax, data, magnitude / 1e6, np.degrees(np.arctan2(data.loss, data.storage)))
-        if maxwell is not None:
-            modulus = _model(data, maxwell)
-            ax.plot(
-                np.abs(modulus) / 1e6, np.degrees(np.angle(modulus)), color=COLOURS[1], label=_name(maxwell)
-            )
-        ax.set_xscale("log")
+        ax = _free_of_frequency(data, maxwell, ax, lambda G: (np.abs(G) / 1e6, np.degrees(np.angle(G))))
         ax.set_ylim(bottom=0.0)
         ax.set_xlabel(f"|{letter}*|, MPa")
         ax.set_ylabel("phase angle δ, °")
@@ -169,6 +156,21 @@ def spectrum_of(materials: Mapping[str, Maxwell], ax: Axes | None = None) -> Axe
         ax.set_xlabel("relaxation time τ, s")
         ax.set_ylabel("strength G, MPa")
         finish(ax, "Relaxation spectrum", legend=True)
+    return ax
+
+
+def _free_of_frequency(
+    data: DMAData | MasterCurve,
+    maxwell: Maxwell | None,
+    ax: Axes | None,
+    of: Callable[[Complex], tuple[Array, Array]],
+) -> Axes:
+    """Two figures of the complex modulus, Pa, against each other, the first on a log axis: data and model."""
+    ax = ax or new_axes(width=5.0, height=4.0)
+    _scatter(ax, data, *of(data.storage + 1j * data.loss))
+    if maxwell is not None:
+        ax.plot(*of(np.asarray(_model(data, maxwell))), color=COLOURS[1], label=_name(maxwell))
+    ax.set_xscale("log")
     return ax
 
 

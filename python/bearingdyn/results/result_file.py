@@ -44,9 +44,9 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     Raises
     ------
     ValueError
-        If there is nothing to save, or something that is no Dataset.
+        If there is nothing to save, or something other than a Dataset.
     OSError
-        Where the place cannot be written: its folder is missing, the disk is full, or it is no file but a
+        Where the place cannot be written: its folder is missing, the disk is full, or it is not a file but a
         folder, a device or a pipe. It names the file.
 
     Examples

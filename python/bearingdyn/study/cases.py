@@ -86,7 +86,7 @@ def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, f
     Raises
     ------
     ValueError
-        For n below 1, no range, or a range that is none.
+        For n below 1, no range, or a range that is not valid.
 
     References
     ----------
@@ -109,7 +109,7 @@ def sobol(n: int, seed: int = 0, /, **ranges: Sequence[Any]) -> list[dict[str, f
             raise ValueError(
                 f"range {name!r} is {given!r}; low must be below high, both finite, and above 0 with log"
             )
-    with warnings.catch_warnings():  # of a number of cases that is no power of two
+    with warnings.catch_warnings():  # of a number of cases that is not a power of two
         warnings.simplefilter("ignore", UserWarning)
         unit = qmc.Sobol(len(ranges), scramble=True, rng=seed).random(int(n))
     columns: dict[str, list[float]] = {}

@@ -44,7 +44,7 @@ def pareto(
     for name in aims:
         if name not in study.variables or study[name].dtype.kind not in "biuf" or name == "case":
             numbers = [str(n) for n in study.variables if study[n].dtype.kind in "biuf" and n != "case"]
-            raise ValueError(f"aim {name!r} is no number of the table; there are {numbers}")
+            raise ValueError(f"aim {name!r} is not a number of the table; there are {numbers}")
         if aims.count(name) > 1:
             raise ValueError(f"aim {name!r} is named twice; it must be minimised or maximised, and only once")
     sign = np.array([1.0] * len(minimise) + [-1.0] * len(maximise))

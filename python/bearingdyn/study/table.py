@@ -48,7 +48,9 @@ def table(cases: Sequence[Case], units: Mapping[str, str] | None = None) -> xarr
     units = units or {}
     for name in units:
         if name not in (*parameters, *names):
-            raise ValueError(f"units names {name!r}, which is no column; there are {[*parameters, *names]}")
+            raise ValueError(
+                f"units names {name!r}, which is not a column; there are {[*parameters, *names]}"
+            )
     columns = {n: ("case", [c.values.get(n, math.nan) for c in cases], units.get(n, ""), n) for n in names}
     errors = np.array([case.error or "" for case in cases], dtype=np.str_)
     made = dataset(

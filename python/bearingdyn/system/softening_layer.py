@@ -60,6 +60,6 @@ def marched_layer(layer: LayerTerm, memory: float | None) -> tuple[Any, ...]:
         layer.material.G0 - rest.G0,
         np.asarray(layer.strain),
         *rest.omega,
-        np.stack([rest.misses.real, rest.misses.imag]),
+        rest.lacks,
     )
     return layer.L, rest.G, rest.tau, softening

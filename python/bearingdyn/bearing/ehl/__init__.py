@@ -4,10 +4,13 @@ Reynolds' equation of an isothermal, fully flooded, Newtonian film between elast
 elliptic, rolling along the minor axis (D = Rx/Ry ≤ 1).
 """
 
-from bearingdyn.bearing.ehl.lubricated_contact import LubricatedContact, solve
+from bearingdyn.bearing.ehl.dimensionless_groups import scales
+from bearingdyn.bearing.ehl.lubricated_contact import LubricatedContact, SolvedContact, look_up, solve
 from bearingdyn.bearing.ehl.march import March, march
+from bearingdyn.bearing.ehl.oil import relative_density
 from bearingdyn.bearing.ehl.steady_film import Figures, Level, Steady, steady
-from bearingdyn.bearing.ehl.table_lookup import Lookup, lookup
+from bearingdyn.bearing.ehl.table_lookup import Lookup, in_table, loads_between, lookup
+from bearingdyn.bearing.ehl.table_places import turning_load
 
 __all__ = [
     "Figures",
@@ -15,9 +18,16 @@ __all__ = [
     "Lookup",
     "LubricatedContact",
     "March",
+    "SolvedContact",
     "Steady",
+    "in_table",
+    "loads_between",
+    "look_up",
     "lookup",
     "march",
+    "relative_density",
+    "scales",
     "solve",
     "steady",
+    "turning_load",
 ]

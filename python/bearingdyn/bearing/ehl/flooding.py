@@ -12,6 +12,8 @@ _UPSTREAM = 2.0  # the oil begins this many a before the dry contact at least
 _SIDEWAYS = 1.25  # and ends this many a beside it
 _OUTLET = 4.0  # gap behind the contact, over hc; the film ruptures at less than 2 hc
 _ERROR = 0.30  # of the central film, relative, times (Δx/a)²/(hc Rx/a²)^{4/3}
+# Under a thick film the pressure reaches over √(2 Hc), and C0 jumps a little where the rupture passes a node.
+_THICK = 0.8  # pitch over √(2 Hc · error)
 _FLATTEST = 4.0  # pitch across over pitch along, in a long ellipse
 
 
@@ -49,8 +51,8 @@ class Flooding:
 
     @staticmethod
     def pitch(error: float, Hc: float) -> float:
-        """Δx/a at which a central film Hc errs by about `error`, relative."""
-        return float(math.sqrt(error / _ERROR) * Hc ** (2 / 3))
+        """Δx/a at which a central film Hc errs by about `error`, relative, and C0 by a few times that."""
+        return float(math.sqrt(error) * min(Hc ** (2 / 3) / math.sqrt(_ERROR), _THICK * math.sqrt(2 * Hc)))
 
     def grid(self, groups: Groups, pitch: float, levels: int) -> Grid:
         """Coarsest grid whose refinement, `levels` times over, has the pitch Δx/a or less."""

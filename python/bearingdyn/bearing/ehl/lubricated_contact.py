@@ -11,10 +11,10 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing.ehl import harmonic_approach
 from bearingdyn.bearing.ehl.dimensionless_groups import scales
 from bearingdyn.bearing.ehl.oil import Density, Viscosity
 from bearingdyn.bearing.ehl.steady_film import Steady, steady
+from bearingdyn.bearing.ehl.table_lookup import Lookup, lookup
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.lubricant import Lubricant
 from bearingdyn.checks import positive, require
@@ -25,7 +25,7 @@ _OFF = 0.1  # where a viscous damping no longer describes the contact
 
 @dataclass(frozen=True)
 class LubricatedContact:
-    """A lubricated contact under load with its film, as `solve` returns it, in SI units."""
+    """A lubricated contact under load with its film, as `look_up` returns it, in SI units."""
 
     contact: PointContact
     F: float
@@ -36,8 +36,8 @@ class LubricatedContact:
     """Viscosity at ambient pressure, Pa s."""
     alpha: float
     """Pressure–viscosity coefficient, 1/Pa."""
-    steady: Steady
-    """The solution in the scales of Moes, with the estimated errors of its figures."""
+    steady: Steady | Lookup
+    """Its figures in the scales of Moes."""
 
     @property
     def M(self) -> float:
@@ -107,12 +107,10 @@ class LubricatedContact:
     @cached_property
     def viscous_limit(self) -> float:
         """Frequency, Hz, from which on c(ω) is 10 % or more off c0."""
-        level = self.steady.levels[-1]
-        C0 = level.figures.C0
 
         def inside(Omega: float) -> float:
-            C = 1.5 * harmonic_approach.stiffness(level.equations, level.state, Omega).imag / Omega
-            return _OFF - abs(C / C0 - 1)
+            C = 1.5 * complex(self.steady.stiffness(Omega)).imag / Omega
+            return _OFF - abs(C / self.steady.C0 - 1)
 
         low, high = 0.05, 0.1
         while inside(high) > 0:
@@ -120,6 +118,14 @@ class LubricatedContact:
         return float(scipy.optimize.brentq(inside, low, high, xtol=1e-3 * low)) / (
             2 * math.pi * self._passage
         )
+
+
+@dataclass(frozen=True)
+class SolvedContact(LubricatedContact):
+    """A lubricated contact with its maps of pressure and film, as `solve` returns it, in SI units."""
+
+    steady: Steady
+    """The solution in the scales of Moes, with the estimated errors of its figures."""
 
     @property
     def x(self) -> Array:
@@ -154,7 +160,7 @@ def solve(
     grid: int | Literal["auto"] = "auto",
     inlet: float | None = None,
     accuracy: float = 0.01,
-) -> LubricatedContact:
+) -> SolvedContact:
     """Film of a lubricated contact in SI units under a load, and its answer to a small harmonic approach.
 
     Parameters
@@ -178,6 +184,45 @@ def solve(
     ArithmeticError
         If the solution does not converge.
     """
+    M, L, D, speed, eta0 = _checked(contact, lubricant, F, us, temperature)
+    found = steady(
+        M,
+        L,
+        D,
+        viscosity=viscosity,
+        density=density,
+        grid=grid,
+        inlet=inlet,
+        accuracy=accuracy,
+        alpha=lubricant.alpha,
+        eta0=eta0,
+    )
+    return SolvedContact(contact, float(F), speed, eta0, lubricant.alpha, found)
+
+
+def look_up(
+    contact: PointContact, lubricant: Lubricant, F: float, us: float, temperature: float
+) -> LubricatedContact:
+    """Film of a lubricated contact in SI units under a load by the table, in microseconds.
+
+    Parameters
+    ----------
+    contact, lubricant, F, us, temperature
+        As in `solve`.
+
+    Raises
+    ------
+    ValueError
+        As `solve`, and outside of the table.
+    """
+    M, L, D, speed, eta0 = _checked(contact, lubricant, F, us, temperature)
+    return LubricatedContact(contact, float(F), speed, eta0, lubricant.alpha, lookup(M, L, D))
+
+
+def _checked(
+    contact: PointContact, lubricant: Lubricant, F: float, us: float, temperature: float
+) -> tuple[float, float, float, float, float]:
+    """M, L, D, |us| and η0 of a contact that rolls and is lubricated."""
     require(
         isinstance(contact, PointContact),
         "contact",
@@ -191,17 +236,4 @@ def solve(
     require(us != 0, "us", us, "without speed there is no film: give u1 + u2 in m/s")
     speed = positive("us", abs(us), "u1 + u2 in m/s must be finite and not zero")
     eta0 = lubricant.viscosity(temperature)
-    M, L, D = scales(contact, F, speed, eta0, lubricant.alpha)
-    found = steady(
-        M,
-        L,
-        D,
-        viscosity=viscosity,
-        density=density,
-        grid=grid,
-        inlet=inlet,
-        accuracy=accuracy,
-        alpha=lubricant.alpha,
-        eta0=eta0,
-    )
-    return LubricatedContact(contact, float(F), speed, eta0, lubricant.alpha, found)
+    return *scales(contact, F, speed, eta0, lubricant.alpha), speed, eta0

@@ -54,3 +54,8 @@ class Oil:
         r = self.pressure / _DOWSON_HIGGINSON_PRESSURE
         below = 1 + r * P
         return 1 + 0.34 * r * P / below, 0.34 * r / below**2
+
+
+def relative_density(p: float) -> float:
+    """ρ/ρ0 at the pressure p, Pa (D. Dowson, G. R. Higginson 1966)."""
+    return 1 + 0.34 * p / (_DOWSON_HIGGINSON_PRESSURE + p)

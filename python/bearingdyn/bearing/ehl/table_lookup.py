@@ -1,49 +1,107 @@
 """The lubricated contact from a table of solutions, in microseconds.
 
 `table.csv` holds solutions of `ehl.steady` for Roelands' viscosity and Dowson and Higginson's density (alpha
-2.2e-8 1/Pa, eta0 0.04 Pa s) over M, L and D; `maketable` makes it. Between them smooth quantities are
-interpolated by cubic splines in ln M, L and ln D: the film over the formula of Nijenbanning, Venner and Moes,
-and logarithms of the others.
+2.2e-8 1/Pa, eta0 0.04 Pa s) over M, L and D; `maketable` makes it. Smooth quantities are interpolated by
+cubic splines in the place on the load axis (`table_places`), L and ln D: the film over the formula of
+Nijenbanning, Venner and Moes, the odds K0/(1 − K0), and logarithms of the others.
 """
 
 from __future__ import annotations
 
 import csv
 import math
+from bisect import bisect_right
+from collections import defaultdict
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 
+from bearingdyn.bearing.ehl import travelling_film
 from bearingdyn.bearing.ehl.steady_film import Figures
-from bearingdyn.bearing.film_thickness import dimensionless_film
-from bearingdyn.checks import number, require
-from bearingdyn.types import Array
+from bearingdyn.bearing.ehl.table_places import place
+from bearingdyn.bearing.film_thickness import film_formula
+from bearingdyn.checks import require
+from bearingdyn.types import Array, Complex
 
 OMEGA = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Frequencies ωa/um at which the table has K and C."""
+
+_LOADS = 56  # places on the load axis to which the lines of one L and D are brought before they are joined
+_SLACK = 1e-4  # of the ends: the table has four digits of M
+_NO_PIEZO = 1e-6  # L at which the formula of the film is that of an isoviscous oil
 
 
 @dataclass(frozen=True)
 class Lookup:
     """Figures of a contact looked up in the table, and its answer over frequency."""
 
+    M: float
+    L: float
+    D: float
     figures: Figures
     K: tuple[float, ...]
     """Stiffness over that of the dry contact at `OMEGA`."""
     C: tuple[float, ...]
     """Damping in the scale of C0 at `OMEGA`."""
 
+    @property
+    def Hc(self) -> float:
+        """Film at the centre, h/Rx √(E′Rx/(η0us))."""
+        return self.figures.Hc
+
+    @property
+    def Hmin(self) -> float:
+        """Least film, likewise."""
+        return self.figures.Hmin
+
+    @property
+    def H0(self) -> float:
+        """Film h0 of the force law F = κ(δ + h0)^{3/2}, likewise."""
+        return self.figures.H0
+
+    @property
+    def K0(self) -> float:
+        """Stiffness at low frequency over that of the dry contact."""
+        return self.figures.K0
+
+    @property
+    def C0(self) -> float:
+        """Damping at low frequency, c = C0 (F/δ_dry)(2a/us)."""
+        return self.figures.C0
+
+    def stiffness(self, Omega: ArrayLike) -> Complex:
+        """Dynamic stiffness F̂/δ̂ over that of the dry contact, at frequencies ωa/um, as `Steady.stiffness`.
+
+        Up to Ω = 2 within 1 % of K; between 2 and 4, where nothing is tabulated, within 2.5 %.
+        """
+        asked = np.abs(np.asarray(Omega, dtype=float))
+        require(bool(np.isfinite(asked).all()), "Omega", Omega, "frequencies ωa/um must be finite")
+        K0, C0 = self.figures.K0, self.figures.C0
+        nodes = np.array((0.0, *OMEGA))
+        given = np.array(
+            [K0 + 0j, *(k + 1j * x * c / 1.5 for k, c, x in zip(self.K, self.C, OMEGA, strict=True))]
+        )
+        # what the film carried along leaves unsaid is small and smooth
+        rest = given - travelling_film.stiffness(K0, C0, nodes)
+        slope = scipy.interpolate.PchipInterpolator(nodes, np.column_stack([rest.real, rest.imag]))
+        found = slope(np.minimum(asked, nodes[-1]))
+        answer = travelling_film.stiffness(K0, C0, asked) + found[..., 0] + 1j * found[..., 1]
+        return np.asarray(np.where(np.asarray(Omega, dtype=float) < 0, answer.conj(), answer))
+
 
 @dataclass(frozen=True, repr=False)
-class _Splines:
-    ends: list[tuple[float, float]]
-    """Of ln M, L and ln D, with room for round-off."""
-    knots: tuple[list[float], list[float], list[float]]
+class _Pieces:
+    """A tensor product of cubic splines in powers of the distance from the left end of each piece."""
+
+    ends: tuple[tuple[float, float], ...]
+    breaks: tuple[list[float], ...]
+    """Left ends of the pieces along the load axis, L and ln D."""
     coefficients: Array
-    """(M, L, D, quantity)."""
+    """(load, L, D, 16, 4 × quantities): powers of load and L, then of ln D and quantities, highest first."""
 
 
 def lookup(M: float, L: float, D: float) -> Lookup:
@@ -58,79 +116,116 @@ def lookup(M: float, L: float, D: float) -> Lookup:
     ------
     ValueError
         Outside of the table; `steady` solves there.
-
-    Notes
-    -----
-    Against a dozen new solutions between its nodes: from M = 100 on .5 % of Hc, 1 % of H0, 3 % of Hmin, .002
-    of K0, 2.5 % of C0. Below, where a narrow contact begins to be lost, 3 % of the films, .13 of K0 and 14 %
-    of C0.
     """
-    splines = _splines()
-    place = (
-        math.log(number("M", M)) if M > 0 else math.nan,
-        number("L", L),
-        math.log(D) if D > 0 else math.nan,
-    )
-    for name, value, x, (low, high) in zip("MLD", (M, L, D), place, splines.ends, strict=True):
-        if not low <= x <= high:
-            ends = (low, high) if name == "L" else (math.exp(low), math.exp(high))
-            require(False, name, value, f"the table holds {ends[0]:g}..{ends[1]:g}; use ehl.steady there")
-    (i, u), (j, v), (k, w) = (_basis(knots, x) for knots, x in zip(splines.knots, place, strict=True))
-    block = splines.coefficients[i : i + 4, j : j + 4, k : k + 4]
-    q = (w @ (v @ (u @ block.reshape(4, -1)).reshape(4, -1)).reshape(4, -1)).tolist()
-    Hc = dimensionless_film(M, L, D) * math.exp(q[0])
-    K0, C0 = 1 - math.exp(q[3]), math.exp(q[4])
+    pieces = _pieces()
+    weights, where = [], []
+    if not (M > 0 and D > 0):
+        _refuse(M, L, D)
+    log_D = math.log(D)
+    for x, (low, high), breaks in zip(
+        (place(math.log(M), log_D), L, log_D), pieces.ends, pieces.breaks, strict=True
+    ):
+        if not low - _SLACK <= x <= high + _SLACK:
+            _refuse(M, L, D)
+        i = bisect_right(breaks, x, 1) - 1
+        u = x - breaks[i]
+        where.append(i)
+        weights.append((u * u * u, u * u, u, 1.0))
+    first, second, third = weights
+    block = pieces.coefficients[tuple(where)]
+    partly = (np.array([a * b for a in first for b in second]) @ block).reshape(4, -1)
+    q = (np.array(third) @ partly).tolist()
+    Hc = film_formula(M, L or _NO_PIEZO, D) * math.exp(q[0])
+    K0, C0 = 1 / (1 + math.exp(-q[3])), math.exp(q[4])
     n = len(OMEGA)
     return Lookup(
+        M,
+        L,
+        D,
         Figures(Hc, Hc * math.exp(q[1]), Hc * math.exp(q[2]), K0, C0),
-        tuple(K0 + x for x in q[5 : 5 + n]),
-        tuple(C0 * x for x in q[5 + n :]),
+        tuple([K0 + x for x in q[5 : 5 + n]]),
+        tuple([C0 * x for x in q[5 + n :]]),
     )
+
+
+def in_table(L: float, D: float) -> bool:
+    """Whether the table holds loads for L and D."""
+    _, (L_low, L_high), (D_low, D_high) = _pieces().ends
+    return (
+        L_low - _SLACK <= L <= L_high + _SLACK and D > 0 and D_low - _SLACK <= math.log(D) <= D_high + _SLACK
+    )
+
+
+def loads_between(D: float) -> tuple[float, float]:
+    """Least and largest M that the table holds for D."""
+    log_D = math.log(D)
+    low, high = _pieces().ends[0]
+    # x is linear in ln M
+    at_0, at_1 = place(0.0, log_D), place(1.0, log_D)
+    return tuple(math.exp((x - at_0) / (at_1 - at_0)) for x in (low, high))  # type: ignore[return-value]
+
+
+def _refuse(M: float, L: float, D: float) -> None:
+    """ValueError that names what lies outside."""
+    _, (L_low, L_high), (D_low, D_high) = _pieces().ends
+    for name, value, low, high in (
+        ("D", D, math.exp(D_low), math.exp(D_high)),
+        ("L", L, L_low, L_high),
+        ("M", M, *(loads_between(D) if D > 0 else (math.nan, math.nan))),
+    ):
+        remedy = f"the table holds {low:.4g}..{high:.4g}{f' for D = {D:.3g}' if name == 'M' else ''}"
+        require(
+            low * (1 - _SLACK) <= value <= high * (1 + _SLACK), name, value, f"{remedy}; use ehl.steady there"
+        )
 
 
 @cache
-def _splines() -> _Splines:
+def _pieces() -> _Pieces:
     text = resources.files("bearingdyn.bearing.ehl").joinpath("table.csv").read_text(encoding="utf-8")
     rows = [{name: float(x) for name, x in row.items()} for row in csv.DictReader(text.splitlines())]
-    axes = tuple(np.unique([row[name] for row in rows]) for name in "MLD")
-    values = np.full((*map(len, axes), 5 + 2 * len(OMEGA)), np.nan)
-    for row in rows:
-        at = tuple(int(np.searchsorted(axis, row[name])) for axis, name in zip(axes, "MLD", strict=True))
-        Hc = row["Hc"]
-        values[at] = (
-            math.log(Hc / dimensionless_film(row["M"], row["L"], row["D"])),
-            math.log(row["Hmin"] / Hc),
-            math.log(row["H0"] / Hc),
-            math.log(1 - row["K0"]),
-            math.log(row["C0"]),
-            *(row[f"K_{x:g}"] for x in OMEGA),
-            *(row[f"C_{x:g}"] for x in OMEGA),
-        )
-    if not np.isfinite(values).all():
-        raise RuntimeError("table.csv lacks points: make it again with bearingdyn.bearing.ehl.maketable")
-    M, L, D = np.log(axes[0]), axes[1], np.log(axes[2])
-    knots = []
-    for along, axis in enumerate((M, L, D)):
-        spline = scipy.interpolate.make_interp_spline(axis, values, k=3, axis=along)
-        knots.append(spline.t.tolist())
-        values = np.moveaxis(spline.c, 0, along)
-    ends = [(float(axis[0]) - 1e-12, float(axis[-1]) + 1e-12) for axis in (M, L, D)]
-    return _Splines(ends, (knots[0], knots[1], knots[2]), np.ascontiguousarray(values))
+    return joined(rows)
 
 
-def _basis(knots: list[float], x: float) -> tuple[int, Array]:
-    """First of the four cubic B-splines that are not zero at x, and their values (C. de Boor)."""
-    last = len(knots) - 5
-    i = 3
-    while i < last and x >= knots[i + 1]:
-        i += 1
-    values = [1.0]
-    for degree in (1, 2, 3):
-        saved, grown = 0.0, []
-        for r, value in enumerate(values):
-            right, left = knots[i + r + 1], knots[i + 1 - degree + r]
-            part = value / (right - left)
-            grown.append(saved + (right - x) * part)
-            saved = (x - left) * part
-        values = [*grown, saved]
-    return i - 3, np.array(values)
+def joined(rows: list[dict[str, float]]) -> _Pieces:
+    """The splines through the rows of a table: along the load for each L and D, then over L and ln D."""
+    lines = defaultdict(list)
+    for row in sorted(rows, key=lambda row: row["M"]):
+        lines[row["L"], row["D"]].append((place(math.log(row["M"]), math.log(row["D"])), _smooth(row)))
+    L, D = (sorted({key[i] for key in lines}) for i in (0, 1))
+    low = max(line[0][0] for line in lines.values())
+    high = min(line[-1][0] for line in lines.values())
+    # denser about the turn, as the table is
+    share = np.linspace(0, 1, _LOADS)
+    x = low + (high - low) * share**1.5
+    values = np.array(
+        [
+            [
+                scipy.interpolate.CubicSpline([p for p, _ in lines[i, j]], [q for _, q in lines[i, j]])(x)
+                for j in D
+            ]
+            for i in L
+        ]
+    )
+    axes = (x, np.array(L), np.log(D))
+    values = np.moveaxis(values, 2, 0)[..., None, :]  # load, L, D, powers, quantity
+    for along, axis in enumerate(axes):
+        c = scipy.interpolate.CubicSpline(axis, values, axis=along).c
+        # the pieces where the nodes were, the four powers folded into those of the axes before
+        c = np.moveaxis(np.moveaxis(c, 1, 1 + along), 0, -2)
+        values = c.reshape(*c.shape[:-3], -1, c.shape[-1])
+    values = values.reshape(*values.shape[:3], 16, -1)
+    ends = tuple((float(axis[0]), float(axis[-1])) for axis in axes)
+    return _Pieces(ends, tuple(axis[:-1].tolist() for axis in axes), np.ascontiguousarray(values))
+
+
+def _smooth(row: dict[str, float]) -> list[float]:
+    Hc = row["Hc"]
+    return [
+        math.log(Hc / film_formula(row["M"], row["L"] or _NO_PIEZO, row["D"])),
+        math.log(row["Hmin"] / Hc),
+        math.log(row["H0"] / Hc),
+        math.log(row["K0"] / (1 - row["K0"])),
+        math.log(row["C0"]),
+        *(row[f"K_{x:g}"] for x in OMEGA),
+        *(row[f"C_{x:g}"] for x in OMEGA),
+    ]

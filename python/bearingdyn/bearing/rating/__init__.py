@@ -1,6 +1,7 @@
 """What a bearing is rated for: ratings, equivalent loads, life in a given oil."""
 
 from bearingdyn.bearing.rating.cases import LoadCases, lives, load_cases
+from bearingdyn.bearing.rating.friction import Friction, FrictionModel, Supply, friction
 from bearingdyn.bearing.rating.life import (
     Races,
     equivalent_ball_loads,
@@ -9,6 +10,7 @@ from bearingdyn.bearing.rating.life import (
     race_capacities,
     rating_life,
     ratings_of,
+    with_arm,
 )
 from bearingdyn.bearing.rating.modified import (
     CONTAMINATION,
@@ -37,11 +39,14 @@ from bearingdyn.bearing.rating.standard import (
 __all__ = [
     "CONTAMINATION",
     "LEAST_KAPPA",
+    "Friction",
+    "FrictionModel",
     "LoadCases",
     "ModifiedLife",
     "Phase",
     "Races",
     "Ratings",
+    "Supply",
     "contamination_factor",
     "dynamic_factor",
     "dynamic_factors",
@@ -50,6 +55,7 @@ __all__ = [
     "equivalent_load",
     "equivalent_static_load",
     "fatigue_limit",
+    "friction",
     "in_hours",
     "iso_ratings",
     "life_factor",
@@ -64,4 +70,5 @@ __all__ = [
     "reference_viscosity",
     "reliability_factor",
     "static_factor",
+    "with_arm",
 ]

@@ -54,7 +54,7 @@ def load_cases(
 ) -> LoadCases:
     """Equilibrium, ball loads and basic reference rating life under each of many loads.
 
-    The same as `rating_life` case by case, solved in C; some 20 000 cases a second.
+    The same as `rating_life` case by case, solved in C; tens of thousands of cases a second.
 
     Parameters
     ----------

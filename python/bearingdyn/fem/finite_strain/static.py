@@ -93,12 +93,15 @@ class NoBalance(ArithmeticError):
         Of the squeeze asked for that was reached.
     reason
         What stopped it.
+    state
+        The body where it stopped.
     """
 
-    def __init__(self, share: float, reason: str) -> None:
+    def __init__(self, share: float, reason: str, state: Any) -> None:
         super().__init__(reason)
         self.share = share
         self.reason = reason
+        self.state = state
 
 
 def balance(
@@ -116,10 +119,16 @@ def balance(
     ----------
     state
         The body under a displacement (n,).
+    n
+        Number of coordinates.
     free
         Coordinates that exist; the others stay at zero.
-    held, travel
-        Coordinates that are moved, and how far, m.
+    held
+        Coordinates that are moved.
+    travel
+        How far each of them is moved, m.
+    walls
+        Rigid surfaces without friction.
     check
         Why a converged state is refused; None if it is not.
 
@@ -148,7 +157,7 @@ def balance(
             step *= 0.5
             here = Balance(u, state(u), touching)
             if step < SMALLEST:
-                raise NoBalance(reached, reasons[0]) from None
+                raise NoBalance(reached, reasons[0], here.state) from None
             continue
         u, touching, reached = here.u, here.touching, target
         reasons.clear()

@@ -92,6 +92,13 @@ def _from_arrays(arrays: Mapping[str, Any], name: str, path: Path) -> Any:
         n, m = (int(i) for i in shape.ravel())
         if len(indptr) != n + 1:  # before memory is taken for what the shape says
             raise ValueError(f"shape says {n} rows, and indptr has {len(indptr)} numbers, not {n + 1}")
+        # SciPy checks what it has cast, where 2**63 is less than 0, and then reads anywhere
+        if data.ndim != 1 or indices.shape != data.shape or indptr.ndim != 1:
+            raise ValueError(f"data and indices have shapes {data.shape} and {indices.shape}; give (k,) each")
+        if indptr[0] != 0 or indptr[-1] != len(indices) or not np.all(indptr[1:] >= indptr[:-1]):
+            raise ValueError(f"indptr must rise from 0 to the number of entries, {len(indices)}")
+        if len(indices) and not (indices.min() >= 0 and indices.max() < m):
+            raise ValueError(f"indices must lie in 0...{m - 1}")
         A = scipy.sparse.csr_matrix((data, indices, indptr), shape=(n, m))
         A.check_format(full_check=True)
     except (ValueError, TypeError) as error:

@@ -211,33 +211,51 @@ def gauss(n: int, dimensions: int) -> tuple[Array, Array]:
     return np.stack([g.ravel() for g in grid], axis=1), np.prod([g.ravel() for g in weights], axis=0)
 
 
-def simplex_points(dimensions: int) -> tuple[Array, Array]:
-    """Points (q, d), weights of a solid element's unit triangle or tetrahedron, exact to order 4."""
+def simplex_points(dimensions: int, order: int = 4) -> tuple[Array, Array]:
+    """Points (q, d), weights of a solid element's unit triangle or tetrahedron, exact to an order."""
     import skfem
     from skfem.quadrature import get_quadrature
 
-    X, w = get_quadrature(skfem.refdom.RefTri if dimensions == 2 else skfem.refdom.RefTet, 4)
+    X, w = get_quadrature(skfem.refdom.RefTri if dimensions == 2 else skfem.refdom.RefTet, order)
     return np.ascontiguousarray(X.T), w
 
 
-def points(kind: SolidElement, reduced: bool = False) -> tuple[Array, Array]:
+def points(kind: SolidElement, reduced: bool = False, fine: bool = False) -> tuple[Array, Array]:
     """Integration points (q, 3) of a solid element and weights, exact for straight edges.
 
     Bricks 3×3×3, reduced 2×2×2; tetrahedra to order 4; wedges those of the triangle times 3; pyramids
-    3×3×4 of a brick whose top shrinks to the tip, where their rational functions are polynomials.
+    3×3×4 of a brick whose top shrinks to the tip, where their rational functions are polynomials. Fine: for
+    the products of the gradients of a bubble too, to order 6 in triangles and tetrahedra.
     """
+    order = 6 if fine else 4
     if kind is TET10:
-        return simplex_points(3)
+        return simplex_points(3, order)
     if kind is WEDGE15:
-        (X, w), (z, v) = simplex_points(2), gauss(3, 1)
+        (X, w), (z, v) = simplex_points(2, order), gauss(3, 1)
         return np.hstack([np.repeat(X, 3, axis=0), np.tile(z, (len(X), 1))]), np.outer(w, v).ravel()
     if kind is PYRAMID13:
-        (X, w), (z, v) = gauss(3, 2), gauss(4, 1)
-        X, height = np.repeat(X, 4, axis=0), np.tile(z, (len(X), 1))
+        (X, w), (z, v) = gauss(5 if fine else 3, 2), gauss(6 if fine else 4, 1)
+        X, height = np.repeat(X, len(z), axis=0), np.tile(z, (len(X), 1))
         return np.hstack([0.5 + (X - 0.5) * (1 - height), height]), np.outer(
             w, v * (1 - z[:, 0]) ** 2
         ).ravel()
     return gauss(2 if reduced else 3, 3)
+
+
+# Planes c0 + c·x that are zero on the faces of the unit element: their product is a bubble
+BUBBLES = {
+    TET10: ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (1, -1, -1, -1)),
+    WEDGE15: ((0, 1, 0, 0), (0, 0, 1, 0), (1, -1, -1, 0), (0, 0, 0, 1), (1, 0, 0, -1)),
+    PYRAMID13: ((0, 0, 0, 1), (0, 1, 0, -0.5), (1, -1, 0, -0.5), (0, 0, 1, -0.5), (1, 0, -1, -0.5)),
+}
+
+
+def bubble_gradient(kind: SolidElement, X: Array) -> Array:
+    """Gradient (q, 3) at points X (q, 3) of a function that is zero on all faces of the unit element."""
+    planes = np.array(BUBBLES[kind], dtype=np.float64)
+    value = planes[:, 0] + X @ planes[:, 1:].T
+    others = [np.prod(np.delete(value, i, axis=1), axis=1) for i in range(len(planes))]
+    return np.stack(others, axis=1) @ planes[:, 1:]
 
 
 def face_points(nodes: int) -> tuple[Array, Array]:

@@ -27,6 +27,7 @@ from bearingdyn.fem.meshes.solid_element import (
     points,
     shapes,
 )
+from bearingdyn.notice import FoldedMesh, warn
 from bearingdyn.types import Array, Index
 
 MIDDLE = 0.3  # a middle node may lie this far from the middle of its edge, in lengths of the edge
@@ -111,7 +112,13 @@ class SolidMesh:
     ValueError
         Naming the element or node, for an element turned inside out, numbered in the order of a mirror image
         or with a middle node far from its edge, for nodes that no element has, bodies that do not hang
-        together, kinds whose faces do not fit, an element in no region or in two, and an empty surface.
+        together, kinds whose faces do not fit, pyramids that are missing between bricks and tetrahedra, an
+        element in no region or in two, and an empty surface.
+
+    Warns
+    -----
+    FoldedMesh
+        For an element that lies within its neighbours.
     """
 
     points: Array
@@ -211,6 +218,7 @@ class SolidMesh:
             self._check_kind(kind, at)
         if len(self.groups) > 1:
             self._check_fit()
+        self._check_sides()
 
     def _check_kind(self, kind: SolidElement, at: Index) -> None:
         """Shapes of the elements `at`, all of one kind."""
@@ -255,7 +263,8 @@ class SolidMesh:
         faces = {n: self.boundary[at] for at, n in by_size(self.boundary)}
         if len(faces) < 2:
             return
-        quads = np.sort(next(rows for n, rows in faces.items() if n != 6)[:, :4], axis=1)
+        corners4 = next(rows for n, rows in faces.items() if n != 6)[:, :4]
+        quads = np.sort(corners4, axis=1)
         three = np.vstack([np.delete(quads, i, axis=1) for i in range(4)])
         both, count = np.unique(
             np.vstack([np.unique(three, axis=0), np.unique(np.sort(faces[6][:, :3], axis=1), axis=0)]),
@@ -267,6 +276,55 @@ class SolidMesh:
             raise ValueError(
                 f"triangles lie on a quadrilateral near {place} m, where their middle nodes do not fit; "
                 "put pyramids between bricks and tetrahedra"
+            )
+        self._check_edges(faces[6][:, :3], corners4)
+
+    def _check_edges(self, triangles: Index, quads: Index) -> None:
+        """Two faces of the outside meet in an edge; four do where pyramids between two kinds are missing."""
+        edges, four = [], []
+        for rows in (triangles, quads):
+            edges.append(np.sort(np.stack([rows, np.roll(rows, -1, axis=1)], axis=2).reshape(-1, 2), axis=1))
+            four.append(np.full(len(edges[-1]), rows.shape[1] == 4))
+        key, which, count = np.unique(np.vstack(edges), axis=0, return_inverse=True, return_counts=True)
+        of_quads = np.bincount(which.ravel(), np.concatenate(four), minlength=len(key))
+        open_edges = np.flatnonzero((count > 2) & (of_quads > 0) & (of_quads < count))
+        if open_edges.size:
+            place = self.points[key[open_edges[0]]].mean(axis=0).tolist()
+            raise ValueError(
+                f"elements with quadrilaterals and with triangles meet in {open_edges.size} edges without a "
+                f"common face, the first near {place} m: the pyramids between them are missing, as gmsh "
+                "leaves them out of .unv files; export .msh, .inp or .vtk"
+            )
+
+    def _check_sides(self) -> None:
+        """Warn of elements on the same side of a face they share: one is folded into its neighbours."""
+        assert self.numbers is not None
+        corners, owner = self._corner_faces
+        _, first, which, count = np.unique(
+            np.sort(corners, axis=1), axis=0, return_index=True, return_inverse=True, return_counts=True
+        )
+        which = which.ravel()
+        # from the least node, one way round or the other
+        many = (corners >= 0).sum(axis=1)
+        start, row = (
+            np.argmin(np.where(corners >= 0, corners, len(self.points)), axis=1),
+            np.arange(len(many)),
+        )
+        turn = corners[row, (start + 1) % many] < corners[row, (start - 1) % many]
+        twin = row != first[which]
+        same = twin & (turn == turn[first[which]])
+        doubled = np.unique(owner[same | (count[which] > 2)])
+        if doubled.size:
+            extra = np.unique(np.concatenate([owner[same], owner[first[which[same]]]]), return_counts=True)
+            worst = extra[0][np.argmax(extra[1])] if extra[0].size else doubled[0]
+            nodes = self.elements[worst]
+            place = np.round(self.points[nodes[nodes >= 0]].mean(axis=0), 6).tolist()
+            warn(
+                f"element {self.numbers[worst]} and its neighbours, near {place} m, lie on the same side of "
+                f"their common faces ({int(same.sum())} in all): an element there is "
+                "folded, and what it covers counts twice; gmsh does that beside pyramids: mesh again with "
+                "other sizes",
+                FoldedMesh,
             )
 
     def _jacobians(self, kind: SolidElement, X: Array, elements: Index) -> Array:
@@ -340,20 +398,28 @@ class SolidMesh:
         return replace(self, regions={**{n: at for n, at in others.items() if at.size}, name: chosen})
 
     @cached_property
+    def _corner_faces(self) -> tuple[Index, Index]:
+        """Corners of the faces of every element, (f, 4), the fourth of a triangle −1; and whose they are."""
+        corners, owner = [], []
+        for kind, at in self.groups:
+            of = np.where(kind.face_corners >= 0, self.elements[at][:, kind.face_corners], -1)
+            corners.append(of.reshape(-1, 4))
+            owner.append(np.repeat(at, of.shape[1]))
+        return np.vstack(corners), np.concatenate(owner)
+
+    @cached_property
     def boundary(self) -> Index:
         """Faces that one element alone has, (f, nodes of a face), seen from outside anticlockwise.
 
         A triangle among quadrilaterals repeats its last node.
         """
         width = max(kind.face_nodes.shape[1] for kind, _ in self.groups)
-        faces, corners = [], []
+        faces = []
         for kind, at in self.groups:
             own = self.elements[at][:, kind.face_nodes]
             own = np.concatenate([own, np.repeat(own[..., -1:], width - own.shape[2], axis=2)], axis=2)
             faces.append(own.reshape(-1, width))
-            of = np.where(kind.face_corners >= 0, self.elements[at][:, kind.face_corners], -1)
-            corners.append(of.reshape(-1, 4))
-        every = np.sort(np.vstack(corners), axis=1)
+        every = np.sort(self._corner_faces[0], axis=1)
         _, first, count = np.unique(every, axis=0, return_index=True, return_counts=True)
         return np.asarray(np.vstack(faces)[np.sort(first[count == 1])])
 

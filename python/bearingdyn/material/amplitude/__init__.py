@@ -1,7 +1,7 @@
-"""Softening with amplitude (the Payne effect): its law, the strain sweep it comes from, and what is left."""
+"""Softening with amplitude (the Payne effect): its law, the report of its fit, and what the law leaves."""
 
-from bearingdyn.material.amplitude.fit import PayneFit, fit_payne
 from bearingdyn.material.amplitude.law import Payne, Softening
-from bearingdyn.material.amplitude.sweep import StrainSweep, read_strain_sweep
+from bearingdyn.material.amplitude.report import PayneFit
+from bearingdyn.material.amplitude.rest import Rest, rest_of
 
-__all__ = ["Payne", "PayneFit", "Softening", "StrainSweep", "fit_payne", "read_strain_sweep"]
+__all__ = ["Payne", "PayneFit", "Rest", "Softening", "rest_of"]

@@ -16,18 +16,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import number, positive, require
 from bearingdyn.magnitude import plausible
+from bearingdyn.material.amplitude.report import PayneFit
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
-
-if TYPE_CHECKING:
-    from bearingdyn.material.amplitude.fit import PayneFit
 
 _LARGEST = 0.5  # shear strain: beyond, no law of small strain holds; strain was probably given in percent
 _BEYOND = 3.0  # times the larger of γc and γl: how far E is asked to stay positive without a sweep

@@ -2,8 +2,9 @@
 
 In time the law is a spring E and a Maxwell branch of strength 2 L whose rate is the running frequency Ω. The
 rest, G_lin(ω) − F(γr) − i L(γr), has to be a Maxwell model itself; as its loss is less than its storage's
-slope would have it (Kramers and Kronig), it is rendered within a percent or so. What it misses at Ω the law's
-spring and branch make good.
+slope would have it (Kramers and Kronig), it is rendered within a percent or so, never with too much.
+What it lacks at Ω is added there, to the law's branch and to a branch so slow that it bears no lasting
+load: a spring that followed Ω would lose some of that load whenever it weakens.
 """
 
 from __future__ import annotations
@@ -37,6 +38,9 @@ class Rest:
         First and last angular frequency it was fitted between, rad/s.
     misses
         (TABLE,) rest less what it should be, Pa, complex, at frequencies evenly spaced in ln ω between them.
+    lacks
+        (2, TABLE) what is added there, Pa, none of it negative: to the strength of the slow branch, and to
+        the law's loss, whose branch brings as much storage.
     """
 
     G0: float
@@ -45,6 +49,7 @@ class Rest:
     eta0: float
     omega: tuple[float, float]
     misses: Complex
+    lacks: Array
 
     __repr__ = short
 
@@ -83,18 +88,24 @@ def rest_of(material: Any) -> Rest:
     A = np.vstack([shapes.real * weight[:, None], _LOSS * shapes.imag * weight[:, None]])
     target = wanted - fixed
     # of loss the rest must not have too much: the law's branch can add some, and take none away
-    spare, found = 0.0, np.zeros(A.shape[1])
+    reserve, found = 0.0, np.zeros(A.shape[1])
     for _ in range(_TRIES):
-        b = np.concatenate([target.real * weight, _LOSS * (target.imag - spare) * weight])
+        b = np.concatenate([target.real * weight, _LOSS * (target.imag - reserve) * weight])
         found = scipy.optimize.nnls(A, b)[0]
         more = float(np.max(shapes.imag @ found - target.imag))
         if more <= _TOO_MUCH * float(np.median(linear.real)):
             break
-        spare += more
-    made = Rest(float(found[0]), found[1:], material.tau, material.eta0, band, np.zeros(0, complex))
+        reserve += more
+    G0, G = float(found[0]), found[1:]
     at = np.geomspace(*band, TABLE)
-    misses = made.complex_modulus(at) - (_modulus(material, at) - F - 1j * L)
-    return Rest(made.G0, made.G, made.tau, made.eta0, band, misses)
+    x = at[:, None] * material.tau
+    branches = 1j * at * material.eta0 + (x / (1 + x * x) * (x + 1j)) @ G
+    misses = G0 + branches - (_modulus(material, at) - F - 1j * L)
+    loss = np.maximum(-misses.imag, 0.0)
+    spare = min(max(float((misses.real + loss).max()), 0.0), G0)
+    misses = misses - spare
+    lacks = np.stack([np.maximum(-misses.real - loss, 0.0), loss])
+    return Rest(G0 - spare, G, material.tau, material.eta0, band, misses, lacks)
 
 
 def _modulus(material: Any, omega: Array) -> Complex:

@@ -101,7 +101,9 @@ def fit_maxwell(
         If the band is empty or holds too few points, a value is out of range, or a pin lies at a time that
         the master curve does not reach and has no modulus.
 
-    Reference: paper §3.2, eqs 18 and 19.
+    References
+    ----------
+    Paper §3.2, eqs 18 and 19.
 
     Examples
     --------

@@ -117,7 +117,7 @@ def read_dma(
 
 
 def _files(data: Any) -> list[Path] | None:
-    """The files of a list of them; None if it is no list of files."""
+    """The files of a list of them; None if it is not a list of files."""
     if not isinstance(data, list | tuple) or not any(isinstance(entry, str | Path) for entry in data):
         return None
     wrong = next((entry for entry in data if not isinstance(entry, str | Path)), None)

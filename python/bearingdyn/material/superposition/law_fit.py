@@ -77,13 +77,14 @@ def _form(name: LawName, T: Array, T_ref: float) -> _Form:
     return _Form(lower, upper, starts, joined, law)
 
 
-def _numbers(name: LawName) -> int:
+def constants_of(name: LawName) -> int:
+    """How many constants a law has, its offset not counted."""
     return {"arrhenius": 1, "wlf": 2, "joined": 4, "free": 0}[name]
 
 
 def require_isotherms(name: LawName, count: int) -> None:
     """ValueError if so many isotherms cannot determine the fit of a law and its offset."""
-    needed = _numbers(name) + 1
+    needed = constants_of(name) + 1
     if count < max(2, needed):
         raise ValueError(
             f"law is {name!r} with {needed} constants, the data {count} isotherms; take a simpler law"

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import nonnegative, require
+from bearingdyn.checks import nonnegative, positive, require
 from bearingdyn.material.dma import DMAData, Mode, check_range
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shear_from_tension import shear_modulus
@@ -24,6 +24,7 @@ from bearingdyn.material.superposition.doubts import doubt_law, doubt_runs, doub
 from bearingdyn.material.superposition.free_shifts import Superposed, Superposition, first_shifts
 from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, suspects
 from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
+from bearingdyn.material.superposition.levels import Levels, find_levels, levelled
 from bearingdyn.notice import LeftOut, OutsideIsotherms, ThinIsotherm, warn
 from bearingdyn.types import Array
 
@@ -71,6 +72,11 @@ class MasterCurve:
         What was assumed in reading, and what was converted.
     K
         Bulk modulus, Pa, that turned tension into shear; None if nothing did.
+    levels
+        Factor by which the moduli of each run were multiplied, by its name; the first run's is 1. Empty where
+        there is one run, or levels were left alone.
+    level_errors
+        Standard error of each; inf of a run whose level nothing tells, 0 of one given by hand.
     """
 
     frequency: Array
@@ -90,6 +96,8 @@ class MasterCurve:
     vertical: RhoT | None = None
     notes: tuple[str, ...] = field(default=(), repr=False)
     K: float | None = None
+    levels: Mapping[str, float] = field(default_factory=dict)
+    level_errors: Mapping[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """One line: points, ranges, law and errors."""
@@ -132,6 +140,7 @@ def master_curve(
     law_from: Literal["shifts", "data"] = "shifts",
     vertical: RhoT | Literal["rhoT"] | None = None,
     smoothness: float | None = None,
+    levels: Literal["find"] | Mapping[str, float] | None = "find",
 ) -> MasterCurve:
     """Shift the isotherms of a DMA measurement to a master curve.
 
@@ -159,6 +168,10 @@ def master_curve(
         default, leaves them as measured.
     smoothness
         Strength of a prior on the curvature of log10 a_T(T); 0 for none, None to let the data choose it.
+    levels
+        Where the measurement is of several runs (specimens): "find" multiplies the moduli of each after the
+        first by the factor with which the shifts follow the law best; {run: factor} gives factors by hand;
+        None leaves moduli as measured. Shifts set by hand leave them, too.
 
     Returns
     -------
@@ -171,8 +184,9 @@ def master_curve(
         If there is only one isotherm, two isotherms have the same temperature, or T_ref lies where the law
         cannot reach or more than 100 K outside the measured temperatures.
 
-    Reference: paper §3.2; M. L. Williams, R. F. Landel, J. D. Ferry,
-    J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
+    References
+    ----------
+    Paper §3.2; M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
     """
     known = ("wlf", "arrhenius", "joined", "free")
     require(law in known, "law", law, "it must be 'wlf', 'arrhenius', 'joined' or 'free'")
@@ -193,6 +207,11 @@ def master_curve(
         used = replace(used, storage=used.storage / factor, loss=used.loss / factor)
     T = _temperatures(used, T_ref)
     require_isotherms(law, T.size)
+    known_levels = _levels(used, levels, bool(shifts), float(T_ref), law, smoothness)
+    if known_levels is not None:
+        which = np.array([used.runs.index(name) for name in used.run.tolist()])  # type: ignore[union-attr]
+        factors = np.array([known_levels.factors[name] for name in used.runs])
+        used = levelled(used, which, np.log(factors))
 
     start = first_shifts(used)
     held = np.zeros(T.size, dtype=bool)
@@ -242,7 +261,32 @@ def master_curve(
         vertical,
         used.notes,
         used.K,
+        {} if known_levels is None else known_levels.factors,
+        {} if known_levels is None else known_levels.errors,
     )
+
+
+def _levels(
+    dma: DMAData,
+    levels: Literal["find"] | Mapping[str, float] | None,
+    by_hand: bool,
+    T_ref: float,
+    law: LawName,
+    smoothness: float | None,
+) -> Levels | None:
+    """Factors of the runs, as asked for; None to leave moduli as measured."""
+    if levels is None or (levels == "find" and by_hand):
+        return None
+    if levels == "find":
+        return find_levels(dma, T_ref, law, smoothness)
+    require(isinstance(levels, Mapping), "levels", levels, "it must be 'find', {run: factor} or None")
+    unknown = sorted(set(levels) - set(dma.runs))
+    require(not unknown, "levels", levels, f"there are the runs {list(dma.runs)}, not {unknown}")
+    factors = {
+        name: positive(f"levels[{name!r}]", levels.get(name, 1.0), "it must be a positive factor")
+        for name in dma.runs
+    }
+    return Levels(factors, dict.fromkeys(factors, 0.0))
 
 
 def _cleaned(dma: DMAData, clean: bool) -> tuple[DMAData, tuple[Suspect, ...]]:

@@ -15,6 +15,11 @@ def one_curve(data: MasterCurve | DMAData) -> MasterCurve:
 
     Points with a modulus that is not positive are left out with a warning.
 
+    Parameters
+    ----------
+    data
+        Master curve, returned as it is, or a measurement of one isotherm.
+
     Raises
     ------
     ValueError

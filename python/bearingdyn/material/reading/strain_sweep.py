@@ -258,7 +258,7 @@ def _column(
     for row in rows:
         cell = cell_at(block.cells(row), at)
         if not is_number(cell):
-            raise ReadingError(f"{block.source.at(row.number)}, column {text!r}: {cell!r} is no number")
+            raise ReadingError(f"{block.source.at(row.number)}, column {text!r}: {cell!r} is not a number")
         values.append(number_of(cell))
     if quantity == "strain":
         percent = bool(_PERCENT.search(units.get("strain", f"{text.replace('_', ' ')} {unit}")))

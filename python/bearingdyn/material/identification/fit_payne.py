@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,57 +10,17 @@ import numpy as np
 import scipy
 
 from bearingdyn.checks import positive
-from bearingdyn.material.amplitude.law import Payne
-from bearingdyn.material.amplitude.sweep import StrainSweep, in_shear, read_strain_sweep
-from bearingdyn.short_repr import short
+from bearingdyn.material.amplitude import Payne, PayneFit
+from bearingdyn.material.reading import StrainSweep, in_shear, read_strain_sweep
 from bearingdyn.types import Array, Complex
 
 _RISE = 0.01  # of G′ from a smaller strain to a larger one: noise of an instrument, and no more
 _SLACK = 1.05  # of the isotherms' strain: the sweep begins there or below
-# the squared misfit may be this much larger than the least: what is taken of a D that the sweep leaves open
-_OPEN = 1.25
+_CONFIDENCE = 0.9  # with which a D outside the range is refuted
+_PARAMETERS = 7  # of the law and the two constants it stands on
+_EXACT = 1e-12  # squared relative misfit of a point that is round-off
 _FACTORS = (0.2, 20.0)  # of D sought, over the fall of G′ within the sweep
 _CUT = 5e-3  # of ln D
-
-
-@dataclass(frozen=True)
-class PayneFit:
-    """How well a law renders the strain sweep it was fitted to.
-
-    Attributes
-    ----------
-    frequency, temperature
-        Of the sweep, Hz and °C.
-    strain
-        Shear strain of the points used, a fraction, (n,).
-    storage, loss
-        Measured moduli, Pa, (n,).
-    linear
-        What the law is added to at this frequency: G* of the sweep less F + iL, Pa.
-    storage_max, tan_delta_max
-        Largest relative deviation of G′ and of tan δ.
-    D_range
-        Lowest and highest D that render the sweep with less than 1.25 times the least squared misfit: how
-        far the sweep leaves it open; the lowest is taken. inf where a larger D is always as good.
-    """
-
-    frequency: float
-    temperature: float
-    strain: Array = field(compare=False, repr=False)
-    storage: Array = field(compare=False, repr=False)
-    loss: Array = field(compare=False, repr=False)
-    linear: complex
-    storage_max: float
-    tan_delta_max: float
-    D_range: tuple[float, float]
-    source: str = ""
-
-    __repr__ = short
-
-    @property
-    def D_known(self) -> bool:
-        """Whether the sweep holds D within a factor of two."""
-        return self.D_range[1] < 2 * self.D_range[0]
 
 
 def fit_payne(
@@ -75,10 +35,11 @@ def fit_payne(
 ) -> Payne:
     """Fit the law of softening to a strain sweep.
 
-    G′ and G″ of the sweep are F(γ) and L(γ) over a constant each; relative deviations are least in the
-    squares. A sweep of usual width does not determine D (the plateau at very small and very large strain are
-    both outside it): D is the smallest that renders it with no more than 1.25 times the least squared misfit,
-    unless given. `fit.D_range` says how open it is.
+    The law is added to a modulus measured at the isotherms' strain: what counts is the change from there.
+    F(γ) and L(γ) therefore go through the trusted point nearest to that strain, and the squared deviations of
+    G′ and G″ from them are least. A sweep of usual width does not determine D (the plateaus at very small and
+    very large strain are both outside it): unless given it is the smallest that the sweep does not refute
+    with 90 % confidence. `fit.D_range` says how open it is.
 
     Parameters
     ----------
@@ -149,13 +110,14 @@ def fit_payne(
             f"softening to fit, and the linear modulus serves"
         )
 
-    loss = _loss(gamma, G.imag, p)
+    at = int(np.argmin(np.abs(np.log(gamma / gamma_r))))
+    loss = _loss(gamma, G.imag, p, at)
 
     def found(value: float) -> _Found:
-        return _with_D(gamma, G.real, value, p, loss)
+        return _with_D(gamma, G.real, value, p, at, loss)
 
     if D is None:
-        D_low, D_high, best = _open_range(found, fall)
+        D_low, D_high, best = _open_range(found, fall, 2 * gamma.size - _PARAMETERS)
         value = D_low
     else:
         value = positive("D", D, "it must be positive and finite, Pa")
@@ -199,63 +161,70 @@ class _Loss:
     cost: float
 
 
-def _loss(gamma: Array, loss: Array, p: float) -> _Loss:
+def _loss(gamma: Array, loss: Array, p: float, at: int) -> _Loss:
+    """The best loss through point `at`."""
     x = np.log(gamma)
     middle = float(x.mean())
+    scale = float(np.abs(loss).max())
 
-    def parts(q: float) -> tuple[Array, Array]:
+    def shape(q: float) -> Array:
         v = np.exp(p * (x - q))
-        A = np.stack([v / (1 + v), np.ones_like(v)], axis=1) / loss[:, None]
-        return A, np.asarray(np.linalg.lstsq(A, np.ones(x.size))[0], dtype=np.float64)
+        return np.asarray(v / (1 + v))
+
+    def strength(q: float) -> float:
+        """Never negative: a loss that falls with strain is none of this law's."""
+        d = shape(q) - shape(q)[at]
+        return max(float(d @ (loss - loss[at]) / max(float(d @ d), 1e-300)), 0.0)
 
     def cost(q: float) -> float:
-        A, s = parts(q)
-        return float(np.sum((A @ s - 1) ** 2))
+        d = shape(q) - shape(q)[at]
+        return float(np.sum(((strength(q) * d - (loss - loss[at])) / scale) ** 2))
 
     grid = np.linspace(middle - 4, middle + 4, 81)
-    at = grid[int(np.argmin([cost(q) for q in grid]))]
-    bent = scipy.optimize.minimize_scalar(
-        cost, bounds=(at - 0.2, at + 0.2), method="bounded", options={"xatol": 1e-10}
-    ).x
-    A, s = parts(bent)
-    if s[0] < 0:  # the loss falls with strain: none of it is this law's
-        s = np.array([0.0, np.sum(1 / loss) / np.sum(1 / loss**2)])
-    return _Loss(float(s[0]), float(np.exp(bent)), float(s[1]), A @ s * loss, float(np.sum((A @ s - 1) ** 2)))
+    near = grid[int(np.argmin([cost(q) for q in grid]))]
+    bent = float(
+        scipy.optimize.minimize_scalar(
+            cost, bounds=(near - 0.2, near + 0.2), method="bounded", options={"xatol": 1e-10}
+        ).x
+    )
+    Lm = strength(bent)
+    constant = float(loss[at] - Lm * shape(bent)[at])
+    return _Loss(Lm, float(np.exp(bent)), constant, constant + Lm * shape(bent), cost(bent))
 
 
-def _with_D(gamma: Array, G: Array, D: float, p: float, loss: _Loss) -> _Found:
-    """The best law of this D, G (n,) being G′; storage and loss are two problems of their own."""
+def _with_D(gamma: Array, G: Array, D: float, p: float, at: int, loss: _Loss) -> _Found:
+    """The best law of this D through point `at`, G (n,) being G′; storage and loss are two problems."""
     x = np.log(gamma)
     middle = float(x.mean())
-    weight = 1 / G**2 / np.sum(1 / G**2)
+    scale = float(G.max())
 
-    def storage(q: Array) -> Array:
-        """With the constant under it that serves best."""
-        shape = D * (1 + np.exp(p * (x - q[0]))) ** (-np.exp(np.clip(q[1], -9.0, 9.0)) / p)
-        return np.asarray(shape + weight @ (G - shape))
+    def shape(q: Array) -> Array:
+        return np.asarray(D * (1 + np.exp(p * (x - q[0]))) ** (-np.exp(np.clip(q[1], -9.0, 9.0)) / p))
+
+    def off(q: Array) -> Array:
+        F = shape(q)
+        return np.asarray((F - F[at] - (G - G[at])) / scale)
 
     starts = [np.array([middle + d, s]) for d, s in ((-0.3, -1.5), (0.3, -0.5), (1.3, 0.8))]
     fits = [
-        scipy.optimize.least_squares(
-            lambda q: storage(q) / G - 1, s, method="lm", xtol=1e-12, ftol=1e-14, max_nfev=400
-        )
+        scipy.optimize.least_squares(off, s, method="lm", xtol=1e-12, ftol=1e-14, max_nfev=400)
         for s in starts
     ]
     first = min(fits, key=lambda r: float(r.cost))
     gamma_c, m = (float(v) for v in np.exp(first.x))
-    shape = D * (1 + (gamma / gamma_c) ** p) ** (-m / p)
-    linear = complex(float(weight @ (G - shape)), loss.constant)
-    model = storage(first.x) + 1j * loss.model
+    F = shape(first.x)
+    linear = complex(float(G[at] - F[at]), loss.constant)
+    model = linear.real + F + 1j * loss.model
     return _Found((gamma_c, m, loss.Lm, loss.gamma_l), linear, model, float(2 * first.cost) + loss.cost)
 
 
-def _open_range(found: Any, fall: float) -> tuple[float, float, _Found]:
+def _open_range(found: Any, fall: float, freedom: int) -> tuple[float, float, _Found]:
     """Lowest and highest D whose storage is rendered as well as may be asked, and the best of all."""
     values = fall * np.geomspace(*_FACTORS, 13)
     laws = [found(float(v)) for v in values]
     costs = np.array([law.cost for law in laws])
     k = int(np.argmin(costs))
-    limit = _OPEN * costs[k]
+    limit = costs[k] * (1 + scipy.stats.f.ppf(_CONFIDENCE, 1, freedom) / freedom) + freedom * _EXACT
 
     def edge(bad: float, good: float) -> float:
         while abs(np.log(bad / good)) > _CUT:

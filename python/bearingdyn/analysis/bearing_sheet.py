@@ -1,0 +1,543 @@
+"""The bearing engineer's sheet: what it carries, how long, how warm, how stiff, its lines in a spectrum."""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
+from bearingdyn.application import Application
+from bearingdyn.bearing import (
+    STATIC_PRESSURE,
+    BallBearing,
+    BearingKernel,
+    FrictionModel,
+    Lubricant,
+    Phase,
+    Supply,
+    equivalent_life,
+    equivalent_load,
+    equivalent_static_load,
+    fault_lines,
+    friction,
+    in_hours,
+    life_of_loads,
+    modified_life,
+    nijenbanning_venner_moes,
+    ratings_of,
+)
+from bearingdyn.bearing import catalogue as listed
+from bearingdyn.checks import instance, items, meant, named, nonnegative, positive, require
+from bearingdyn.magnitude import plausible
+from bearingdyn.notice import BearingWarning, warn
+from bearingdyn.parts import RigidBody
+from bearingdyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+# name: unit, meaning, factor and unit in print; in the order of the page, under its headings
+_ROWS: dict[str, dict[str, tuple[str, str, float, str]]] = {
+    "Geometry": {
+        "balls": ("1", "number of balls", 1, ""),
+        "ball_diameter": ("m", "ball diameter", 1e3, "mm"),
+        "pitch_diameter": ("m", "pitch diameter", 1e3, "mm"),
+        "groove_inner": ("1", "groove radius over ball diameter, inner race", 1, ""),
+        "groove_outer": ("1", "groove radius over ball diameter, outer race", 1, ""),
+        "clearance": ("m", "diametral clearance", 1e6, "µm"),
+        "free_angle": ("rad", "free contact angle", 180 / math.pi, "°"),
+    },
+    "Load": {
+        "radial_load": ("N", "radial load", 1, "N"),
+        "axial_load": ("N", "axial load", 1, "N"),
+        "ball_load": ("N", "heaviest ball", 1, "N"),
+        "loaded_balls": ("1", "loaded balls", 1, ""),
+        "contact_angle": ("rad", "contact angle of the heaviest ball", 180 / math.pi, "°"),
+        "pressure_inner": ("Pa", "contact pressure, inner race", 1e-9, "GPa"),
+        "pressure_outer": ("Pa", "contact pressure, outer race", 1e-9, "GPa"),
+        "ellipse_inner": ("m", "length of the contact ellipse, inner race", 1e3, "mm"),
+        "ellipse_outer": ("m", "length of the contact ellipse, outer race", 1e3, "mm"),
+        "cut_inner": ("1", "share of the ellipse cut by the shoulder, inner race", 100, "%"),
+        "cut_outer": ("1", "share of the ellipse cut by the shoulder, outer race", 100, "%"),
+    },
+    "Rating and life": {
+        "C": ("N", "basic dynamic rating C", 1, "N"),
+        "C0": ("N", "basic static rating C0", 1, "N"),
+        "P": ("N", "dynamic equivalent load P (ISO 281)", 1, "N"),
+        "P0": ("N", "static equivalent load P0 (ISO 76)", 1, "N"),
+        "static_safety": ("1", "static safety C0/P0", 1, ""),
+        "pressure_safety": ("1", "static safety by load at 4.2 GPa over the heaviest ball's", 1, ""),
+        "L10": ("million revolutions", "basic rating life (C/P)³", 1, "million rev."),
+        "L10r": ("million revolutions", "basic reference rating life (ISO/TS 16281)", 1, "million rev."),
+        "L10rh": ("h", "the same in hours", 1, "h"),
+        "kappa": ("1", "viscosity ratio κ", 1, ""),
+        "a_iso": ("1", "a1 a_ISO", 1, ""),
+        "L10mh": ("h", "modified reference rating life", 1, "h"),
+        "duty_life": ("h", "life of the duty cycle", 1, "h"),
+    },
+    "Film and friction": {
+        "temperature": ("°C", "temperature of the oil", 1, "°C"),
+        "viscosity": ("m²/s", "kinematic viscosity", 1e6, "mm²/s"),
+        "film_inner": ("m", "central film, inner race", 1e6, "µm"),
+        "film_outer": ("m", "central film, outer race", 1e6, "µm"),
+        "lambda_inner": ("1", "film over roughness, inner race", 1, ""),
+        "lambda_outer": ("1", "film over roughness, outer race", 1, ""),
+        "friction_moment": ("N m", "frictional moment", 1e3, "N mm"),
+        "friction_power": ("W", "frictional power", 1, "W"),
+    },
+    "Stiffness of the balls": {
+        "stiffness_x": ("N/m", "along x", 1e-6, "N/µm"),
+        "stiffness_y": ("N/m", "along y", 1e-6, "N/µm"),
+        "stiffness_z": ("N/m", "along z", 1e-6, "N/µm"),
+    },
+    "Lines": {
+        "shaft": ("Hz", "shaft", 1, "Hz"),
+        "FTF": ("Hz", "cage", 1, "Hz"),
+        "BPFO": ("Hz", "balls past a spot of the outer race", 1, "Hz"),
+        "BPFI": ("Hz", "balls past a spot of the inner race", 1, "Hz"),
+        "2 BSF": ("Hz", "spot of a ball past a race", 1, "Hz"),
+    },
+}
+_MEANING = {name: row for group in _ROWS.values() for name, row in group.items()}
+
+
+def bearing_sheet(
+    eq: Equilibrium,
+    *,
+    speed: float = 0.0,
+    oil: Lubricant | None = None,
+    temperature: float | Mapping[str, float] = 40.0,
+    contamination: float | str = "normal cleanliness",
+    reliability: float = 90.0,
+    roughness: float = 0.0,
+    C: Mapping[str, float] | None = None,
+    C0: Mapping[str, float] | None = None,
+    shoulder: Mapping[str, float] | None = None,
+    friction_model: FrictionModel = "palmgren",
+    supply: Supply = "oil bath",
+    duty: Sequence[tuple[Equilibrium, float, float, float]] = (),
+) -> xarray.Dataset:
+    """Everything that is asked of the bearings of an equilibrium, all of them at once.
+
+    Parameters
+    ----------
+    eq
+        The static state; balls between flexible rings count as well.
+    speed
+        Of the shaft, rad/s; 0: what needs a speed is NaN.
+    oil
+        Of all bearings; None: what needs an oil is NaN.
+    temperature
+        Of the oil, °C, of all bearings or by bearing.
+    contamination, reliability
+        Of `modified_life`.
+    roughness
+        Composite rms roughness of race and ball, m; 0: λ is NaN.
+    C, C0
+        Ratings by bearing, N, as a maker prints them; the others are by ISO 281 and ISO 76.
+    shoulder
+        Heights of the shoulders over the bottom of their grooves by bearing, m; the others are not checked.
+    friction_model, supply
+        Of `friction`.
+    duty
+        Phases (equilibrium, speed, temperature, share of the time) of a duty cycle, each of the same
+        bearings; their life is by Palmgren and Miner, modified where there is an oil.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over "bearing"; units in attrs. `sheet_text` and `sheet_html` print it.
+
+    Raises
+    ------
+    ValueError
+        Naming what is out of range, or what is unknown.
+
+    Warns
+    -----
+    BearingWarning
+        Where a bearing is loaded above its static rating, its film is too thin for ISO 281 (κ below .1), or a
+        shoulder cuts an ellipse; also in the variable `warnings`.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> from bearingdyn.demo import motor
+    >>> sheet = bd.bearing_sheet(bd.equilibrium(motor(None)), speed=314.0)
+    >>> [f"{name} {float(sheet['L10r'].sel(bearing=name)):.0f}" for name in sheet["bearing"].values]
+    ['left 6661', 'right 6124']
+    """
+    instance("eq", eq, Equilibrium, "it must be an equilibrium: bd.equilibrium(app)")
+    hung = _hung(eq)
+    omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
+    if oil is not None:
+        instance("oil", oil, Lubricant, "give a bd.bearing.Lubricant")
+    sigma = plausible("roughness", "roughness", nonnegative("roughness", roughness))
+    own = {"C": C, "C0": C0, "shoulder": shoulder}
+    given = {
+        key: named(key, value or {}, "give values by the names of bearings") for key, value in own.items()
+    }
+    if isinstance(temperature, Mapping):
+        given["temperature"] = named("temperature", temperature, "give °C by the names of bearings")
+    for key, values in given.items():
+        for name, value in values.items():
+            require(name in hung, key, name, meant(name, hung))
+            if key != "temperature":
+                positive(f"{key} of bearing {name!r}", value)
+    phases = items("duty", duty, "it must be a list of (equilibrium, speed, temperature, share)")
+    for k, phase in enumerate(phases):
+        good = isinstance(phase, tuple) and len(phase) == 4 and isinstance(phase[0], Equilibrium)
+        require(good, f"duty[{k}]", phase, "it must be (equilibrium, speed, temperature, share)")
+        require(_hung(phase[0]).keys() == hung.keys(), f"duty[{k}]", phase[0], "its bearings are others")
+
+    columns: dict[str, list[float]] = {name: [] for name in _MEANING}
+    told: list[str] = []
+    sources: list[str] = []
+    for name, bearing in hung.items():
+        T = given["temperature"].get(name, 40.0) if isinstance(temperature, Mapping) else temperature
+        row, doubts = _row(
+            eq, name, bearing, omega, oil, float(T), contamination, reliability, sigma,
+            given["C"].get(name), given["C0"].get(name), given["shoulder"].get(name), friction_model, supply,
+        )  # fmt: skip
+        row["duty_life"] = math.nan
+        if phases:
+            lives = [
+                _life_of_phase(phase, name, oil, contamination, reliability, given["C"].get(name),
+                               given["C0"].get(name))
+                for phase in phases
+            ]  # fmt: skip
+            row["duty_life"] = equivalent_life(lives)[1]
+        for key, values_ in columns.items():
+            values_.append(row.get(key, math.nan))
+        for doubt in doubts:
+            warn(f"bearing {name!r}: {doubt}", BearingWarning)
+        told.append("; ".join(doubts))
+        sources.append(_source(bearing))
+
+    from bearingdyn.results import dataset, inputs_of
+
+    variables: dict[str, Any] = {
+        name: ("bearing", np.array(values), _MEANING[name][0], _MEANING[name][1])
+        for name, values in columns.items()
+    }
+    variables["source"] = ("bearing", sources, "", "where the geometry comes from")
+    variables["warnings"] = ("bearing", told, "", "what is doubted")
+    return dataset(
+        variables,
+        {
+            "analysis": "bearing sheet",
+            "speed": omega,
+            "contamination": str(contamination),
+            "reliability": float(reliability),
+            "friction_model": friction_model,
+            **inputs_of(eq.system.inputs),
+        },
+        {"bearing": (list(hung), "")},
+    )
+
+
+def single_bearing(
+    bearing: BallBearing, *, radial: float = 0.0, axial: float = 0.0, name: str = "bearing"
+) -> Equilibrium:
+    """Equilibrium of one bearing whose outer ring stands, its inner ring loaded down and along, held upright.
+
+    Parameters
+    ----------
+    bearing
+        Ball bearing.
+    radial, axial
+        N: along −y and +z.
+    name
+        Of the bearing.
+    """
+    instance("bearing", bearing, BallBearing, "give a BallBearing")
+    Fr, Fa = nonnegative("radial", radial), plausible("force", "axial", axial)
+    app = Application()
+    app.add("ring", RigidBody(mass=0.1, inertia=(1e-4, 1e-4, 1e-4)))
+    # the shaft holds the ring upright
+    app.ground("ring.centre", stiffness=(0.0, 0.0, 0.0, 1e9, 1e9, 1e9))
+    app.bearing(name, bearing, inner="ring.centre", outer="ground")
+    app.load("ring.centre", (0.0, -Fr, Fa, 0.0, 0.0, 0.0))
+    return equilibrium(app)
+
+
+def sheet_text(sheet: xarray.Dataset) -> str:
+    """The sheet as a page of plain text, a column for each bearing.
+
+    Parameters
+    ----------
+    sheet
+        By `bearing_sheet`.
+    """
+    names = _names(sheet)
+    lines: list[str] = []
+    width = max(12, *(len(n) + 2 for n in names))
+    for heading, rows in _ROWS.items():
+        lines += ["", f"{heading:<58}" + "".join(f"{n:>{width}}" for n in names)]
+        for label, values, unit in _printed(sheet, rows):
+            title = f"{label}, {unit}" if unit else label
+            lines.append(f"  {title:<56}" + "".join(f"{v:>{width}}" for v in values))
+    for name in names:
+        one = sheet.sel(bearing=name)
+        lines += ["", f"{name}: {one['source'].item()}"]
+        if one["warnings"].item():
+            lines.append(f"{name}, warnings: {one['warnings'].item()}")
+    return "\n".join(lines[1:])
+
+
+def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
+    """The sheet as one page of HTML that needs nothing else, a column for each bearing.
+
+    Parameters
+    ----------
+    sheet
+        By `bearing_sheet`.
+    title
+        Of the page.
+    """
+    names = _names(sheet)
+    instance("title", title, str, "give a text")
+
+    def cells(tag: str, texts: Sequence[str]) -> str:
+        return "".join(f"<{tag}>{html.escape(t)}</{tag}>" for t in texts)
+
+    body: list[str] = []
+    for heading, rows in _ROWS.items():
+        body.append(f"<tr>{cells('th', [heading, '', *names])}</tr>")
+        body += [
+            f"<tr>{cells('td', [label, unit, *values])}</tr>" for label, values, unit in _printed(sheet, rows)
+        ]
+    notes = []
+    for name in names:
+        one = sheet.sel(bearing=name)
+        notes.append(f"<p><b>{html.escape(name)}</b>: {html.escape(one['source'].item())}</p>")
+        if one["warnings"].item():
+            notes.append(
+                f"<p class=warning><b>{html.escape(name)}</b>: {html.escape(one['warnings'].item())}</p>"
+            )
+    style = (
+        "body{font-family:sans-serif;margin:2em}table{border-collapse:collapse}"
+        "th,td{padding:.15em 1em;text-align:right}th:first-child,td:first-child{text-align:left}"
+        "th{border-bottom:1px solid;padding-top:1em}.warning{color:#a00}"
+    )
+    return (
+        f"<!DOCTYPE html><html lang=en><head><meta charset=utf-8><title>{html.escape(title)}</title>"
+        f"<style>{style}</style></head><body><h1>{html.escape(title)}</h1>"
+        f"<table>{''.join(body)}</table>{''.join(notes)}<p>{html.escape(sheet.attrs['made_by'])}, "
+        f"{html.escape(sheet.attrs['made_at'])}</p></body></html>\n"
+    )
+
+
+def _hung(eq: Equilibrium) -> dict[str, BallBearing]:
+    found = {t.name: t.bearing for t in eq.system.bearings if isinstance(t.bearing, BallBearing)}
+    require(bool(found), "eq", eq, "it has no ball bearing")
+    return found
+
+
+def _names(sheet: Any) -> list[str]:
+    kind = getattr(sheet, "attrs", {}).get("analysis")
+    require(kind == "bearing sheet", "sheet", kind, "it must be a Dataset of bearing_sheet")
+    return [str(name) for name in sheet["bearing"].values]
+
+
+def _printed(
+    sheet: xarray.Dataset, rows: Mapping[str, tuple[str, str, float, str]]
+) -> list[tuple[str, list[str], str]]:
+    """Label, values and unit of each row that is known of any bearing."""
+    found = []
+    for name, (_, meaning, factor, unit) in rows.items():
+        values = sheet[name].values * factor
+        if not np.isnan(values).all():
+            found.append(
+                (
+                    meaning,
+                    ["–" if np.isnan(v) else f"{v:.4g}" if abs(v) < 1e4 else f"{v:.0f}" for v in values],
+                    unit,
+                )
+            )
+    return found
+
+
+def _source(bearing: BallBearing) -> str:
+    """What the geometry rests on, where it is one of the catalogue's."""
+    for name, one in listed.CATALOGUE.items():
+        same = (one.Z, one.Dw, one.Dpw, one.fi, one.fo, (one.bore, one.outside, one.width)) == (
+            bearing.Z, bearing.Dw, bearing.Dpw, bearing.fi, bearing.fo, bearing.boundary,
+        )  # fmt: skip
+        if same and (one.contact_angle is None) == (bearing.contact_angle is None):
+            return f"{name}: {one.support}"
+    return "geometry as given"
+
+
+def _angles(kernel: BearingKernel, z: Array, psi: Array) -> Array:
+    """Contact angles (Z,), rad, of the balls at azimuths psi in a state z of the raceways."""
+    phase = psi[:, None] * np.asarray(kernel.order)
+    basis = np.where(np.asarray(kernel.sine) == 1, np.sin(phase), np.cos(phase))
+    axial = np.asarray(kernel.axial) == 1
+    X = kernel.x0 + basis[:, axial] @ z[axial]
+    Y = kernel.y0 + basis[:, ~axial] @ z[~axial]
+    return np.asarray(np.arctan2(X, Y))
+
+
+def _row(
+    eq: Equilibrium,
+    name: str,
+    bearing: BallBearing,
+    omega: float,
+    oil: Lubricant | None,
+    T: float,
+    contamination: float | str,
+    reliability: float,
+    sigma: float,
+    C: float | None,
+    C0: float | None,
+    shoulder: float | None,
+    model: FrictionModel,
+    supply: Supply,
+) -> tuple[dict[str, float], list[str]]:
+    """The numbers of one bearing, and what is doubted of them."""
+    term = next(t for t in eq.system.bearings if t.name == name)
+    state, doubts = eq.bearings[name], list[str]()
+    angle = bearing.contact_angle or 0.0
+    iso = ratings_of(bearing)
+    C, C0 = iso.C if C is None else C, iso.C0 if C0 is None else C0
+    force, Q = state.force, state.loads
+    Fr, Fa = float(np.hypot(force[0], force[1])), abs(float(force[2]))
+    kernel = term.kernel()
+    psi = bearing.angle0 + 2 * math.pi * np.arange(bearing.Z) / bearing.Z
+    heaviest = int(np.argmax(Q))
+    alpha = float(_angles(kernel, state.z, psi)[heaviest])
+    contacts = {"inner": bearing.inner_contact, "outer": bearing.outer_contact}
+    axes = {race: contact.semi_axes(float(Q[heaviest])) for race, contact in contacts.items()}
+    P = equivalent_load(Fr, Fa, C0, contact_angle=angle, f0=iso.f0)
+    P0 = equivalent_static_load(Fr, Fa, angle)
+    x, y, along = (state.series.terms.index(t) if t in state.series.terms else None
+                   for t in ((0, 1, 0), (0, 1, 1), (1, 0, 0)))  # fmt: skip
+    row = {
+        "balls": float(bearing.Z),
+        "ball_diameter": bearing.Dw,
+        "pitch_diameter": bearing.Dpw,
+        "groove_inner": bearing.fi,
+        "groove_outer": bearing.fo,
+        "clearance": bearing.geometry.Pd,
+        "free_angle": bearing.geometry.alpha0,
+        "radial_load": Fr,
+        "axial_load": Fa,
+        "ball_load": float(Q[heaviest]),
+        "loaded_balls": float(np.count_nonzero(Q > 0)),
+        "contact_angle": alpha,
+        "C": C,
+        "C0": C0,
+        "P": P,
+        "P0": P0,
+        "static_safety": C0 / P0 if P0 > 0 else math.inf,
+        "L10": (C / P) ** 3 if P > 0 else math.inf,
+        "L10r": life_of_loads(bearing, Q, C=C),
+    }
+    for key, index in (("stiffness_x", x), ("stiffness_y", y), ("stiffness_z", along)):
+        row[key] = math.nan if index is None else float(state.K[index, index])
+    for race, contact in contacts.items():
+        row[f"pressure_{race}"] = contact.pressure(float(Q[heaviest]))
+        row[f"ellipse_{race}"] = 2 * axes[race][0]
+    peak = max(row["pressure_inner"], row["pressure_outer"])
+    row["pressure_safety"] = (STATIC_PRESSURE / peak) ** 3 if peak > 0 else math.inf
+    if P0 > C0:
+        doubts.append(f"loaded above its static rating: P0 is {P0:.4g} N, C0 {C0:.4g} N")
+    if shoulder is not None:
+        for race, f in (("inner", bearing.fi), ("outer", bearing.fo)):
+            cut = _cut(f * bearing.Dw, 2 * f * bearing.Dw / (2 * f + 1), axes[race][0], abs(alpha), shoulder)
+            row[f"cut_{race}"] = cut
+            if cut > 0:
+                doubts.append(f"the shoulder cuts {100 * cut:.3g} % of the ellipse on the {race} race")
+    inner, outer = bearing.ring_speeds
+    relative = omega * (inner - outer)
+    if relative == 0:
+        return row, doubts
+    row["L10rh"] = in_hours(row["L10r"], relative)
+    row |= fault_lines(bearing, omega, contact_angle=abs(alpha))
+    if oil is None:
+        return row, doubts
+    nu = oil.kinematic.viscosity(T)
+    row |= {"temperature": T, "viscosity": nu}
+    found, doubt = _modified(row["L10r"], C, C0, bearing, relative, nu, contamination, reliability)
+    row |= found
+    if doubt:
+        doubts.append(doubt)
+    if Q[heaviest] > 0:
+        gamma = bearing.Dw / bearing.Dpw * math.cos(alpha)
+        us = bearing.Dpw / 2 * abs(relative) * (1 - gamma**2)
+        for race, contact in contacts.items():
+            film = nijenbanning_venner_moes(contact, float(Q[heaviest]), us, nu * oil.density, oil.alpha)
+            row[f"film_{race}"] = film
+            if sigma > 0:
+                row[f"lambda_{race}"] = film / sigma
+    if bearing.boundary is not None:
+        rubbed = friction(
+            model, radial=Fr, axial=Fa, speed=relative, viscosity=nu, bore=bearing.boundary[0],
+            outside=bearing.boundary[1], C0=C0, contact_angle=angle,
+            series=listed.series_of(bearing) or "62", supply=supply,
+        )  # fmt: skip
+        row |= {"friction_moment": rubbed.moment, "friction_power": rubbed.power}
+    return row, doubts
+
+
+def _modified(
+    L10r: float,
+    C: float,
+    C0: float,
+    bearing: BallBearing,
+    relative: float,
+    nu: float,
+    contamination: float | str,
+    reliability: float,
+) -> tuple[dict[str, float], str]:
+    """κ, a_ISO and modified life; and a doubt where κ is too low for the standard."""
+    P = C / L10r ** (1 / 3) if math.isfinite(L10r) else 0.0
+    try:
+        found = modified_life(
+            L10r, P, C0=C0, Dpw=bearing.Dpw, speed=relative, viscosity=nu, contamination=contamination,
+            reliability=reliability,
+        )  # fmt: skip
+    except ValueError as error:
+        if not str(error).startswith("kappa "):
+            raise
+        return {"L10mh": math.nan}, str(error)
+    return {"kappa": found.kappa, "a_iso": found.factor, "L10mh": found.hours}, ""
+
+
+def _life_of_phase(
+    phase: tuple[Equilibrium, float, float, float],
+    name: str,
+    oil: Lubricant | None,
+    contamination: float | str,
+    reliability: float,
+    C: float | None,
+    C0: float | None,
+) -> Phase:
+    """One phase of a duty cycle as its life."""
+    state, speed, T, share = phase
+    bearing = _hung(state)[name]
+    iso = ratings_of(bearing)
+    C, C0 = iso.C if C is None else C, iso.C0 if C0 is None else C0
+    inner, outer = bearing.ring_speeds
+    relative = plausible("speed", "speed of a phase", speed) * (inner - outer)
+    life = life_of_loads(bearing, state.bearings[name].loads, C=C)
+    if oil is not None and relative != 0 and math.isfinite(life):
+        nu = oil.kinematic.viscosity(T)
+        found, doubt = _modified(life, C, C0, bearing, relative, nu, contamination, reliability)
+        require(not doubt, "duty", name, doubt)
+        life *= found["a_iso"]
+    return Phase(share, relative, life)
+
+
+def _cut(groove: float, surface: float, half: float, alpha: float, shoulder: float) -> float:
+    """Share of the ellipse's length beyond the shoulder; 0 where all of it lies inside."""
+    edge = math.acos(max(1 - shoulder / groove, 0.0))
+    reach = math.asin(min(half / surface, 1.0))
+    if reach <= 0:
+        return 0.0
+    return min(max((alpha + reach - edge) / (2 * reach), 0.0), 1.0)

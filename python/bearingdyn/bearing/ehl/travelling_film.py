@@ -1,0 +1,34 @@
+"""The answer of a contact whose film is formed at the inlet and carried through at the speed um.
+
+K̂/K_H = 1 + (A + iΩB) S(Ω), S = ½∫₋₁¹ J0(Ωs) e^{−iΩs} dy with s = √(1 − y²): each strip of the contact keeps
+the film that the inlet made when it passed there. A and B follow from the stiffness and damping at low
+frequency, A = K0/K_H − 1, B = C0/1.5 + Aπ/4.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import scipy
+
+from bearingdyn.types import Array, Complex
+
+
+@cache
+def _strips() -> tuple[Array, Array]:
+    """s and weights of ½∫₋₁¹ dy = ½∫₀^π sinφ dφ, s = sinφ."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    phi = math.pi / 2 * (nodes + 1)
+    return np.sin(phi), math.pi / 4 * weights * np.sin(phi)
+
+
+def stiffness(K0: float, C0: float, Omega: Array) -> Complex:
+    """F̂/δ̂ over the stiffness of the dry contact at ωa/um, any shape; K0 and C0 as in `ehl.Steady`."""
+    s, weights = _strips()
+    at = np.asarray(Omega, dtype=float)[..., None] * s
+    S = (scipy.special.j0(at) * np.exp(-1j * at)) @ weights
+    A = K0 - 1
+    B = C0 / 1.5 + A * math.pi / 4
+    return np.asarray(1 + (A + 1j * np.asarray(Omega) * B) * S)

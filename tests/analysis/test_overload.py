@@ -1,0 +1,82 @@
+"""A march knows the largest load of every ball from each of its steps, recorded or not."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+import bearingdyn as bd
+from bearingdyn import runfile
+from bearingdyn.analysis import ball_channels
+from bearingdyn.analysis.march import March
+from bearingdyn.notice import BearingWarning
+
+BALLS = {"Z": 9, "Dw": 7.94e-3, "Dpw": 39.04e-3, "fi": 0.52, "fo": 0.53, "clearance": 10e-6}
+STEPS = 2000
+
+
+def rotor(blow: float) -> bd.Application:
+    """A rotor on two bearings, with a blow of 0.2 ms that is over when the march ends."""
+    app = bd.Application()
+    app.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+    for name, offset in (("a", 5e-6), ("b", -5e-6)):
+        app.bearing(
+            name, bd.BallBearing(**BALLS, damping=500.0), inner="r.centre", outer="ground", offset=offset
+        )
+    app.gravity((0, -9.81, 0))
+    app.load("r.centre", (0, -1.0, 0, 0, 0, 0), time=[0, 1e-3, 1.1e-3, 1.2e-3, 1.0], value=[0, 0, blow, 0, 0])
+    return app
+
+
+def march(app: bd.Application, **options):
+    given = {"speed": 100.0, "dt": 5e-6, "steps": STEPS, "record": ["r.centre.y"]}
+    return bd.transient(app, **{**given, **options})
+
+
+@pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarseStep")
+@pytest.mark.parametrize("options", [{}, {"decimate": 500}, {"settle": STEPS, "steps": 1}, {"record": []}])
+def test_a_blow_between_two_samples_is_warned_of(options):
+    """Neither recorded nor in the last state: known from the steps alone."""
+    with pytest.warns(BearingWarning, match="bearing 'a': a ball bore .* in this march") as told:
+        march(rotor(1.5e5), **options)
+    assert {str(w.message)[8:11] for w in told if w.category is BearingWarning} == {"'a'", "'b'"}
+
+
+@pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarseStep")
+def test_an_ordinary_blow_is_not():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", BearingWarning)
+        march(rotor(2e3))
+
+
+@pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarseStep")
+@pytest.mark.parametrize("isa", ["base", "avx2", "avx512", "best"])
+def test_the_peaks_are_the_largest_of_every_recorded_step(isa):
+    """To the bit but for one rounding: the running maximum adds what is above it."""
+    try:
+        scheme = bd.Scheme(isa=isa)
+        prepared = March.of(rotor(2e3), speed=100.0, dt=5e-6, steps=STEPS, scheme=scheme)
+    except ValueError:
+        pytest.skip(f"this machine has no {isa}")
+    eq = bd.equilibrium(rotor(2e3))
+    channels = [*ball_channels(eq, "a"), *ball_channels(eq, "b")]
+    rows = march(eq, record=channels, scheme=scheme)["record"].values
+    model = prepared.modal.model([])
+    *_, (_, _, report) = prepared.pieces(model, prepared.start(model), start=True)
+    np.testing.assert_allclose(report.peaks, [rows[:, :9].max(), rows[:, 9:].max()], rtol=1e-15)
+
+
+@pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarseStep")
+def test_a_stream_keeps_the_peaks_of_the_chunks_before(tmp_path, monkeypatch):
+    """Cut after the blow and gone on with, the march warns of what came before the cut."""
+    monkeypatch.setattr("bearingdyn.analysis.march.CHUNK_STEPS", 500)
+    path = tmp_path / "run.bdrun"
+    with pytest.warns(BearingWarning, match="a ball bore"):
+        march(rotor(1.5e5), stream=path)
+    chunks = runfile.read(path)[1]
+    assert len(chunks) == STEPS // 500
+    assert chunks[0].report.peaks[0] > 3 * chunks[-1].report.peaks[0]
+    with pytest.warns(BearingWarning, match="bearing 'a': a ball bore"):
+        march(rotor(1.5e5), stream=path)

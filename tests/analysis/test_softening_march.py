@@ -1,0 +1,219 @@
+"""Layers that soften with their own amplitude, marched: against the frequency domain, and by themselves."""
+
+import numpy as np
+import pytest
+from tests.analysis.test_softening import LAW, RUBBER, mass_on_layer
+
+import bearingdyn as bd
+from bearingdyn import core
+from bearingdyn.material.amplitude import Rest
+
+PLACE, STEPS = "mass.centre.z", 100  # a period
+
+
+def driven(tones, material=RUBBER, *, periods=120, kept=20, steps=STEPS, static=0.0, **more):
+    """March under forces (N at Hz) along z; their amplitudes in the last `kept` periods of the first."""
+    app = mass_on_layer(material)
+    for size, hz in tones:
+        app.load("mass.centre", (0, 0, size, 0, 0, 0), frequency=hz)
+    if static:
+        app.load("mass.centre", (0, 0, static, 0, 0, 0))
+    base = min(hz for _, hz in tones)
+    dt = 1 / base / steps
+    record = [PLACE, *(["layer.strain"] if material.payne else [])]
+    run = bd.transient(
+        bd.equilibrium(app),
+        speed=0.0,
+        dt=dt,
+        steps=kept * steps,
+        settle=(periods - kept) * steps,
+        record=record,
+        progress=False,
+        **more,
+    )
+    z, t = run.record.sel(channel=PLACE).values, run.time.values
+    found = [2 * np.mean(z * np.exp(-2j * np.pi * hz * t)) for _, hz in tones]
+    return found, run
+
+
+def answered(f, size, material=RUBBER):
+    """Complex response of the frequency domain to this force, m."""
+    amplitude = {} if material.payne is None else {"amplitude": size}
+    run = bd.frequency_response(mass_on_layer(material), f, [PLACE], [PLACE], **amplitude)
+    return size * run.response.values[:, 0, 0]
+
+
+def peak_of(f, response):
+    """Frequency and height of a resonance by the parabola of 1/|H|² in f² through three points or more."""
+    x = (np.asarray(f) / f[1]) ** 2 - 1
+    a, b, c = np.polyfit(x, np.abs(response) ** -2, 2)
+    return f[1] * np.sqrt(1 - b / (2 * a)), (c - b * b / (4 * a)) ** -0.5
+
+
+@pytest.mark.parametrize("size", [0.5, 5.0, 20.0])
+def test_both_domains_have_the_same_resonance(size):
+    """At 100 steps a period: .1 % in frequency, .2 % in height. Newmark's own error is (ωΔt)²/24 = .016 %."""
+    fine = np.linspace(230.0, 320.0, 901)
+    top = fine[np.abs(answered(fine, size)).argmax()]
+    f = [0.985 * top, top, 1.015 * top]
+    ours = [driven([(size, hz)])[0][0] for hz in f]
+    frequency, height = peak_of(f, np.array(ours))
+    expected = peak_of(f, answered(f, size))
+    assert frequency == pytest.approx(expected[0], rel=1e-3)
+    assert height == pytest.approx(expected[1], rel=2e-3)
+
+
+def test_the_running_strain_is_that_of_the_frequency_domain():
+    _, run = driven([(5.0, 250.0)])
+    wanted = bd.frequency_response(mass_on_layer(), [250.0], [PLACE], [PLACE], amplitude=5.0)
+    running = run.record.sel(channel="layer.strain").values[-1]
+    # the memory of five periods cuts 1/(2 (2π 5)²) = .05 % of the amplitude, Newmark some more of the motion
+    assert running == pytest.approx(float(wanted.strain[0, 0, 0]), rel=3e-3)
+
+
+def test_a_small_vibration_meets_the_unbroken_rubber():
+    """The limit of small amplitude is linear: rest and D, marched as an ordinary Maxwell model."""
+    rest = RUBBER.rest
+    assert isinstance(rest, Rest)
+    hz = 240.0
+    (small,), _ = driven([(1e-6, hz)])
+    (smaller,), _ = driven([(1e-9, hz)])
+    assert small / 1e-6 == pytest.approx(smaller / 1e-9, rel=1e-9)
+    expected = answered([hz], 1e-6)[0]
+    assert abs(small) == pytest.approx(abs(expected), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("tones", "kept", "allowed"),
+    [
+        ([(6.0, 150.0), (6.0, 230.0)], 45, 2e-3),
+        ([(6.0, 230.0), (6.0, 260.0)], 46, 2e-3),
+        ([(20.0, 330.0), (20.0, 400.0)], 66, 2e-3),
+        # on both flanks, where .1 % of stiffness is .2 % of motion: what the rest lacks is added for one
+        # frequency, and between two its storage rises by (2/π) L(γr) ln(f2/f1) more than was measured
+        ([(6.0, 200.0), (6.0, 320.0)], 40, 4e-3),
+    ],
+)
+def test_two_tones_share_one_strain(tones, kept, allowed):
+    """Each tone against the formula for several, E + 2 L iω/(iω + Ω), of the strain of both."""
+    found, run = driven(tones, periods=240, kept=kept, steps=400, memory=10 / tones[0][1])
+    gamma = float(run.record.sel(channel="layer.strain").values[-1])
+    omega = 2 * np.pi * np.array([hz for _, hz in tones])
+    weight = np.abs(found) ** 2
+    mean = float(np.sqrt(np.sum(weight * omega**2) / np.sum(weight)))
+
+    class Met:
+        K, density = 2e9, 1150.0
+
+        def complex_modulus(self, w):
+            return RUBBER.modulus_at(w, gamma, mean)
+
+    for (size, hz), z in zip(tones, found, strict=True):
+        linear = bd.frequency_response(mass_on_layer(Met()), [hz], [PLACE], [PLACE])
+        assert abs(z) == pytest.approx(size * abs(linear.response.values[0, 0, 0]), rel=allowed)
+
+
+def test_a_lasting_load_is_no_amplitude():
+    """Small vibration about a static deflection of half a percent is that without it, .3 %."""
+    (alone,), _ = driven([(0.5, 240.0)])
+    (about,), run = driven([(0.5, 240.0)], static=400.0)
+    z = run.record.sel(channel=PLACE).values.mean()
+    assert z > 10 * abs(alone)
+    assert abs(about) == pytest.approx(abs(alone), rel=3e-3)
+
+
+def test_the_start_is_at_rest_in_the_equilibrium():
+    app = mass_on_layer()
+    app.load("mass.centre", (0, 0, 300.0, 0, 0, 0))
+    state = bd.equilibrium(app)
+    run = bd.transient(state, speed=0.0, dt=1e-5, steps=500, record=[PLACE], memory=0.01, progress=False)
+    z = run.record.values[:, 0]
+    assert np.ptp(z) < 1e-9 * abs(z[0])
+
+
+def test_energy_is_accounted_for_with_a_loss_of_its_own():
+    for steps, allowed in (
+        (100, 5e-4),
+        (200, 1.3e-4),
+    ):  # of the throughput; the trapezoidal rule, second order
+        _, run = driven([(10.0, 270.0)], steps=steps, audit=True)
+        e = {name: run.attrs[f"energy_{name}"] for name in core.ENERGIES}
+        lost = e["linear"] + e["branch"] + e["contact"] + e["softening"]
+        change = e["kinetic"] + e["elastic"] + e["stored"] + e["indentation"]
+        start = 0.0  # no static load
+        assert e["load"] + e["turning"] - lost - (change - start) == pytest.approx(
+            0.0, abs=allowed * e["throughput"]
+        )
+        assert e["softening"] > 0.1 * e["branch"]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_softening_never_makes_energy(seed):
+    """Random forces: what the law has turned into heat never falls. 50 stretches of each of 20 paths."""
+    rng = np.random.default_rng(seed)
+    knots = np.concatenate([[0.0], np.cumsum(rng.uniform(1e-4, 3e-3, 120))])
+    force = rng.normal(size=121) * 10 ** rng.uniform(-1.0, 2.3, 121)
+    app = mass_on_layer()
+    app.load("mass.centre", (0, 0, 1.0, 0, 0, 0), time=knots, value=force)
+    run, lost = None, [0.0]
+    for _ in range(50):
+        run = bd.transient(
+            bd.equilibrium(app) if run is None else app,
+            speed=0.0,
+            dt=2e-5,
+            steps=150,
+            record=[],
+            resume=run,
+            memory=0.01,
+            audit=True,
+            progress=False,
+        )
+        lost.append(run.attrs["energy_softening"])
+    assert (np.diff(lost) >= 0).all()
+    assert lost[-1] > 0
+
+
+def test_a_march_goes_on_bit_for_bit_and_is_the_same_for_every_instruction_set():
+    app = mass_on_layer()
+    app.load("mass.centre", (0, 0, 10.0, 0, 0, 0), frequency=280.0)
+    state = bd.equilibrium(app)
+    same = {"speed": 0.0, "dt": 1 / 28000, "record": [PLACE, "layer.strain"], "progress": False}
+    whole = bd.transient(state, steps=3000, **same)
+    assert whole.attrs["refactors"] > 10
+    first = bd.transient(state, steps=1111, **same)
+    rest = bd.transient(state, steps=1889, resume=first, **same)
+    assert np.array_equal(whole.state.values, rest.state.values)
+    assert np.array_equal(whole.record.values[1111:], rest.record.values[-1889:])
+    for isa in core.ISAS:
+        try:
+            scheme = bd.Scheme(isa=isa)
+        except ValueError:
+            continue  # not of this machine
+        run = bd.transient(state, steps=3000, scheme=scheme, **same)
+        assert np.array_equal(whole.state.values, run.state.values), isa
+
+
+def test_a_memory_that_nothing_tells_is_asked_for():
+    with pytest.raises(ValueError, match=r"memory is None; a layer softens .* five periods"):
+        bd.transient(mass_on_layer(), speed=0.0, dt=1e-5, steps=10, record=[PLACE])
+    with pytest.raises(ValueError, match=r"memory is -1"):
+        bd.transient(mass_on_layer(), speed=0.0, dt=1e-5, steps=10, record=[PLACE], memory=-1)
+
+
+def test_a_channel_of_strain_needs_a_law():
+    with pytest.raises(ValueError, match=r"'layer' has no law of softening"):
+        bd.transient(
+            mass_on_layer(RUBBER.with_payne(None)),
+            speed=0.0,
+            dt=1e-5,
+            steps=10,
+            record=["layer.strain"],
+        )
+
+
+def test_laws_of_a_state_belong_to_its_system():
+    app = mass_on_layer()
+    run = bd.transient(app, speed=0.0, dt=1e-5, steps=10, record=[PLACE], memory=0.01)
+    other = mass_on_layer(RUBBER.with_payne(LAW.scaled(0.9)))
+    with pytest.raises(ValueError, match=r"resume"):
+        bd.transient(other, speed=0.0, dt=1e-5, steps=10, record=[PLACE], memory=0.01, resume=run)

@@ -1,0 +1,83 @@
+"""Every analysis given what it cannot use refuses it by the argument's name, before long work."""
+
+from __future__ import annotations
+
+import inspect
+import warnings
+
+import numpy as np
+import pytest
+
+import bearingdyn as bd
+from bearingdyn import analysis
+from bearingdyn.bearing import Pair
+
+BALL = bd.BallBearing(9, 7.94e-3, 39.04e-3, 0.52, 0.53, contact_angle=0.3)
+
+
+def held() -> bd.Application:
+    app = bd.Application()
+    app.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+    app.ground("r.centre", stiffness=[1e6] * 6, damping=[10.0] * 6)
+    app.load("r.centre", (0, -10.0, 0, 0, 0, 0))
+    return app
+
+
+APP = held()
+STATE = bd.equilibrium(APP)
+MODES = bd.modes(STATE)
+RUN = bd.transient(STATE, speed=10.0, dt=1e-5, steps=64, record=["r.centre.x", "r.centre.y"])
+BORNE = bd.Application()
+BORNE.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+BORNE.add("g", bd.RigidBody(4.0, (0.02, 0.02, 0.004)))
+BORNE.ground("g.centre", stiffness=[1e6] * 6)
+BORNE.bearing("b", BALL, inner="r.centre", outer="g.centre")
+BORNE.load("r.centre", (0, 0, 200.0, 0, 0, 0))
+SHEET = bd.bearing_sheet(bd.equilibrium(BORNE))
+TABLE = bd.stiffness_table(BALL, [[0, 0, 200.0, 0, 0, 0]])
+OIL = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
+RESPONSE = bd.frequency_response(STATE, [10.0], ["r.centre.y"], ["r.centre.y"])
+WRONG = [
+    Pair(BALL, "DB", distance=0.015), 5, "6205", None, [], {}, RUN, RESPONSE, STATE, MODES, APP, np.zeros(3),
+    object(), 1.5, True, BALL,
+]  # fmt: skip
+GOOD = {
+    "app": APP, "eq": STATE, "source": STATE, "result": RUN, "found": MODES, "speed": 10.0,
+    "frequency": [10.0, 20.0], "frequencies": [10.0, 20.0], "inputs": ["r.centre.y"],
+    "outputs": ["r.centre.y"], "dt": 1e-5, "steps": 8,
+    "record": ["r.centre.y"], "speeds": [0.0, 10.0], "channel": "r.centre.y", "bearing": "b", "mode": 0,
+    "x": "r.centre.x", "y": "r.centre.y", "length": 2e-4, "band": (1e3, 2e4), "highest": 5.0, "orders": [1.0],
+    "surfaces": ["r.all"], "cases": [], "table": TABLE, "path": "table.csv", "oil": OIL,
+    "sheet": SHEET, "loads": [[0, 0, 200.0, 0, 0, 0]],
+}  # fmt: skip
+ANALYSES = [name for name in analysis.__all__ if inspect.isfunction(getattr(analysis, name))]
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_a_wrong_object_is_refused_by_name(name, tmp_path, monkeypatch):
+    """Or taken, where it means something: no AttributeError, KeyError and their like from within."""
+    monkeypatch.chdir(tmp_path)  # "6205" is a file's name too
+    call = getattr(analysis, name)
+    parameters = inspect.signature(call).parameters
+    needed = {key: GOOD[key] for key, p in parameters.items() if p.default is p.empty and key in GOOD}
+    lacking = [key for key, p in parameters.items() if p.default is p.empty and key not in GOOD]
+    assert lacking == [], "an argument that this test has no good value for"
+    for key in parameters:
+        for wrong in WRONG:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                try:
+                    call(**{**needed, key: wrong})
+                except (ValueError, ArithmeticError, bd.SolverError, OSError):
+                    pass
+                except TypeError as error:  # progress=, whose message is its own
+                    assert str(error).startswith(f"{key} is "), (key, wrong, error)  # noqa: PT017
+
+
+def test_transients_tell_of_the_marches_that_are_done():
+    told = []
+    case = {"source": STATE, "speed": 0.0, "dt": 1e-5, "steps": 5, "record": []}
+    bd.transients([case] * 3, threads=2, progress=lambda done, total: told.append((done, total)))
+    assert told == [(1, 3), (2, 3), (3, 3)]
+    with pytest.raises(ValueError, match=r"cases\[1\] is 5; it must be a list of mappings"):
+        bd.transients([case, 5])
