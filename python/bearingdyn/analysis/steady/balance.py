@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,7 +21,6 @@ from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines, body_angles, load_lines
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
-
 
 # m: a motion smaller than this is none
 TINY = 1e-15
@@ -80,7 +80,7 @@ class Balance:
     def slots(self) -> list[slice]:
         """Of every bearing its coefficients among all."""
         ends = np.cumsum([0, *(len(t.B) for t in self.system.bearings)]).tolist()
-        return [slice(a, b) for a, b in zip(ends, ends[1:], strict=False)]
+        return [slice(a, b) for a, b in pairwise(ends)]
 
     @cached_property
     def kernels(self) -> list[dict[str, object]]:
@@ -140,7 +140,7 @@ class Balance:
         return np.asarray(self._driven[:, m:] - (self._answers[:, m:] @ h[:, :, None])[:, :, 0])
 
     def window(self, lines: Lines) -> float:
-        """Time between samples, s; of several bases, whose samples have none, a twelfth of the fastest line's."""
+        """Time between samples, s; of several bases, whose samples have none, 1/12 of the fastest line's."""
         if lines.index.shape[1] == 1:
             return float(2 * np.pi / abs(self.bases.frequencies(self.speed)[0]) / lines.samples)
         return float(2 * np.pi / 12 / np.abs(self.omega).max())
@@ -200,8 +200,8 @@ class _Packed:
 class Linearised:
     """Derivative of the residual at a motion, times vectors: P⁻¹ J, P the same with the mean tangent alone.
 
-    Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's imaginary
-    part is kept at zero.
+    Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's
+    imaginary part is kept at zero.
     """
 
     balance: Balance

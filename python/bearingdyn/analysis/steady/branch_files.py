@@ -1,4 +1,4 @@
-"""Finished searches of a map, kept in a folder: one file of plain arrays each, named by what it was made from."""
+"""Finished searches of a map, kept in a folder: one file of arrays each, named by what it was made from."""
 
 from __future__ import annotations
 
@@ -92,5 +92,3 @@ def _branch(arrays: dict[str, Array], head: tuple[int, str, list[str]]) -> Branc
         state = Stability(values, period) if np.isfinite(period) else None
         marks.append(Mark(point, state, arrays["moved"][i], event))
     return Branch(passages, tuple(marks), origin)
-
-

@@ -25,14 +25,14 @@ from bearingdyn.analysis.steady.stability import (
 )
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
-from bearingdyn.types import Array, Complex
+from bearingdyn.types import Complex
 
 # of a motion, by which another at the same parameter must differ to be another
 DIFFERENT = 1e-3
 # amplitude of the doubled motion with which a branch begins at a flip, as a share of the motion there
 BEGIN = 0.02
-# places of the range where motions are looked for beside those of the two ends, and amplitudes, as shares of the
-# mean deflection, with which they begin
+# places of the range where motions are looked for beside those of the two ends, and amplitudes, as shares of
+# the mean deflection, with which they begin
 PLACES, PUSHES = 5, (0.5, 1.5)
 # of the range, by which a sweep that can go no further leaps on; and its most leaps
 LEAP, LEAPS = 0.01, 40
@@ -239,7 +239,9 @@ class Tracer:
         met, ended, over = 0, begin, False
         for point in follow(curve, begin, task.low, task.high, task.longest, task.most):
             if self.passages > 1 and _mirrored(ended.z, point.z):
-                over = True  # through the flip where the branch ends: what follows is the same, a passage later
+                over = (
+                    True  # through the flip where the branch ends: what follows is the same, a passage later
+                )
                 break
             new = self._cut(curve, last, self.mark(curve, point))
             yield from self._events(curve, last, new)
@@ -287,7 +289,9 @@ class Tracer:
         real = [f for f in found if f is not None and (f.event == "fold" or _crossing(f) <= ON_CIRCLE)]
         return sorted(real, key=lambda f: ahead * f.point.parameter)
 
-    def _at(self, curve: Curve, before: Mark, after: Mark, name: str, test: Callable[[Point], float]) -> Mark | None:
+    def _at(
+        self, curve: Curve, before: Mark, after: Mark, name: str, test: Callable[[Point], float]
+    ) -> Mark | None:
         point = locate(curve, before.point, after.point, test, self.task.tolerance)
         return None if point is None else self.mark(curve, point, name, FINER)
 

@@ -1,4 +1,4 @@
-"""Which lines of several bases matter: chosen by what the balls would move on them, refined till none is missed."""
+"""Which lines of several bases matter: chosen by what the balls move on them, refined till none is missed."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def balanced(
     start: tuple[Index, Complex] | None = None,
     tell: Callable[[int, int], object] | None = None,
 ) -> tuple[Balance, Found, float]:
-    """A motion of several bases on the lines that matter, and the share of the largest line that was left out."""
+    """A motion of several bases on the lines that matter, and the share of the largest line left out."""
     offered = candidates(problem, speed, harmonics)
     zero = np.zeros((1, len(problem.bases.bases)), dtype=np.intp)
     begun = problem.balance(lattice(np.vstack([zero, *_loaded(problem, speed)]), offered), speed)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bearingdyn.analysis.steady.balance import Balance, Found, Pressed, flat, measure, unflat
+from bearingdyn.analysis.steady.balance import Balance, Found, Pressed, flat, measure
 from bearingdyn.analysis.steady.krylov import gmres
 from bearingdyn.types import Array, Complex
 
@@ -74,7 +74,7 @@ class Curve:
         across: float,
         tolerance: float,
     ) -> tuple[Array, float]:
-        """(dz flat, dp) with J dz + F_p dp = right, and border · (dz, dp) = across, in the curve's measure."""
+        """(dz flat, dp) with J dz + F_p dp = right, and border · (dz, dp) = across, in its measure."""
         linear = balance.linearised(pressed)
         q = linear.prepared(column) * self.scale
         tz, tp = border
@@ -125,9 +125,7 @@ class Curve:
         p = point.parameter + self.scale * length * point.slope
         return self.correct(z, p, (point.tangent, point.slope), exact)
 
-    def correct(
-        self, z: Complex, p: float, border: tuple[Array, float], exact: bool = False
-    ) -> Point | None:
+    def correct(self, z: Complex, p: float, border: tuple[Array, float], exact: bool = False) -> Point | None:
         """Onto the curve, across the border from (z, p)."""
         column: Complex | None = None
         last = math.inf

@@ -176,5 +176,5 @@ def _of_balls(kind: int, index: int, along: core.Along) -> Array:
     if kind == core.CHANNEL_KINDS["ball"]:
         return np.asarray(along.loads[:, index])
     if kind == core.CHANNEL_KINDS["loaded"]:
-        return np.count_nonzero(along.loads > 0.0, axis=1).astype(np.float64)
+        return np.asarray(np.count_nonzero(along.loads > 0.0, axis=1), dtype=np.float64)
     return along.heat

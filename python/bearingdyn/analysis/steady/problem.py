@@ -6,19 +6,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, system_of
 from bearingdyn.analysis.bearing_state import BearingState
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.analysis.steady.balance import Balance
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
 from bearingdyn.material import Maxwell
-from bearingdyn.system import LayerTerm, System
+from bearingdyn.system import LayerTerm, System, system_of
 from bearingdyn.types import Array, Complex
 
-# of the mean of the bearings' own stiffness, that the reference adds to each coefficient: what holds a rotor whose
-# loaded balls stand on one side. Any value gives the same motion
+# of the mean of the bearings' own stiffness, that the reference adds to each coefficient: what holds a rotor
+# whose loaded balls stand on one side. Any value gives the same motion
 EVEN = 1.0
 # N/m, where no ball is pressed
 IDLE = 1e6
@@ -107,8 +107,8 @@ def check_linear(layer: LayerTerm) -> None:
     """Refuse a law that softens with its own amplitude: ValueError."""
     if layer.strain is not None:
         raise ValueError(
-            f"layer {layer.part!r} softens with its amplitude (payne), and a steady motion is balanced with laws "
-            f"that do not; leave payne out of its material, or march with bd.transient"
+            f"layer {layer.part!r} softens with its amplitude (payne), and a steady motion is balanced with "
+            f"laws that do not; leave payne out of its material, or march with bd.transient"
         )
 
 
@@ -117,9 +117,9 @@ def check_rest(layer: LayerTerm, system: System) -> None:
     G = rest_modulus(layer)
     if not G > 0.0 and system.static_load().any():
         raise ValueError(
-            f"layer {layer.part!r} has the material {type(layer.material).__name__}, whose modulus at rest is "
-            f"{G:g} Pa; under a dead load it must be positive, or there is no mean to move about: give a law "
-            f"with a plateau, or take the constant loads away"
+            f"layer {layer.part!r} has the material {type(layer.material).__name__}, whose modulus at rest "
+            f"is {G:g} Pa; under a dead load it must be positive, or there is no mean to move about: give a "
+            f"law with a plateau, or take the constant loads away"
         )
 
 

@@ -205,7 +205,7 @@ class Receptances:
         return found
 
     def _joined(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
-        """Block by block, joined through the reference; where that would cost too many digits, all at once."""
+        """Block by block, joined through the reference; all at once where that would cost digits."""
         _, T = self.modal
         m = len(self.B)
         above = np.vstack([self.B, rows]) @ T
@@ -215,9 +215,11 @@ class Receptances:
             touched = np.flatnonzero(np.abs(above[:, block.index]).any(axis=1))
             driven = np.flatnonzero(np.abs(right[:, block.index]).any(axis=1))
             if touched.size and driven.size:
-                own = block.answer(
-                    omega, speed, above[np.ix_(touched, block.index)], right[np.ix_(driven, block.index)].T
+                rows_in, forces_in = (
+                    np.asarray(of[np.ix_(which, block.index)])
+                    for of, which in ((above, touched), (right, driven))
                 )
+                own = block.answer(omega, speed, rows_in, forces_in.T)
                 free[np.ix_(np.arange(len(omega)), touched, driven)] += own
         if not m:
             return free

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,18 @@ from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.march_state import system_hash
 from bearingdyn.analysis.steady.branch_files import BranchFiles
-from bearingdyn.analysis.steady.branches import Branch, Family, Job, Made, Mark, Speeds, Task, done, states, sweeps
+from bearingdyn.analysis.steady.branches import (
+    Branch,
+    Family,
+    Job,
+    Made,
+    Mark,
+    Speeds,
+    Task,
+    done,
+    states,
+    sweeps,
+)
 from bearingdyn.analysis.steady.motion import MOTIONS
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.application import Application
@@ -49,11 +60,11 @@ def speed_map(
 ) -> xarray.Dataset:
     """Follow all steady motions over a range of speeds, with their stability.
 
-    Branches are followed by the length of their arc, round folds, from both ends of the range: as a coast-down
-    and a run-up would meet them, and from several states between, for branches that hang together with none
-    of these. Folds, flips (period doublings) and Neimark–Sacker points are located; at flips the branch of
-    twice the period is followed as well. Where a branch can be followed no further a point is marked
-    "failed", and the search goes on beyond it.
+    Branches are followed by the length of their arc, round folds, from both ends of the range: as a
+    coast-down and a run-up would meet them, and from several states between, for branches that hang
+    together with none of these. Folds, flips (period doublings) and Neimark–Sacker points are located; at
+    flips the branch of twice the period is followed as well. Where a branch can be followed no further a
+    point is marked "failed", and the search goes on beyond it.
 
     Parameters
     ----------
@@ -97,7 +108,9 @@ def speed_map(
     E. L. Allgower and K. Georg, Introduction to Numerical Continuation Methods, SIAM 2003.
     """
     low, high = _range("speeds", speeds, "two speeds in rad/s, the lower one first")
-    require(low > 0.0, "speeds", tuple(speeds), "the lowest must be positive, in rad/s: at rest nothing passes")
+    require(
+        low > 0.0, "speeds", tuple(speeds), "the lowest must be positive, in rad/s: at rest nothing passes"
+    )
     problem = Problem.of(source)
     problem.system.check_speed(high)
     family = Speeds(problem)
@@ -165,7 +178,9 @@ def _task(
     problem, _ = family.at(high)
     for name in record:
         kind = channel_of(problem.system, name)[0][0]
-        require(kind in MOTIONS, "record", name, "a map records motions: displacement, velocity, acceleration")
+        require(
+            kind in MOTIONS, "record", name, "a map records motions: displacement, velocity, acceleration"
+        )
     bases = [b.name for b in problem.bases.bases]
     require(
         len(bases) == 1,
@@ -232,7 +247,7 @@ def _run(
     branches: list[Branch],
     files: BranchFiles | None,
     executor: Executor | None,
-) -> Sequence[list[Branch]] | object:
+) -> Iterable[list[Branch]]:
     """What each job finds, in their order; those that a folder holds are read."""
     if executor is None:
         return (_kept(task, job, list(branches), flip, files) for job, flip in jobs)
@@ -242,7 +257,7 @@ def _run(
         for job, flip in jobs
     ]
 
-    def ended() -> object:
+    def ended() -> Iterator[list[Branch]]:
         for (job, _), future in zip(jobs, running, strict=True):
             if isinstance(future, list):
                 yield future
@@ -315,7 +330,12 @@ def _dataset(
     made = dataset(
         {
             name: ("point", each(lambda m: m.point.parameter), unit, name),
-            "branch": ("point", np.array([k for k, _, _ in rows], dtype=np.intp), "1", "number of the branch"),
+            "branch": (
+                "point",
+                np.array([k for k, _, _ in rows], dtype=np.intp),
+                "1",
+                "number of the branch",
+            ),
             "passages": ("point", np.array([p for _, p, _ in rows], dtype=np.intp), "1", "of a period"),
             "stable": (
                 "point",
@@ -335,7 +355,12 @@ def _dataset(
                 "1/s",
                 "rate of growth of the fastest departure",
             ),
-            "event": ("point", np.array([m.event for _, _, m in rows], dtype=np.str_), "", "what is located there"),
+            "event": (
+                "point",
+                np.array([m.event for _, _, m in rows], dtype=np.str_),
+                "",
+                "what is located there",
+            ),
             "residual": ("point", each(lambda m: m.point.residual), "1", "of the balance, relative"),
             "peak_to_peak": (("point", "channel"), swing, "", "swing of each channel; units in `unit`"),
             "rms": (("point", "channel"), rms, "", "about the mean; units in `unit`"),

@@ -1,13 +1,15 @@
 """Stability of a periodic motion: Floquet multipliers of the structure, its branches and the balls' tangents.
 
-A small departure u from the motion obeys u̇ = A u − E (K(t) z + C(t) ż) with z and ż rows of u, A constant with the
-mean tangents in it, and K and C what the tangents of the balls along the motion are beside their mean. Over a double
-step Δ the force of the balls is a parabola through its values at 0, Δ/2 and Δ, and what A makes of it is exact:
+A small departure u from the motion obeys u̇ = A u − E (K(t) z + C(t) ż) with z and ż rows of u, A constant
+with the mean tangents in it, and K and C what the tangents of the balls along the motion are beside their
+mean. Over a double step Δ the force of the balls is a parabola through its values at 0, Δ/2 and Δ, and what
+A makes of it is exact:
 
     u(Δ) = e^{AΔ} u(0) − Σ_j W_j h_j,   h_j = K_j z_j + C_j ż_j,   z_j = Z (e^{Aτ_j} u(0) − Σ_i W_i(τ_j) h_i)
 
-so that a period is a product of matrices, of fourth order in Δ. The highest modes of the structure, and what hardly
-moves the bearings, follow at once: what they give way by is kept as a flexibility, in which tangents soften.
+so that a period is a product of matrices, of fourth order in Δ. The highest modes of the structure, and what
+hardly moves the bearings, follow at once: what they give way by is kept as a flexibility, in which tangents
+soften.
 """
 
 from __future__ import annotations
@@ -140,7 +142,7 @@ def _chunk(modal: System, kept: Index, touched: Index, squares: Array, floating:
     ]
     size = 2 * n + sum(L.shape[1] for L, _, _ in branches)
     A, speed_A = np.zeros((size, size)), np.zeros((size, size))
-    # ω q for q, so that u² is twice the energy and a period hardly stretches it; what floats has its bearings' ω
+    # ω q for q, so that u² is twice the energy and a period hardly stretches it; ω of what floats is given
     omega = np.sqrt(np.maximum(squares[kept], 0.0))
     scale = np.where(omega > 0.0, omega, floating)
     A[:n, n : 2 * n] = np.diag(scale)
@@ -165,7 +167,7 @@ def _chunk(modal: System, kept: Index, touched: Index, squares: Array, floating:
 
 
 def _felt_alone(chunk: Chunk, least: float) -> tuple[Chunk, Array]:
-    """A block with branches in its poles, those alone that the bearings feel, and the flexibility of the others.
+    """A block with branches in its poles: those that the bearings feel, and the flexibility of the others.
 
     A block that turns stays as it is.
     """
@@ -197,9 +199,9 @@ def _felt_alone(chunk: Chunk, least: float) -> tuple[Chunk, Array]:
             felt[own] = True
         else:
             gives = gives - Z[:, own] @ np.linalg.solve(A[own, own], E[own])
-    own = np.flatnonzero(felt)
-    inside = A[np.ix_(own, own)]
-    return Chunk(inside, np.zeros_like(inside), Z[:, own], V[:, own], E[own], chunk.touched), gives
+    kept = np.flatnonzero(felt)
+    inside = A[np.ix_(kept, kept)]
+    return Chunk(inside, np.zeros_like(inside), Z[:, kept], V[:, kept], E[kept], chunk.touched), gives
 
 
 @dataclass(frozen=True, eq=False)
@@ -414,7 +416,7 @@ def floquet(
     count = len(K) // 2
     # what follows at once softens the tangents: h = K (z − F h) + C ż
     give = np.eye(K.shape[1]) + K @ model.flexibility
-    K, C = np.linalg.solve(give, K), np.linalg.solve(give, C)
+    K, C = np.asarray(np.linalg.solve(give, K)), np.asarray(np.linalg.solve(give, C))
     K0, C0 = K.mean(axis=0), C.mean(axis=0)
     propagator = Propagator.of(model, speed, period / count, K0, C0)
     K, C = K - K0, C - C0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -120,8 +119,8 @@ def steady_state(
         speed != 0.0,
         "speed",
         speed,
-        "at rest nothing passes and the base frequency is zero; give the speed of the shaft in rad/s, or take "
-        "bd.equilibrium",
+        "at rest nothing passes and the base frequency is zero; give the speed of the shaft in rad/s, or "
+        "take bd.equilibrium",
     )
     subharmonic = whole("subharmonic", subharmonic, 1)
     positive("tolerance", tolerance)
@@ -212,9 +211,9 @@ def _failed(problem: Problem, balance: Balance, found: Found, result: xarray.Dat
     rpm = balance.speed * 30 / np.pi
     return core.SolverError(
         f"no steady motion was found at {balance.speed:g} rad/s ({rpm:g} rpm): line {found.line} ({names}, "
-        f"{balance.omega[found.line] / (2 * np.pi):.4g} Hz) misses its balance by {found.residual:.2g} of the "
-        f"largest amplitude after {found.iterations} iterations; begin from a neighbour with start=, follow one "
-        f"with speed_map, or ask for more harmonics",
+        f"{balance.omega[found.line] / (2 * np.pi):.4g} Hz) misses its balance by {found.residual:.2g} of "
+        f"the largest amplitude after {found.iterations} iterations; begin from a neighbour with start=, "
+        f"or ask for more harmonics",
         core.Report(status=core.NO_CONVERGENCE, iterations=found.iterations, residual=found.residual),
         result,
     )

@@ -1,8 +1,8 @@
 """The lines of a steady motion, and where it is sampled: a motion of several base frequencies is a torus.
 
-A line is a whole-number combination n of the base frequencies ω; the motion is Σ Re z_n e^{i n·θ} over the base
-angles θ = ω t. What the balls do with it depends on the angles alone. So the torus may be sampled along any
-path that covers it: along θ_j = 2π s_j i/N with whole numbers s line n becomes harmonic n·s mod N of one
+A line is a whole-number combination n of the base frequencies ω; the motion is Σ Re z_n e^{i n·θ} over the
+base angles θ = ω t. What the balls do with it depends on the angles alone. So the torus may be sampled along
+any path that covers it: along θ_j = 2π s_j i/N with whole numbers s line n becomes harmonic n·s mod N of one
 discrete Fourier transform, and no frequency needs to be commensurate with another.
 
 References
@@ -25,8 +25,8 @@ from bearingdyn.checks import require
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
-# samples for each of the harmonics: a damper that a ball closes makes its force jump, of which the samples see the
-# place to second order; with 20 the twentieth line of a machine that loses contact is right within 1e-3
+# samples for each of the harmonics: a damper that a ball closes makes its force jump, and the samples see
+# the place of it to second order; with 20 the twentieth line of a machine that loses contact is right to 1e-3
 PER_HARMONIC = 20
 LEAST_SAMPLES = 128
 # lattices tried for several bases, and the largest share of a box that may lie aliased inside the lines
@@ -332,7 +332,7 @@ def load_lines(system: System, bases: Bases, speed: float) -> Mapping[tuple[int,
 
     for load in system.loads:
         if load.kind == "constant":
-            add((0,) * d, load.p_cos + 0j)
+            add((0,) * d, load.p_cos)
             continue
         # p_cos cos θ + p_sin sin θ = Re (p_cos − i p_sin) e^{iθ}
         ratio, omega = (1.0, 0.0) if load.kind == "rotating" else (0.0, load.omega)
@@ -346,5 +346,5 @@ def load_lines(system: System, bases: Bases, speed: float) -> Mapping[tuple[int,
         n = round(ratio / b.ratio if ratio else omega / b.omega)
         size = speed**2 if load.kind == "rotating" else 1.0
         line = tuple(n if j == base else 0 for j in range(d))
-        add(line, size * (load.p_cos - 1j * load.p_sin))
+        add(line, np.asarray(size * (load.p_cos - 1j * load.p_sin)))
     return found
