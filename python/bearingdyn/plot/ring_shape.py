@@ -61,8 +61,8 @@ def ring_shape(bearing: FlexibleBearing, load: ArrayLike, angle: float = 0.0, ax
         for k, (a, Q) in enumerate(zip(at, loads, strict=True)):
             tip = radius + magnified * np.interp(a % (2.0 * np.pi), psi, motion)
             ends = np.array([tip - reach * Q, tip])
-            label = f"ball loads, to {loads.max():.0f} N" if k == 0 else None
-            ax.plot(ends * np.cos(a), ends * np.sin(a), color=COLOURS[1], linewidth=2.5, label=label)
+            own = f"ball loads, to {loads.max():.0f} N" if k == 0 else None
+            ax.plot(ends * np.cos(a), ends * np.sin(a), color=COLOURS[1], linewidth=2.5, label=own)
             ax.plot(tip * np.cos(a), tip * np.sin(a), "o", color=COLOURS[1] if Q > 0 else GREY, ms=4)
         ax.set_aspect("equal")
         ax.set_xlabel("x, mm")
