@@ -119,7 +119,7 @@ class Triplet(RowSet):
     >>> row = bd.BallBearing(Z=14, Dw=9e-3, Dpw=50e-3, fi=0.52, fo=0.53, contact_angle=math.radians(15))
     >>> held = Triplet(row, "DBD", distance=0.015, preload_force=300.0)
     >>> [round(loads.mean()) for loads in held.ball_loads([0.0] * 6)]  # the third row holds the other two
-    [37, 37, 73]
+    [38, 38, 74]
     """
 
     row: BallBearing

@@ -47,7 +47,13 @@ class Row(NamedTuple):
 
 
 def at_distance(place: float) -> Array:
-    """(6, 6) from the motion of a point on the axis to that of the point `place` further along z, m."""
+    """Matrix (6, 6) from the motion of one point on the axis to that of another.
+
+    Parameters
+    ----------
+    place
+        How far along z the other point lies, m.
+    """
     T = np.eye(6)
     # a small rotation moves the point (0, 0, place) by θ × (0, 0, place)
     T[0, 4], T[1, 3] = place, -place
