@@ -1,0 +1,348 @@
+/* The exact step made ready: the caller's arrays laid out in lanes, once for a march. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dense.h"
+#include "exact.h"
+#include "kernels.h"
+#include "loads.h"
+
+void bd_exact_free(bd_exact *exact)
+{
+    if (!exact)
+        return;
+    free(exact->memory);
+    free(exact->groups);
+    free(exact->touched);
+    free(exact);
+}
+
+/* The groups' sections; false where they do not fit the arrays given. */
+static bool take_groups(const bd_exact_data *data, bd_exact *exact, int n_bearings)
+{
+    size_t at = 0, rows = 0;
+    for (int k = 0; k < exact->n_groups; k++) {
+        int size[3];
+        for (int i = 0; i < 3; i++) {
+            const double given = data->table[3 * k + i];
+            if (!(given >= 0.0 && given < 1e6) || fmod(given, BD_LANES) != 0.0)
+                return false;
+            size[i] = (int)given;
+        }
+        exact->groups[k] = (bd_exact_group){
+            .first = at,
+            .real = size[0],
+            .pairs = size[1],
+            .loose = size[2],
+            .rows = rows,
+            .touched = exact->touched + (size_t)k * (size_t)n_bearings,
+        };
+        at += (size_t)(size[0] + 2 * size[1] + size[2]);
+        rows += (size_t)(size[0] + 2 * size[1]) * (size_t)size[2];
+    }
+    return at == (size_t)data->n && rows == (size_t)data->n_loose;
+}
+
+/* A caller's row (n) on coordinates to padded ones. */
+static void place_row(const bd_model *model, const double *from, double *to)
+{
+    for (int i = 0; i < model->n; i++)
+        to[model->slot[i]] = from[i];
+}
+
+/* Where the caller's stress r of branch i of layer l lies. */
+static void place_stresses(const bd_model *model, const double *from, size_t n_stress, double *to,
+                           const size_t *starts)
+{
+    (void)n_stress;
+    for (int l = 0; l < model->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        for (int i = 0; i < layer->n_branches; i++)
+            for (int r = 0; r < layer->rank; r++)
+                to[layer->stress + (size_t)i * (size_t)layer->padded + (size_t)r] =
+                    from[starts[layer->source] + (size_t)i * (size_t)layer->rank + (size_t)r];
+    }
+}
+
+/* The caller's index of a coefficient to its padded place among those of z and z_rate, z's. */
+static size_t place_of_z(const bd_model *model, int coef)
+{
+    int b = model->n_bearings - 1;
+    while (b > 0 && model->coef_slot[coef] < model->bearing_slot[b])
+        b--;
+    return (size_t)(2 * model->bearing_slot[b] + model->coef_slot[coef] - model->bearing_slot[b]);
+}
+
+static int bearing_of(const bd_model *model, int coef)
+{
+    int b = model->n_bearings - 1;
+    while (b > 0 && model->coef_slot[coef] < model->bearing_slot[b])
+        b--;
+    return b;
+}
+
+/* Bearings, by the caller's coefficients. */
+static void place_bearings(const bd_model *model, const bd_exact_data *data, bd_exact *exact)
+{
+    const size_t n = exact->n, m = (size_t)model->n_coefs, coefs = (size_t)model->coefs;
+    for (size_t k = 0; k < m; k++) {
+        const int b = bearing_of(model, (int)k);
+        const size_t slot = (size_t)model->coef_slot[k], z = place_of_z(model, (int)k);
+        const size_t rate = z + (size_t)model->bearings[b].coefs;
+        memcpy(exact->P + slot * n, data->P + k * n, n * sizeof *exact->P);
+        for (size_t j = 0; j < n; j++) {
+            exact->Z[j * 2 * coefs + z] = data->Z[j * 2 * m + k];
+            exact->Z[j * 2 * coefs + rate] = data->Z[j * 2 * m + m + k];
+        }
+        for (int g = 0; g < exact->n_groups; g++) {
+            const bd_exact_group *group = &exact->groups[g];
+            bool *touched = exact->touched + (size_t)g * (size_t)model->n_bearings + b;
+            const size_t width = (size_t)(group->real + 2 * group->pairs + group->loose);
+            for (size_t j = group->first; j < group->first + width; j++)
+                *touched = *touched || data->P[k * n + j] != 0.0 || data->Z[j * 2 * m + k] != 0.0 ||
+                           data->Z[j * 2 * m + m + k] != 0.0;
+        }
+        for (int order = 0; order < 2; order++)
+            for (int i = 0; i < 2; i++)
+                for (size_t l = 0; l < m; l++)
+                    exact->W[order][i][slot * coefs + (size_t)model->coef_slot[l]] =
+                        data->W[(size_t)(2 * order + i) * m * m + k * m + l];
+        for (size_t i = 0; i < (size_t)model->n_padded; i++)
+            exact->push[slot * (size_t)model->n_padded + i] = -model->B[i * coefs + slot];
+    }
+}
+
+/* What channels of motion read. */
+static void place_channels(const bd_model *model, bd_exact *exact)
+{
+    const size_t n = exact->n, padded = (size_t)model->n_padded;
+    for (int c = 0; c < model->n_channels; c++) {
+        const bd_channel *channel = &model->channels[c];
+        const double *shapes = channel->kind == BD_CHANNEL_DISPLACEMENT ? exact->X
+                               : channel->kind == BD_CHANNEL_VELOCITY   ? exact->V
+                                                                        : exact->A;
+        if (channel->kind == BD_CHANNEL_BRANCH_LOSS)
+            exact->physical = true;
+        if (channel->kind > BD_CHANNEL_ACCELERATION)
+            continue;
+        double *row = exact->rows + (size_t)c * n;
+        for (size_t j = 0; j < n; j++)
+            for (size_t i = 0; i < padded; i++)
+                row[j] += channel->row[i] * shapes[j * padded + i];
+        if (channel->kind != BD_CHANNEL_ACCELERATION)
+            continue;
+        for (size_t k = 0; k < (size_t)model->coefs; k++)
+            for (size_t i = 0; i < padded; i++)
+                exact->rows_g[(size_t)c * (size_t)model->coefs + k] +=
+                    channel->row[i] * exact->push[k * padded + i];
+        for (int l = 0; l < model->n_loads; l++)
+            for (size_t i = 0; i < padded; i++) {
+                double *of =
+                    exact->rows_load + 2 * ((size_t)c * (size_t)model->n_loads + (size_t)l);
+                of[0] += channel->row[i] * model->loads[l].p_cos[i];
+                of[1] += channel->row[i] * model->loads[l].p_sin[i];
+            }
+    }
+}
+
+size_t bd_exact_size(const bd_model *model, const bd_exact_data *data)
+{
+    return bd_state_size(model) + (size_t)data->n;
+}
+
+bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
+                           const bd_exact_data *data, bd_work *work)
+{
+    bd_status status = bd_work_choose(work, scheme);
+    if (status != BD_OK)
+        return status;
+    if (model->n_softening > 0 || scheme->speed.n != 1)
+        return BD_BAD_VALUE;
+    bd_exact *exact = calloc(1, sizeof *exact);
+    if (!exact)
+        return BD_NO_MEMORY;
+    bd_exact_free(work->exact);
+    work->exact = exact;
+    work->reference = scheme->speed.value[0];
+    work->in_x = work->in_v = 1.0; /* Newton's operators hold them */
+    const size_t n = (size_t)data->n, padded = (size_t)model->n_padded, m = (size_t)model->coefs;
+    const size_t channels = (size_t)model->n_channels, loads = (size_t)model->n_loads;
+    exact->n = n;
+    exact->n_groups = data->n_groups;
+    exact->groups = calloc((size_t)data->n_groups + 1, sizeof *exact->groups);
+    exact->touched =
+        calloc((size_t)data->n_groups * (size_t)model->n_bearings + 1, sizeof *exact->touched);
+    struct {
+        double **place;
+        size_t count;
+    } pieces[] = {
+        {&exact->weights[0], n},
+        {&exact->weights[1], n},
+        {&exact->weights[2], n},
+        {&exact->weights[3], n},
+        {&exact->weights[4], n},
+        {&exact->weights[5], n},
+        {&exact->loose[0], (size_t)data->n_loose},
+        {&exact->loose[1], (size_t)data->n_loose},
+        {&exact->loose[2], (size_t)data->n_loose},
+        {&exact->loose[3], (size_t)data->n_loose},
+        {&exact->loose[4], (size_t)data->n_loose},
+        {&exact->loose[5], (size_t)data->n_loose},
+        {&exact->P, m * n},
+        {&exact->Z, 2 * m * n},
+        {&exact->load, 2 * loads * n},
+        {&exact->X, n * padded},
+        {&exact->V, n * padded},
+        {&exact->A, n * padded},
+        {&exact->push, m * padded},
+        {&exact->S, n * model->n_stress},
+        {&exact->W[0][0], m * m},
+        {&exact->W[0][1], m * m},
+        {&exact->W[1][0], m * m},
+        {&exact->W[1][1], m * m},
+        {&exact->rows, channels * n},
+        {&exact->rows_g, channels * m},
+        {&exact->rows_load, 2 * channels * loads},
+        {&exact->trial, n},
+        {&exact->new, n},
+        {&exact->now, n},
+        {&exact->before, n},
+        {&exact->zz, 2 * m},
+        {&exact->factor, 2 * loads},
+    };
+    const size_t n_pieces = sizeof pieces / sizeof pieces[0];
+    size_t total = BD_LANES;
+    for (size_t i = 0; i < n_pieces; i++)
+        total += BD_PADDED(pieces[i].count);
+    const size_t bytes = total * sizeof(double);
+    exact->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    size_t *starts = calloc((size_t)model->n_layers + 1, sizeof *starts);
+    if (!exact->memory || !exact->groups || !exact->touched || !starts) {
+        free(starts);
+        return BD_NO_MEMORY;
+    }
+    memset(exact->memory, 0, bytes);
+    double *next = exact->memory;
+    for (size_t i = 0; i < n_pieces; i++) {
+        *pieces[i].place = next;
+        next += BD_PADDED(pieces[i].count);
+    }
+
+    size_t stresses = 0;
+    for (int source = 0; source < model->n_layers; source++) {
+        starts[source] = stresses;
+        for (int l = 0; l < model->n_layers; l++)
+            if (model->layers[l].source == source)
+                stresses += (size_t)model->layers[l].rank * (size_t)model->layers[l].n_branches;
+    }
+    if (!take_groups(data, exact, model->n_bearings) || stresses != (size_t)data->n_stresses) {
+        free(starts);
+        return BD_BAD_SHAPE;
+    }
+    for (int w = 0; w < BD_WEIGHTS; w++) {
+        memcpy(exact->weights[w], data->weights + (size_t)w * n, n * sizeof(double));
+        memcpy(exact->loose[w], data->loose + (size_t)w * (size_t)data->n_loose,
+               (size_t)data->n_loose * sizeof(double));
+    }
+    memcpy(exact->load, data->load, 2 * loads * n * sizeof(double));
+    for (size_t j = 0; j < n; j++) {
+        place_row(model, data->X + j * (size_t)model->n, exact->X + j * padded);
+        place_row(model, data->V + j * (size_t)model->n, exact->V + j * padded);
+        place_row(model, data->A + j * (size_t)model->n, exact->A + j * padded);
+        place_stresses(model, data->S + j * stresses, stresses, exact->S + j * model->n_stress,
+                       starts);
+    }
+    free(starts);
+    place_bearings(model, data, exact);
+    place_channels(model, exact);
+    return BD_OK;
+}
+
+void bd_exact_recall(const bd_model *model, bd_work *work, const bd_state *state)
+{
+    work->kernels->exact_shares(model, work->exact, state->g, work->exact->now);
+    work->kernels->exact_shares(model, work->exact, state->g_before, work->exact->before);
+}
+
+void bd_exact_choose(const bd_model *model, bd_work *work, const bd_state *state, double from)
+{
+    bd_exact *exact = work->exact;
+    exact->line = state->clock.steps == 0;
+    work->W = exact->W[!exact->line][0];
+    work->W_rate = exact->W[!exact->line][1];
+
+    /* work holds the factors at the end: of a table both ends count, of all else the start */
+    memcpy(exact->factor, work->load_factor, 2 * (size_t)model->n_loads * sizeof(double));
+    const bd_turn turn = work->turn;
+    work->turn = bd_turn_at(&work->profile, from, 0.0, 0.0);
+    bd_load_factors(model, work, from);
+    for (size_t k = 0; k < (size_t)model->n_loads; k++) {
+        const bd_load *load = &model->loads[k];
+        double *now = work->load_factor + 2 * k, *end = exact->factor + 2 * k;
+        if (load->kind == BD_LOAD_SAMPLED) {
+            const double last = end[0];
+            end[0] = now[0];
+            end[1] = last;
+            now[0] = last;
+            continue;
+        }
+        double at_end[2] = {end[0], end[1]};
+        end[0] = now[0];
+        end[1] = now[1];
+        now[0] = at_end[0];
+        now[1] = at_end[1];
+        if (load->kind == BD_LOAD_ROTATING) { /* the columns hold the square of the speed */
+            end[0] = cos(work->turn.angle);
+            end[1] = sin(work->turn.angle);
+        }
+    }
+    work->turn = turn;
+}
+
+double bd_exact_row(const bd_model *model, const bd_work *work, const bd_state *state, int channel)
+{
+    const bd_exact *exact = work->exact;
+    const double *row = exact->rows + (size_t)channel * exact->n;
+    double sums[BD_LANES] = {0.0}, value = 0.0;
+    for (size_t j = 0; j < exact->n; j += BD_LANES)
+        for (size_t i = 0; i < BD_LANES; i++)
+            sums[i] += row[j + i] * state->q[j + i];
+    for (size_t i = 0; i < BD_LANES; i++)
+        value += sums[i];
+    if (model->channels[channel].kind == BD_CHANNEL_ACCELERATION) {
+        for (size_t k = 0; k < (size_t)model->coefs; k++)
+            value += exact->rows_g[(size_t)channel * (size_t)model->coefs + k] * state->g[k];
+        for (size_t k = 0; k < 2 * (size_t)model->n_loads; k++)
+            value += exact->rows_load[2 * (size_t)channel * (size_t)model->n_loads + k] *
+                     work->load_factor[k];
+    }
+    return value;
+}
+
+void bd_exact_motion(const bd_model *model, const bd_work *work, bd_state *state)
+{
+    const bd_exact *exact = work->exact;
+    const int n = (int)exact->n, padded = model->n_padded;
+    const size_t all = (size_t)padded * sizeof(double);
+    memset(state->x, 0, all);
+    memset(state->v, 0, all);
+    memset(state->a, 0, all);
+    memset(state->stress, 0, model->n_stress * sizeof(double));
+    columns_add(padded, n, exact->X, padded, state->q, state->x);
+    columns_add(padded, n, exact->V, padded, state->q, state->v);
+    columns_add(padded, n, exact->A, padded, state->q, state->a);
+    columns_add(padded, model->coefs, exact->push, padded, state->g, state->a);
+    for (int k = 0; k < model->n_loads; k++)
+        for (int i = 0; i < padded; i++)
+            state->a[i] += work->load_factor[2 * k] * model->loads[k].p_cos[i] +
+                           work->load_factor[2 * k + 1] * model->loads[k].p_sin[i];
+    columns_add((int)model->n_stress, n, exact->S, (int)model->n_stress, state->q, state->stress);
+    memset(state->y_rate, 0, (size_t)model->ranks * sizeof *state->y_rate);
+    for (int l = 0; l < model->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        const bd_block *block = &model->blocks[layer->block];
+        columns_add(layer->padded, block->n, layer->L, layer->padded, state->v + block->offset,
+                    state->y_rate + layer->offset);
+    }
+}
