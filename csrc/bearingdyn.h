@@ -477,6 +477,9 @@ size_t bd_exact_size(const bd_model *model, const bd_exact_data *data);
 bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
                            const bd_exact_data *data, bd_work *work);
 
+/* After the last bd_march of exact steps: x, v, a and the stresses of the state from its modes. */
+void bd_exact_end(const bd_model *model, const bd_work *work, double *flat);
+
 /* Largest load of one ball of a bearing, N, at the end of any step marched with this work. */
 double bd_peak_load(const bd_model *model, const bd_work *work, int bearing);
 

@@ -5,7 +5,7 @@
 #include "dense.h"
 #include "kernels.h"
 
-/* to = keep q + [before u_before] + now u_now of one group's modes */
+/* to += weight u of one group's modes */
 BD_INLINE void add_weighted(const bd_exact_group *group, const double *weight, const double *u,
                             double *to)
 {
@@ -18,6 +18,36 @@ BD_INLINE void add_weighted(const bd_exact_group *group, const double *weight, c
         const lanes u_re = LANES(u + i), u_im = LANES(u + i + pairs);
         LANES_AT(to + i) += re * u_re - im * u_im;
         LANES_AT(to + i + pairs) += re * u_im + im * u_re;
+    }
+}
+
+/* (re, im) += weight u of pairs at i */
+#define ADD_PAIR(weight, u)                                                                        \
+    do {                                                                                           \
+        const lanes w_re = LANES((weight) + i), w_im = LANES((weight) + i + pairs);                \
+        const lanes u_re = LANES((u) + i), u_im = LANES((u) + i + pairs);                          \
+        re += w_re * u_re - w_im * u_im;                                                           \
+        im += w_re * u_im + w_im * u_re;                                                           \
+    } while (0)
+
+/* to = constant + keep q + now u_now + before u_before of one group's modes: all in one pass */
+BD_INLINE void move_modes(const bd_exact_group *group, const double *constant, const double *keep,
+                          const double *now, const double *before, const double *q,
+                          const double *u_now, const double *u_before, double *to)
+{
+    const int pairs = group->pairs;
+    int i = 0;
+    for (; i < group->real; i += BD_WIDTH)
+        LANES_AT(to + i) = LANES(constant + i) + LANES(keep + i) * LANES(q + i) +
+                           LANES(now + i) * LANES(u_now + i) +
+                           LANES(before + i) * LANES(u_before + i);
+    for (; i < group->real + pairs; i += BD_WIDTH) {
+        lanes re = LANES(constant + i), im = LANES(constant + i + pairs);
+        ADD_PAIR(keep, q);
+        ADD_PAIR(now, u_now);
+        ADD_PAIR(before, u_before);
+        LANES_AT(to + i) = re;
+        LANES_AT(to + i + pairs) = im;
     }
 }
 
@@ -44,41 +74,38 @@ void BD_NAMED(bd_exact_shares)(const bd_model *model, const bd_exact *exact, con
 void BD_NAMED(bd_exact_predict)(const bd_model *model, bd_work *work, const bd_state *state)
 {
     bd_exact *exact = work->exact;
-    const size_t n = exact->n;
-    const int now = exact->line ? BD_LINE_NOW : BD_NOW, stride = 2 * model->coefs;
+    const int now = exact->line ? BD_LINE_NOW : BD_NOW, m = model->coefs;
+    const double *before = exact->line ? exact->nothing : exact->weights[BD_BEFORE];
 
-    for (size_t i = 0; i < n; i += BD_WIDTH)
-        LANES_AT(exact->trial + i) = (lanes){0};
-    columns_add((int)n, 2 * model->n_loads, exact->load, (int)n, exact->factor, exact->trial);
-    for (int i = 0; i < stride; i += BD_WIDTH)
+    for (int i = 0; i < 2 * m; i += BD_WIDTH)
         LANES_AT(exact->zz + i) = (lanes){0};
     for (int k = 0; k < exact->n_groups; k++) {
         const bd_exact_group *group = &exact->groups[k];
         const size_t first = group->first;
         const int modes = group->real + 2 * group->pairs;
-        double *trial = exact->trial + first;
+        double *trial = exact->trial + first, *loose = trial + modes;
         const double *q = state->q + first;
-        add_weighted(group, exact->weights[BD_KEEP] + first, q, trial);
-        add_weighted(group, exact->weights[now] + first, exact->now + first, trial);
-        if (!exact->line)
-            add_weighted(group, exact->weights[BD_BEFORE] + first, exact->before + first, trial);
+        move_modes(group, exact->constant + first, exact->weights[BD_KEEP] + first,
+                   exact->weights[now] + first, before + first, q, exact->now + first,
+                   exact->before + first, trial);
+        for (int i = 0; i < group->loose; i += BD_WIDTH)
+            LANES_AT(loose + i) = LANES(exact->constant + first + modes + i) + LANES(q + modes + i);
         if (group->loose > 0) {
-            double *loose = trial + modes;
-            for (int i = 0; i < group->loose; i += BD_WIDTH)
-                LANES_AT(loose + i) += LANES(q + modes + i);
-            columns_add(group->loose, modes, exact->loose[BD_KEEP] + group->rows, group->loose, q,
+            columns_add(group->loose, modes, exact->loose + group->rows, group->loose, q, loose);
+            columns_add(group->loose, m, exact->held[now] + group->held, group->loose, state->g,
                         loose);
-            columns_add(group->loose, modes, exact->loose[now] + group->rows, group->loose,
-                        exact->now + first, loose);
             if (!exact->line)
-                columns_add(group->loose, modes, exact->loose[BD_BEFORE] + group->rows,
-                            group->loose, exact->before + first, loose);
+                columns_add(group->loose, m, exact->held[BD_BEFORE] + group->held, group->loose,
+                            state->g_before, loose);
         }
+        if (exact->n_varying > 0)
+            columns_add(modes + group->loose, 2 * exact->n_varying, exact->load + first,
+                        (int)exact->n, exact->factor, trial);
         for (int b = 0; b < model->n_bearings; b++) {
-            const size_t at = 2 * (size_t)model->bearing_slot[b];
+            const int rows = 2 * model->bearings[b].coefs;
             if (group->touched[b])
-                columns_add(2 * model->bearings[b].coefs, modes + group->loose,
-                            exact->Z + first * (size_t)stride + at, stride, trial, exact->zz + at);
+                columns_add(rows, modes + group->loose, exact->Z + group->seen[b], rows, trial,
+                            exact->zz + 2 * model->bearing_slot[b]);
         }
     }
     for (int b = 0; b < model->n_bearings; b++) {
@@ -102,8 +129,9 @@ int BD_NAMED(bd_exact_commit)(const bd_model *model, bd_work *work, bd_state *st
         const int modes = group->real + 2 * group->pairs;
         add_weighted(group, exact->weights[new] + group->first, exact->new + group->first,
                      exact->trial + group->first);
-        columns_add(group->loose, modes, exact->loose[new] + group->rows, group->loose,
-                    exact->new + group->first, exact->trial + group->first + modes);
+        if (group->loose > 0)
+            columns_add(group->loose, model->coefs, exact->held[new] + group->held, group->loose,
+                        work->guess, exact->trial + group->first + modes);
     }
     /* 0 times a number that is not finite is NaN, and so is every sum with it */
     lanes poison = {0};

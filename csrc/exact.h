@@ -17,8 +17,10 @@ enum { BD_KEEP, BD_BEFORE, BD_NOW, BD_NEW, BD_LINE_NOW, BD_LINE_NEW, BD_WEIGHTS 
 typedef struct bd_exact_group {
     size_t first;           /* in q */
     int real, pairs, loose; /* padded */
-    size_t rows;            /* of its loose rows in each of `loose` */
+    size_t rows;            /* where its part of `loose` begins */
+    size_t held;            /* of each of `held` */
     const bool *touched;    /* (n_bearings) */
+    const size_t *seen;     /* (n_bearings) of Z */
 } bd_exact_group;
 
 struct bd_exact {
@@ -26,12 +28,18 @@ struct bd_exact {
     size_t n; /* numbers of q */
     bd_exact_group *groups;
     bool *touched;
+    size_t *seen;
+    int n_varying; /* loads that are not constant */
+    int *varying;
     double *memory;              /* everything below lies in it */
     double *weights[BD_WEIGHTS]; /* (n) */
-    double *loose[BD_WEIGHTS]; /* per group a column of `loose` rows for each number of its modes */
+    double *nothing;             /* (n) zeros */
+    double *loose;               /* per group a column of loose rows for each number of its modes */
+    double *held[BD_WEIGHTS];    /* per group a column of loose rows for each bearing force */
     double *P; /* a column (n) per padded coefficient: modes' shares of its force, with its sign */
-    double *Z; /* a column (2 coefs) per number: per bearing its z, then its z_rate */
-    double *load;      /* two columns (n) per load */
+    double *Z; /* per group and bearing a column of its z, then its z_rate, per number */
+    double *constant;  /* (n) of all constant loads */
+    double *load;      /* two columns (n) per load that varies */
     double *X, *V, *A; /* a column (n_padded) per number: x, v and a free of forces */
     double *push;    /* a column (n_padded) per coefficient: a from its force; M is the identity */
     double *S;       /* a column (n_stress) per number */

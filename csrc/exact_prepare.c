@@ -15,13 +15,16 @@ void bd_exact_free(bd_exact *exact)
     free(exact->memory);
     free(exact->groups);
     free(exact->touched);
+    free(exact->seen);
+    free(exact->varying);
     free(exact);
 }
 
 /* The groups' sections; false where they do not fit the arrays given. */
-static bool take_groups(const bd_exact_data *data, bd_exact *exact, int n_bearings)
+static bool take_groups(const bd_model *model, const bd_exact_data *data, bd_exact *exact)
 {
-    size_t at = 0, rows = 0;
+    const size_t n_bearings = (size_t)model->n_bearings;
+    size_t at = 0, rows = 0, held = 0, seen = 0;
     for (int k = 0; k < exact->n_groups; k++) {
         int size[3];
         for (int i = 0; i < 3; i++) {
@@ -36,8 +39,16 @@ static bool take_groups(const bd_exact_data *data, bd_exact *exact, int n_bearin
             .pairs = size[1],
             .loose = size[2],
             .rows = rows,
-            .touched = exact->touched + (size_t)k * (size_t)n_bearings,
+            .held = held,
+            .touched = exact->touched + (size_t)k * n_bearings,
+            .seen = exact->seen + (size_t)k * n_bearings,
         };
+        for (size_t b = 0; b < n_bearings; b++) {
+            exact->seen[(size_t)k * n_bearings + b] = seen;
+            seen +=
+                (size_t)(size[0] + 2 * size[1] + size[2]) * 2 * (size_t)model->bearings[b].coefs;
+        }
+        held += (size_t)size[2] * (size_t)model->coefs;
         at += (size_t)(size[0] + 2 * size[1] + size[2]);
         rows += (size_t)(size[0] + 2 * size[1]) * (size_t)size[2];
     }
@@ -65,15 +76,6 @@ static void place_stresses(const bd_model *model, const double *from, size_t n_s
     }
 }
 
-/* The caller's index of a coefficient to its padded place among those of z and z_rate, z's. */
-static size_t place_of_z(const bd_model *model, int coef)
-{
-    int b = model->n_bearings - 1;
-    while (b > 0 && model->coef_slot[coef] < model->bearing_slot[b])
-        b--;
-    return (size_t)(2 * model->bearing_slot[b] + model->coef_slot[coef] - model->bearing_slot[b]);
-}
-
 static int bearing_of(const bd_model *model, int coef)
 {
     int b = model->n_bearings - 1;
@@ -88,20 +90,29 @@ static void place_bearings(const bd_model *model, const bd_exact_data *data, bd_
     const size_t n = exact->n, m = (size_t)model->n_coefs, coefs = (size_t)model->coefs;
     for (size_t k = 0; k < m; k++) {
         const int b = bearing_of(model, (int)k);
-        const size_t slot = (size_t)model->coef_slot[k], z = place_of_z(model, (int)k);
-        const size_t rate = z + (size_t)model->bearings[b].coefs;
+        const size_t slot = (size_t)model->coef_slot[k], own = (size_t)model->bearings[b].coefs;
+        const size_t place = slot - (size_t)model->bearing_slot[b];
         memcpy(exact->P + slot * n, data->P + k * n, n * sizeof *exact->P);
-        for (size_t j = 0; j < n; j++) {
-            exact->Z[j * 2 * coefs + z] = data->Z[j * 2 * m + k];
-            exact->Z[j * 2 * coefs + rate] = data->Z[j * 2 * m + m + k];
-        }
         for (int g = 0; g < exact->n_groups; g++) {
             const bd_exact_group *group = &exact->groups[g];
             bool *touched = exact->touched + (size_t)g * (size_t)model->n_bearings + b;
-            const size_t width = (size_t)(group->real + 2 * group->pairs + group->loose);
-            for (size_t j = group->first; j < group->first + width; j++)
-                *touched = *touched || data->P[k * n + j] != 0.0 || data->Z[j * 2 * m + k] != 0.0 ||
-                           data->Z[j * 2 * m + m + k] != 0.0;
+            const size_t modes = (size_t)(group->real + 2 * group->pairs);
+            const size_t loose = (size_t)group->loose;
+            double *Z = exact->Z + group->seen[b];
+            for (size_t i = 0; i < modes + loose; i++) {
+                const size_t j = group->first + i;
+                const double z = data->Z[j * 2 * m + k], rate = data->Z[j * 2 * m + m + k];
+                Z[i * 2 * own + place] = z;
+                Z[i * 2 * own + own + place] = rate;
+                *touched = *touched || data->P[k * n + j] != 0.0 || z != 0.0 || rate != 0.0;
+            }
+            for (int w = 0; w < BD_WEIGHTS; w++)
+                for (size_t i = 0; i < modes; i++)
+                    for (size_t r = 0; r < loose; r++)
+                        exact->held[w][group->held + slot * loose + r] +=
+                            data->P[k * n + group->first + i] *
+                            data->loose[(size_t)w * (size_t)data->n_loose + group->rows +
+                                        i * loose + r];
         }
         for (int order = 0; order < 2; order++)
             for (int i = 0; i < 2; i++)
@@ -171,8 +182,13 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
     exact->n = n;
     exact->n_groups = data->n_groups;
     exact->groups = calloc((size_t)data->n_groups + 1, sizeof *exact->groups);
-    exact->touched =
-        calloc((size_t)data->n_groups * (size_t)model->n_bearings + 1, sizeof *exact->touched);
+    const size_t pairs = (size_t)data->n_groups * (size_t)model->n_bearings + 1;
+    exact->touched = calloc(pairs, sizeof *exact->touched);
+    exact->seen = calloc(pairs, sizeof *exact->seen);
+    exact->varying = calloc(loads + 1, sizeof *exact->varying);
+    size_t all_loose = 0;
+    for (int k = 0; k < data->n_groups; k++)
+        all_loose += (size_t)fmax(0.0, fmin(data->table[3 * k + 2], 1e6));
     struct {
         double **place;
         size_t count;
@@ -183,12 +199,15 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
         {&exact->weights[3], n},
         {&exact->weights[4], n},
         {&exact->weights[5], n},
-        {&exact->loose[0], (size_t)data->n_loose},
-        {&exact->loose[1], (size_t)data->n_loose},
-        {&exact->loose[2], (size_t)data->n_loose},
-        {&exact->loose[3], (size_t)data->n_loose},
-        {&exact->loose[4], (size_t)data->n_loose},
-        {&exact->loose[5], (size_t)data->n_loose},
+        {&exact->nothing, n},
+        {&exact->constant, n},
+        {&exact->loose, (size_t)data->n_loose},
+        {&exact->held[0], all_loose * m},
+        {&exact->held[1], all_loose * m},
+        {&exact->held[2], all_loose * m},
+        {&exact->held[3], all_loose * m},
+        {&exact->held[4], all_loose * m},
+        {&exact->held[5], all_loose * m},
         {&exact->P, m * n},
         {&exact->Z, 2 * m * n},
         {&exact->load, 2 * loads * n},
@@ -218,7 +237,8 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
     const size_t bytes = total * sizeof(double);
     exact->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
     size_t *starts = calloc((size_t)model->n_layers + 1, sizeof *starts);
-    if (!exact->memory || !exact->groups || !exact->touched || !starts) {
+    if (!exact->memory || !exact->groups || !exact->touched || !exact->seen || !exact->varying ||
+        !starts) {
         free(starts);
         return BD_NO_MEMORY;
     }
@@ -236,16 +256,23 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
             if (model->layers[l].source == source)
                 stresses += (size_t)model->layers[l].rank * (size_t)model->layers[l].n_branches;
     }
-    if (!take_groups(data, exact, model->n_bearings) || stresses != (size_t)data->n_stresses) {
+    if (!take_groups(model, data, exact) || stresses != (size_t)data->n_stresses) {
         free(starts);
         return BD_BAD_SHAPE;
     }
-    for (int w = 0; w < BD_WEIGHTS; w++) {
+    for (int w = 0; w < BD_WEIGHTS; w++)
         memcpy(exact->weights[w], data->weights + (size_t)w * n, n * sizeof(double));
-        memcpy(exact->loose[w], data->loose + (size_t)w * (size_t)data->n_loose,
-               (size_t)data->n_loose * sizeof(double));
+    memcpy(exact->loose, data->loose, (size_t)data->n_loose * sizeof(double));
+    for (int k = 0; k < model->n_loads; k++) {
+        const double *from = data->load + 2 * (size_t)k * n;
+        if (model->loads[k].kind == BD_LOAD_CONSTANT) {
+            for (size_t j = 0; j < n; j++)
+                exact->constant[j] += from[j];
+            continue;
+        }
+        memcpy(exact->load + 2 * (size_t)exact->n_varying * n, from, 2 * n * sizeof(double));
+        exact->varying[exact->n_varying++] = k;
     }
-    memcpy(exact->load, data->load, 2 * loads * n * sizeof(double));
     for (size_t j = 0; j < n; j++) {
         place_row(model, data->X + j * (size_t)model->n, exact->X + j * padded);
         place_row(model, data->V + j * (size_t)model->n, exact->V + j * padded);
@@ -272,32 +299,26 @@ void bd_exact_choose(const bd_model *model, bd_work *work, const bd_state *state
     work->W = exact->W[!exact->line][0];
     work->W_rate = exact->W[!exact->line][1];
 
-    /* work holds the factors at the end: of a table both ends count, of all else the start */
-    memcpy(exact->factor, work->load_factor, 2 * (size_t)model->n_loads * sizeof(double));
-    const bd_turn turn = work->turn;
+    if (exact->n_varying == 0)
+        return;
+    /* factors count at the step's start, and of a table at its end too */
+    const bd_turn end = work->turn;
     work->turn = bd_turn_at(&work->profile, from, 0.0, 0.0);
-    bd_load_factors(model, work, from);
-    for (size_t k = 0; k < (size_t)model->n_loads; k++) {
-        const bd_load *load = &model->loads[k];
-        double *now = work->load_factor + 2 * k, *end = exact->factor + 2 * k;
-        if (load->kind == BD_LOAD_SAMPLED) {
-            const double last = end[0];
-            end[0] = now[0];
-            end[1] = last;
-            now[0] = last;
-            continue;
-        }
-        double at_end[2] = {end[0], end[1]};
-        end[0] = now[0];
-        end[1] = now[1];
-        now[0] = at_end[0];
-        now[1] = at_end[1];
-        if (load->kind == BD_LOAD_ROTATING) { /* the columns hold the square of the speed */
-            end[0] = cos(work->turn.angle);
-            end[1] = sin(work->turn.angle);
+    for (int i = 0; i < exact->n_varying; i++) {
+        const bd_load *load = &model->loads[exact->varying[i]];
+        double *factor = exact->factor + 2 * i;
+        if (load->kind == BD_LOAD_HARMONIC) {
+            factor[0] = cos(load->omega * from);
+            factor[1] = sin(load->omega * from);
+        } else if (load->kind == BD_LOAD_ROTATING) { /* the columns hold the square of the speed */
+            factor[0] = cos(work->turn.angle);
+            factor[1] = sin(work->turn.angle);
+        } else {
+            factor[0] = bd_load_sampled(load, from);
+            factor[1] = work->load_factor[2 * exact->varying[i]];
         }
     }
-    work->turn = turn;
+    work->turn = end;
 }
 
 double bd_exact_row(const bd_model *model, const bd_work *work, const bd_state *state, int channel)
@@ -345,4 +366,11 @@ void bd_exact_motion(const bd_model *model, const bd_work *work, bd_state *state
         columns_add(layer->padded, block->n, layer->L, layer->padded, state->v + block->offset,
                     state->y_rate + layer->offset);
     }
+}
+
+void bd_exact_end(const bd_model *model, const bd_work *work, double *flat)
+{
+    bd_state state = bd_state_view(model, flat);
+    if (work->exact)
+        bd_exact_motion(model, work, &state);
 }

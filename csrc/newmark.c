@@ -219,8 +219,6 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
             rows++;
         }
     }
-    if (work->exact && report->steps > 0)
-        bd_exact_motion(model, work, &state);
     report->t = bd_clock_time(&state.clock, 0);
     bd_clock_keep(&state);
     return rows;

@@ -136,6 +136,8 @@ PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
         if (stop > 0 && total.status == BD_OK)
             total.status = BD_INTERRUPTED;
     }
+    if (total.steps > 0)
+        bd_exact_end(model, work, flat);
     /* a step refuses motion and stresses that are not finite; an audit's energies, and a start without steps, do not */
     if (total.status >= BD_OK && !all_finite(flat, size))
         total.status = BD_NOT_FINITE;
