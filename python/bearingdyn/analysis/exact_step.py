@@ -4,12 +4,12 @@ In modes of the relaxed structure (System.modal), scaled so that energy is a pla
 
     ξ' = w v,   v' = −w ξ − (C + Ω G) v − Ω N ξ/w − Σ L √(2G) σ − Bᵀ g + f,   σ' = √(2G) Lᵀ v − σ/τ
 
-is a skew matrix and what dissipates. Its modes are well conditioned; in them a step is one factor each. What nothing
-holds (w = 0) has no ξ: its displacement is the integral of its velocity, kept beside the modes, so that no double
-root arises.
+is a skew matrix and what dissipates. Its modes are well conditioned; in them a step is one factor each.
+What nothing holds (w = 0) has no ξ: its displacement is the integral of its velocity, kept beside the modes,
+so that no double root arises.
 
-The bearing forces g are the parabola through those at the last two steps' ends and the new one, s = −1, 0, 1, and on
-the first step a line. With φ_(k+1)(z) k! = ∫₀¹ exp(z(1 − s)) sᵏ ds all of it is integrated exactly.
+The bearing forces g are the parabola through those at the last two steps' ends and the new one, s = −1, 0,
+1, and on the first step a line; with φ_(k+1)(z) k! = ∫₀¹ exp(z(1 − s)) sᵏ ds they are integrated exactly.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class _Group:
         return self.modes + self.sizes[2]
 
     def split(self, values: Complex) -> Array:
-        """Values (…, j) of modes as the core keeps them (…, k): the real ones, real parts, imaginary parts."""
+        """Values (…, j) of modes as the core keeps them (…, k): real ones, real parts, imaginary parts."""
         real, pairs, loose = self.sizes
         r = self.reals
         out = np.zeros((*values.shape[:-1], real + 2 * pairs + loose))
@@ -135,7 +135,7 @@ class ExactModes:
         Raises
         ------
         ValueError
-            Where modes of the layers and the structure fall together so closely that they cannot be told apart.
+            Where modes of layers and structure fall together so closely that they cannot be told apart.
         """
         squares = np.diag(system.stiffness(system.marched_moduli()))
         return cls(
@@ -147,7 +147,7 @@ class ExactModes:
         return np.concatenate([np.zeros(0), *(_start(g, self.squares, x) for g in self.groups)])
 
     def step(self, dt: float) -> dict[str, Array]:
-        """What the core needs for steps of size dt, s: arrays by name, as csrc/bearingdyn.h says of bd_exact_data."""
+        """What the core needs for steps of size dt, s: arrays by name, of bd_exact_data."""
         system, n, m = self.system, self.system.n, len(self.system.B)
         widths = [g.width for g in self.groups]
         total = sum(widths)
@@ -192,7 +192,7 @@ def _modes_of(system: System, block: Index, squares: Array, speed: float) -> _Gr
     N = speed * system.N[inside]
     if np.abs(N[:, ~held]).max(initial=0.0) > 1e-9 * np.abs(N).max(initial=0.0):
         raise ValueError(
-            "method is 'exact', and damping that turns drives a motion that nothing holds; take method='newmark'"
+            "method is 'exact', and damping that turns drives a motion that nothing holds; take 'newmark'"
         )
     layers = [t for t in system.layers if np.abs(t.L[block]).max(initial=0.0) > 0]
     strength = [np.sqrt(2 * g) * t.L[block] for t in layers for g in t.material.G]
@@ -216,8 +216,8 @@ def _modes_of(system: System, block: Index, squares: Array, speed: float) -> _Gr
     condition = np.linalg.cond(whole)
     if not condition < WORST:
         raise ValueError(
-            f"method is 'exact', and modes of the linear part fall together (condition {condition:.2g}); change the "
-            f"speed a little, or take method='newmark'"
+            f"method is 'exact', and modes of the linear part fall together (condition {condition:.2g}); "
+            f"change the speed a little, or take method='newmark'"
         )
     inverse = np.linalg.inv(whole)[: shapes.shape[1]]
     return _Group(block, block[~held], roots, shapes, inverse, reals)
@@ -328,7 +328,7 @@ def _loose_rows(group: _Group, squares: Array, dt: float) -> Array:
 
 
 def _place_loads(system: System, group: _Group, squares: Array, out: Array, speed: float, dt: float) -> None:
-    """What loads do to a group's numbers over a step, per factor at its start; of a table, at start and end."""
+    """What loads do to a group's numbers over a step, per factor at its start; of a table at both ends."""
     r = np.flatnonzero(~(squares[group.block] > 0))
     _, v, into = _motions(group, squares)
     twice = np.where(np.arange(len(group.roots)) < group.reals, 1.0, 2.0)

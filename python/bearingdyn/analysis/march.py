@@ -237,8 +237,8 @@ class March:
         method = result.attrs.get("method", "newmark")
         if method != self.method:
             raise ValueError(
-                f"resume was marched with method={method!r}, and method is {self.method!r}; march on with the same, "
-                f"or start anew with `initial`"
+                f"resume was marched with method={method!r}, and method is {self.method!r}; go on with the "
+                f"same, or start anew with `initial`"
             )
         another = "resume is the state of another application"
         remedy = "resume a result of this application, or start anew with `initial`"
@@ -517,11 +517,12 @@ def _check_exact(system: System, drive: float | tuple[Array, Array]) -> None:
     if isinstance(drive, tuple) and np.ptp(drive[1]) > 0:
         raise ValueError(
             f"method is 'exact', and the speed runs from {float(np.min(drive[1])):g} to "
-            f"{float(np.max(drive[1])):g} rad/s; an exact step is that of one constant speed: {remedy} through a run-up"
+            f"{float(np.max(drive[1])):g} rad/s; an exact step is that of one constant speed: "
+            f"{remedy} through a run-up"
         )
     soft = [system.layers[k].part for k in softening_layers(system)]
     if soft:
         raise ValueError(
-            f"method is 'exact', and layer {soft[0]!r} softens with its amplitude (`Maxwell.payne`), so that the step "
-            f"is not linear; {remedy}, or leave its law of softening out"
+            f"method is 'exact', and layer {soft[0]!r} softens with its amplitude (`Maxwell.payne`), so that "
+            f"no step is linear; {remedy}, or leave its law of softening out"
         )

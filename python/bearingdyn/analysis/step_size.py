@@ -51,8 +51,8 @@ def step_error_made(method: str) -> str:
     """How `step_error` was made, in words."""
     share, order = ("4/3", "second") if method == "newmark" else ("8/7", "third")
     return (
-        f"{CHECKED} steps beyond the end, at dt and at dt/2 from the same state: {share} of the rms difference over "
-        f"the rms of the channel about its mean (the scheme is of {order} order)"
+        f"{CHECKED} steps beyond the end, at dt and at dt/2 from one state: {share} of the rms difference "
+        f"over the rms of the channel about its mean (the scheme is of {order} order)"
     )
 
 
@@ -66,8 +66,8 @@ def step_error(
 
     From the state at the end of a march CHECKED steps go on, once with the step and once with half of it. The
     scheme is of second order, so that 4/3 of the difference (rms) is the error of the coarser one
-    (Richardson); it is put over the channel's own rms about its mean. With `modes`, of the step and of its half,
-    steps are exact but for the bearing forces, of third order, and 8/7 of the difference are the error.
+    (Richardson); it is put over the channel's own rms about its mean. With `modes`, of the step and its
+    half, steps are exact but for the bearing forces, of third order, and 8/7 of the difference is the error.
     """
     whole, halved = modes or (None, None)
     plain = replace(stepping, audit=False)

@@ -106,8 +106,8 @@ def transient(
         harmonic loads. A lasting load does not count as amplitude; under strong vibration it sags, as the
         spring that bears a part of it breaks.
     method
-        "newmark", the paper's, or "exact": at a constant speed structure, gyroscopic forces and layers move in
-        modes of their own, without an error of the step; what is left of it is that the bearing forces are held
+        "newmark", the paper's, or "exact": at a constant speed structure, gyroscopic forces and layers move
+        in modes of their own, without an error of the step; what is left is that the bearing forces are held
         as a parabola through three steps' ends. Of the same error it takes some four times fewer steps. A
         constant, harmonic or rotating load is exact, a table is linear from step to step. It does not take a
         speed that varies, nor layers with a law of softening; `scheme`'s β and γ do not count.
