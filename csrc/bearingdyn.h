@@ -190,6 +190,12 @@ typedef struct bd_bearing_data {
     double open_sine; /* sine of the contact angle on the open side from which a ball runs off */
 } bd_bearing_data;
 
+/* Of the bodies of a bearing their angles, rad, or speeds, rad/s: the azimuth of the first ball, the rings, and the spin
+ * of a ball about its own axis. */
+typedef struct bd_bodies {
+    double cage, inner, outer, spin;
+} bd_bodies;
+
 typedef struct bd_bearing bd_bearing;           /* as kept in a model */
 typedef struct bd_bearing_work bd_bearing_work; /* scratch of one bearing */
 
@@ -500,6 +506,37 @@ bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const 
                             double angle, double cage_speed, bd_turn shaft, double *g, double *K,
                             double *C, double *loads);
 
+/* ---------------------------------------------------------------- a given motion (along.c) */
+
+/* One bearing through many samples of a motion that is known, as the balance of harmonics needs it. */
+typedef struct bd_along_data {
+    int n;                    /* samples */
+    const double *z, *z_rate; /* (n x n_coefs) */
+    const bd_bodies
+        *angle; /* (n) of each body by itself: the bodies need not stand as in one march */
+    bd_bodies speed;
+    double
+        window; /* s between samples, over which a force that jumps as a film closes is spread; 0: not */
+} bd_along_data;
+
+/* What comes of it; K and C may both be NULL. */
+typedef struct bd_along {
+    double *g;     /* (n x n_coefs) */
+    double *K, *C; /* (n x n_coefs x n_coefs) dg/dz, dg/dzdot */
+    double *loads; /* (n x n_balls) */
+    /* (n) W: power that contacts turn into heat, that presses the balls in all, and that turning feeds in */
+    double *heat, *pressing, *turning;
+} bd_along;
+
+/* Doubles of scratch that bd_bearing_along needs. */
+size_t bd_bearing_along_size(const bd_bearing_data *data);
+
+/* Given:    a checked bearing; scratch, zeroed
+ * Returned: BD_OK, or BD_NOT_FINITE where a force overflows
+ * Notes:    the kernels of the march, so that both find the same motion */
+bd_status bd_bearing_along(const bd_bearing_data *data, const bd_along_data *motion,
+                           double *scratch, bd_along *found);
+
 /* ---------------------------------------------------------------- one bearing at rest (settle.c) */
 
 /* How a search for the place of rest ended. */
@@ -532,8 +569,11 @@ typedef struct bd_harmonic_data {
     const double *omega;   /* (n_omega) rad/s */
     const double *modulus; /* (n_omega x n_layers) complex G*, re and im interleaved */
     const double *bearing_K, *bearing_C; /* (coefs x coefs) row-major, linearised bearings */
-    const double *force;                 /* (n_in x n) */
-    const double *row;                   /* (n_out x n) */
+    int n_balls;          /* that answer by frequency besides: sum of ball v v^T is added */
+    const double *ball;   /* (n_omega x n_balls) complex, N/m */
+    const double *across; /* (n_balls x coefs) v */
+    const double *force;  /* (n_in x n) */
+    const double *row;    /* (n_out x n) */
     bd_isa isa; /* of the kernels; the best where this machine lacks it. All give the same bits */
 } bd_harmonic_data;
 

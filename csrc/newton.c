@@ -28,9 +28,12 @@ void bd_turn_bearings(const bd_model *model, bd_work *work)
         const bd_bearing *bearing = &model->bearings[b];
         const double psi = bearing->data.angle0 + bearing->data.cage_ratio * work->turn.angle;
         work->kernels->turn(bearing, &work->bearings[b], psi);
-        if (!bd_bearing_perfect(bearing))
-            bd_bearing_imperfect(bearing, &work->bearings[b], psi,
-                                 bearing->data.cage_ratio * work->turn.speed, work->turn);
+        if (!bd_bearing_perfect(bearing)) {
+            const double cage_speed = bearing->data.cage_ratio * work->turn.speed;
+            const bd_bodies stand = bd_bearing_bodies(&bearing->data, psi, work->turn.angle);
+            const bd_bodies turn = bd_bearing_bodies(&bearing->data, cage_speed, work->turn.speed);
+            bd_bearing_imperfect(bearing, &work->bearings[b], &stand, &turn);
+        }
     }
 }
 
