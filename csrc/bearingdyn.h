@@ -300,6 +300,7 @@ int bd_model_channels(const bd_model *model);
 int bd_model_bearings(const bd_model *model);
 int bd_model_coefs(const bd_model *model);
 int bd_model_layers(const bd_model *model);
+int bd_model_loads(const bd_model *model);
 int bd_model_softening(const bd_model *model); /* how many layers soften */
 int bd_model_size(const bd_model *model);
 
@@ -414,6 +415,7 @@ typedef struct bd_state {
     double *g_before;  /* (2 coefs_padded) those of the two steps before it */
     double *inverse;   /* (coefs_padded^2) Newton's frozen inverse */
     bd_energy *energy;
+    double *q; /* behind the rest, of an exact march only: the numbers of its modes */
 } bd_state;
 
 bd_state bd_state_view(const bd_model *model, double *flat);
@@ -453,6 +455,38 @@ double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double
  * Notes:    before bd_prepare; without BD_OK the acceleration is void */
 bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                    bd_work *work, double *flat);
+
+/* The exact step of the linear part at a constant speed (exact.c): each group of coupled coordinates in modes of its
+ * own, all prepared for one step size. Sections are padded to whole lanes: of each group the real modes, the real parts
+ * of pairs, their imaginary parts, and displacements that nothing holds, which are integrals of their velocity. Of a
+ * row's product with a pair twice the real part counts, which the rows hold already. */
+typedef struct bd_exact_data {
+    int n_groups;
+    long long n, n_loose, n_stresses; /* numbers of all groups; of loose rows; stresses, unpadded */
+    const double *table;              /* (n_groups x 3) sizes of the sections: real, pairs, loose */
+    const double
+        *weights; /* (6 x n) of the modes; forces at -1, 0, 1 on a parabola, 0, 1 on a line */
+    const double *loose; /* (6 x n_loose) the same of loose displacements, per mode a row of them */
+    const double *P, *Z; /* (n_coefs x n), (n x 2 n_coefs): bearing forces in, z and z_rate out */
+    const double *
+        load; /* (2 n_loads x n): over a step, per factor at its start; of a table, start and end */
+    const double *X, *V, *A, *S; /* (n x n coordinates) x, v, a without forces; (n x n_stresses) */
+    const double
+        *W; /* (4 x n_coefs^2) minus z and z_rate per force at the end: on a line, on a parabola */
+} bd_exact_data;
+
+typedef struct bd_exact bd_exact;
+
+/* Doubles of a state that is marched so. */
+size_t bd_exact_size(const bd_model *model, const bd_exact_data *data);
+
+/* In place of bd_prepare: bd_march then takes exact steps. The mass matrix must be the identity.
+ * Returned: BD_OK; BD_BAD_SHAPE where arrays do not fit; BD_BAD_VALUE where the speed varies or a layer softens */
+bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
+                           const bd_exact_data *data, bd_work *work);
+
+/* After the last bd_march of exact steps: x, v, a and the stresses of the state from its modes. */
+void bd_exact_end(const bd_model *model, const bd_work *work, double *flat);
 
 /* Largest load of one ball of a bearing, N, at the end of any step marched with this work. */
 double bd_peak_load(const bd_model *model, const bd_work *work, int bearing);

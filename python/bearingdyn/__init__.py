@@ -120,6 +120,7 @@ PUBLIC = {
             "ThermalRunaway",
             "ball_channels",
             "bearing_sheet",
+            "cage_ratios",
             "campbell",
             "contact_statistics",
             "dissipation",
@@ -150,6 +151,7 @@ PUBLIC = {
             "transients",
             "unbalance_response",
             "waterfall",
+            "with_loaded_cages",
         ),
         "core": (
             "Interrupted",

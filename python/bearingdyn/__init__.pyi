@@ -10,6 +10,7 @@ from bearingdyn.analysis import (
     ThermalRunaway,
     ball_channels,
     bearing_sheet,
+    cage_ratios,
     campbell,
     contact_statistics,
     dissipation,
@@ -40,6 +41,7 @@ from bearingdyn.analysis import (
     transients,
     unbalance_response,
     waterfall,
+    with_loaded_cages,
 )
 from bearingdyn.application import (
     Application,
@@ -212,6 +214,7 @@ __all__ = [
     "bearing_sheet",
     "block_with_bore",
     "box_mesh",
+    "cage_ratios",
     "campbell",
     "contact_statistics",
     "damping_sample",
@@ -259,4 +262,5 @@ __all__ = [
     "transients",
     "unbalance_response",
     "waterfall",
+    "with_loaded_cages",
 ]

@@ -47,6 +47,7 @@ class Model:
         scheme: dict[str, object],
         start: bool,
         progress: Callable[[int, int], object] | None,
+        modes: dict[str, _Array] | None = None,
     ) -> tuple[_Array, _Array, dict[str, Any]]: ...
     def harmonic(
         self,

@@ -371,6 +371,7 @@ def march(
     *,
     start: bool = False,
     progress: Progress | None = None,
+    modes: dict[str, Array] | None = None,
 ) -> tuple[Array, Array, Report]:
     """March a state in the core, and say how far it came, whatever the status.
 
@@ -386,6 +387,8 @@ def march(
         Whether the acceleration is first made to satisfy the equation of motion.
     progress
         Told of the steps done and of all there are, every 0.05 s.
+    modes
+        For exact steps, the linear part's own (`analysis.exact_step`); None for Newmark's.
 
     Returns
     -------
@@ -393,7 +396,13 @@ def march(
         The record (rows, channels), the new state, and the report.
     """
     record, new_state, report = model.march(
-        state=state, steps=steps, decimate=decimate, scheme=stepping.packed(), start=start, progress=progress
+        state=state,
+        steps=steps,
+        decimate=decimate,
+        scheme=stepping.packed(),
+        start=start,
+        progress=progress,
+        modes=modes,
     )
     return record, new_state, Report(**report)
 
