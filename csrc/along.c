@@ -4,6 +4,7 @@
 
 #include "bearing.h"
 #include "damping_table.h"
+#include "elastic_force.h"
 #include "energy.h"
 #include "kernels.h"
 
@@ -55,11 +56,12 @@ static void soften_jumps(const bd_bearing_data *data, double window, bd_bearing_
             continue;
         double slope;
         const double x = s / (rate * window), step = sampled_step(x, &slope);
-        const double closed = fmax(s, 0.0), root = sqrt(closed);
-        const double force = data->contact.kappa * closed * root + c * rate * step;
+        const double root = bd_elastic_root(&data->contact, s);
+        const double firm = 1.5 * data->contact.kappa * root;
+        const double force = data->contact.kappa * root * root * root + c * rate * step;
         const double more = force - work->force[j];
         work->force[j] = force;
-        work->stiffness[j] = 1.5 * data->contact.kappa * root + c * slope / window;
+        work->stiffness[j] = firm / (1.0 + data->contact.give * firm) + c * slope / window;
         work->damping[j] = c * (step - x * slope);
         for (int k = 0; k < data->n_coefs; k++)
             g[k] += more * work->phi_ball[j * coefs + (size_t)k] *

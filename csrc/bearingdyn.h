@@ -110,7 +110,8 @@ void bd_maxwell_stress(int n_times, int n_components, const double *rate, const 
 
 /* ---------------------------------------------------------------- EHL contact (ehl.c) */
 
-/* F = kappa (delta + h0)^1.5 + c(delta) ddelta/dt, never tensile: paper eq (1). */
+/* F = kappa (delta + h0 - give F_e)^1.5 + c(delta) ddelta/dt, never tensile: paper eq (1). F_e is the elastic part: the
+ * ring lies in series with the film and solids, by `give` more (or, negative, less) than the half-space of Hertz. */
 
 #define BD_DAMPING_LIST(X)                                                                         \
     X(BD_DAMPING_CONSTANT, "constant") /* c while in contact (paper section 4.1) */                \
@@ -126,6 +127,7 @@ enum { BD_FILM_CELLS = 64, BD_FILM_NODES = BD_FILM_CELLS + 1 };
 
 typedef struct bd_contact {
     double kappa, h0; /* N/m^1.5; sum of both films, m */
+    double give;      /* compliance of the ring beyond Hertz at a ball of its own, m/N */
     bd_damping_law law;
     double c; /* N s/m (constant), t_c in s (load), or scale in m (film) */
     int n_table;

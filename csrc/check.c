@@ -70,9 +70,9 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
     for (int k = 0; k < bearing->n_coefs; k++)
         if (bearing->order[k] < 0 || bearing->order[k] > HIGHEST_ORDER)
             return BD_BAD_VALUE;
-    const double finite[] = {bearing->x0,         bearing->y0,     bearing->e0,
-                             bearing->cage_ratio, bearing->angle0, contact->kappa,
-                             contact->h0,         contact->c,      bearing->A};
+    const double finite[] = {bearing->x0,     bearing->y0,    bearing->e0, bearing->cage_ratio,
+                             bearing->angle0, contact->kappa, contact->h0, contact->c,
+                             bearing->A,      contact->give};
     if (!all_finite(finite, sizeof finite / sizeof finite[0]) || !(bearing->A > 0.0) ||
         !(contact->kappa > 0.0) || !(contact->h0 >= 0.0) || !(contact->c >= 0.0))
         return BD_BAD_VALUE;

@@ -2,6 +2,7 @@
 #ifndef BD_EHL_H
 #define BD_EHL_H
 
+#include "elastic_force.h"
 #include "kernels.h"
 
 void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *restrict delta,

@@ -2,6 +2,8 @@
  * the scheme, so that a mistake in the march does not cancel here. */
 #include "energy.h"
 
+#include "elastic_force.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -30,7 +32,8 @@ double bd_contact_loss(const bd_bearing_data *data, const bd_bearing_work *balls
     double loss = 0.0;
     for (int j = 0; j < data->n_balls; j++) {
         double s = fmax(balls->delta[j] + data->contact.h0, 0.0);
-        loss += (balls->force[j] - data->contact.kappa * s * sqrt(s)) * balls->rate[j];
+        double energy;
+        loss += (balls->force[j] - bd_elastic_force(&data->contact, s, &energy)) * balls->rate[j];
     }
     return loss;
 }
@@ -95,8 +98,9 @@ void bd_energy_rates(const bd_model *model, bd_work *work, const bd_state *state
         const bd_bearing_work *balls = &work->bearings[b];
         for (int j = 0; j < data->n_balls; j++) {
             double s = fmax(balls->delta[j] + data->contact.h0, 0.0);
-            double elastic = data->contact.kappa * s * sqrt(s);
-            indentation += 0.4 * elastic * s;
+            double elastic;
+            bd_elastic_force(&data->contact, s, &elastic);
+            indentation += elastic;
             turning += balls->force[j] * balls->turning[j];
         }
         contact += bd_contact_loss(data, balls);

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import inspect
 import io
+import math
 import re
 import runpy
 import shutil
@@ -29,6 +30,7 @@ def make() -> None:
     architecture.draw(STATIC / "architecture.svg")
     sheet_figure.draw(STATIC / "sheet.svg")
     squeezed_picture(STATIC / "squeezed.png")
+    ring_picture(STATIC / "ring.png")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))
@@ -49,6 +51,20 @@ def squeezed_picture(path: Path) -> None:
         bd.plot.squeezed_section(ring.assembled(squeeze=squeeze, inside=how, outside=how), ax=ax)
     figure.savefig(path, dpi=110)
     plt.close(figure)
+
+
+def ring_picture(path: Path) -> None:
+    """The race of a 6305 whose ring stands on four feet, under 3 kN."""
+    import matplotlib.pyplot as plt
+
+    import bearingdyn as bd
+
+    bearing = bd.catalogue.bearing("6305", clearance=10e-6)
+    feet = bd.RingPoints([k * math.pi / 4 for k in (1, 3, 5, 7)], stiffness=2e8)
+    ring = bd.FlexibleRing.of(bearing, outside=(feet, bd.RingBed(1e7)), f_max=0.0)
+    ax = bd.plot.ring_shape(bd.FlexibleBearing(bearing, ring), (0, -3000, 0, 0, 0, 0), -0.5 * math.pi)
+    ax.figure.savefig(path, dpi=110)
+    plt.close(ax.figure)
 
 
 def warnings_table() -> str:

@@ -18,7 +18,7 @@ RUBBER = bd.Maxwell(G0=2e6, G=[2e6, 3e6], tau=[1e-3, 1e-5], K=2e9, density=1200.
 B6305 = bearing("6305", balls=7, clearance=10e-6, damping=30.0)
 SIZE = (27.5 * MM, 31 * MM, 17 * MM)
 LAYER = Layer(31 * MM, 35 * MM, 17 * MM, RUBBER)
-RING = FlexibleRing(*SIZE, arm=B6305.arm)
+RING = FlexibleRing(*SIZE, bearing=B6305)
 CUSHIONED = replace(RING, layer=LAYER)
 LOOSE = replace(RING, outside="flexible")
 STIFF = Elastic(1e6 * STEEL.E, STEEL.nu, STEEL.density)

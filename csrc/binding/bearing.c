@@ -119,6 +119,7 @@ static const bd_py_field bearing_fields[] = {
     DOUBLE("e0", e0),
     DOUBLE("kappa", contact.kappa),
     DOUBLE("h0", contact.h0),
+    DOUBLE("give", contact.give),
     OBJECT("law", law),
     DOUBLE("c", contact.c),
     OBJECT("table", table),

@@ -57,6 +57,7 @@ PUBLIC = {
     },
     "part": {
         "parts": (
+            "BoreShape",
             "Cylinder",
             "Disc",
             "EndFace",
@@ -77,6 +78,8 @@ PUBLIC = {
             "RigidBody",
             "RigidSurface",
             "Ring",
+            "RingBed",
+            "RingPoints",
             "Section",
             "Shaft",
             "Solid",

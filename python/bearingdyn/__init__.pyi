@@ -103,6 +103,7 @@ from bearingdyn.material import (
     sample_dma_path,
 )
 from bearingdyn.parts import (
+    BoreShape,
     Cylinder,
     Disc,
     EndFace,
@@ -123,6 +124,8 @@ from bearingdyn.parts import (
     RigidBody,
     RigidSurface,
     Ring,
+    RingBed,
+    RingPoints,
     Section,
     Shaft,
     Solid,
@@ -145,6 +148,7 @@ __all__ = [
     "STEEL",
     "Application",
     "BallBearing",
+    "BoreShape",
     "ConstantDamping",
     "Cylinder",
     "DMAData",
@@ -185,6 +189,8 @@ __all__ = [
     "RigidBody",
     "RigidSurface",
     "Ring",
+    "RingBed",
+    "RingPoints",
     "Scheme",
     "Section",
     "Shaft",

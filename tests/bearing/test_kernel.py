@@ -9,20 +9,35 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from bearingdyn.bearing import BallBearing, BearingKernel, LoadDamping, TabulatedDamping
+from bearingdyn.bearing import BallBearing, BearingKernel, FilmDamping, LoadDamping, TabulatedDamping
 from twins import bearing_twin
 
 SIZE = dict(Z=7, Dw=11.5e-3, Dpw=43.5e-3, fi=0.52, fo=0.53)
 TABLE = TabulatedDamping([-2e-6, 1e-6, 5e-6, 2e-5], [0.0, 40.0, 55.0, 20.0])
+NODES = np.linspace(0, 1, 65)
+FADING = FilmDamping(2e-6, 40 * NODES**3 * (1.4 - 0.5 * NODES))
 KERNELS = {
     "clearance": BallBearing(**SIZE, clearance=15e-6, damping=30.0),
     "no clearance": BallBearing(**SIZE, clearance=0.0),
     "contact angle": BallBearing(**SIZE, contact_angle=0.4, film=0.4e-6, damping=LoadDamping(1e-5)),
     "table": BallBearing(**SIZE, clearance=8e-6, film=0.3e-6, damping=TABLE),
+    "film": BallBearing(**SIZE, clearance=8e-6, film=0.3e-6, damping=FADING),
+}
+
+
+# What a flexible ring adds to Hertz at each ball by itself, m/N: a wall that stiffens, a ring that gives
+GIVES = {
+    "wall": ("clearance", -0.5e-9),
+    "ring": ("contact angle", 2e-9),
+    "table on a ring": ("table", 2e-9),
+    "film on a ring": ("film", 2e-9),
 }
 
 
 def kernel(name: str) -> BearingKernel:
+    if name in GIVES:
+        base, give = GIVES[name]
+        return dataclasses.replace(KERNELS[base].kernel(), give=give)
     if name != "flexible":
         return KERNELS[name].kernel()
     # raceway orders up to 3, as a flexible ring has them
@@ -43,7 +58,7 @@ def kernel(name: str) -> BearingKernel:
 
 @st.composite
 def cases(draw):
-    spec = kernel(draw(st.sampled_from([*KERNELS, "flexible"])))
+    spec = kernel(draw(st.sampled_from([*KERNELS, *GIVES, "flexible"])))
     n = len(spec.order)
     numbers = st.lists(st.floats(-1, 1), min_size=n, max_size=n)
     scale = 10 ** draw(st.floats(-6, -4))  # m: from a light touch to far beyond the static rating
@@ -111,7 +126,8 @@ def test_indentation_of_the_twin_is_the_distance_of_the_groove_centres(case):
     loads = bearing_twin.bearing_force(spec, z, 0 * z, angle, 0.0)[3]
     s = np.maximum(compression(spec, z, angle), 0)
     # x0 and y0 are rounded, 1e-16·A, which the distance shows and the kernel's form does not
-    np.testing.assert_allclose((loads / spec.kappa) ** (2 / 3), s, rtol=1e-13, atol=4e-16 * spec.A)
+    compressed = (loads / spec.kappa) ** (2 / 3) + spec.give * loads
+    np.testing.assert_allclose(compressed, s, rtol=1e-13, atol=4e-16 * spec.A)
 
 
 @settings(deadline=None, max_examples=60)

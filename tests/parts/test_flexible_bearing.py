@@ -112,8 +112,9 @@ def test_balls_and_ring_balance_each_ball_by_its_own_law() -> None:
         Y = kernel.y0 + inner[0] * math.cos(angle) + inner[1] * math.sin(angle) - (wave * z)[~axial].sum()
         length = math.hypot(X, Y)
         delta = max(length - kernel.A, 0.0)
-        # round-off of A = 0.6 mm against δ of µm: 1e-10
-        assert Q[j] == pytest.approx(kernel.kappa * delta**1.5, rel=1e-8, abs=1e-6)
+        # Hertz, and what the ring gives at the ball by itself; round-off of A = 0.6 mm against δ of µm: 1e-10
+        own = (Q[j] / kernel.kappa) ** (2 / 3) + RING.compliance.give * Q[j]
+        assert own == pytest.approx(delta, rel=1e-8, abs=1e-15)
         g += Q[j] * wave * np.where(axial, X, Y) / length
     np.testing.assert_allclose(brg.raceway_stiffness @ z, g, rtol=0, atol=1e-9 * Q.sum())
 
@@ -121,12 +122,10 @@ def test_balls_and_ring_balance_each_ball_by_its_own_law() -> None:
 def test_a_flexible_ring_is_softer_and_spreads_the_load(capsys: pytest.CaptureFixture[str]) -> None:
     """Direction of change.
 
-    The ring adds compliance in series with every ball and couples them, so under the same load the inner ring
-    always moves further (the minimum of the energy over more unknowns is lower) and the tangent is lower.
-    In a rigid bore the race yields most under the heaviest ball, which hands load to the others: the peak
-    falls, by little, for the section is squeezed, not bent. With rubber around it the ring bends: it
-    flattens under the loaded zone and follows the inner race, so the peak falls much further and the
-    zone widens.
+    In a rigid bore the race lies on a wall 3.5 mm below it, where Hertz's half-space goes on: the contact is
+    stiffer, the inner ring moves less and the heaviest ball takes more. With rubber around it the ring
+    bends: it
+    flattens under the loaded zone and follows the inner race, so the peak falls far and the zone widens.
     """
     load = (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)
     angle = -0.5 * math.pi  # a ball under the load
@@ -137,12 +136,14 @@ def test_a_flexible_ring_is_softer_and_spreads_the_load(capsys: pytest.CaptureFi
     q = bore.displacement(load, angle)
     Q = bore.ball_loads(q, angle)
     lines.append(f"in a rigid bore: {-q[1] * 1e6:.3f} µm, peak {Q.max():.1f} N, {np.count_nonzero(Q)} balls")
-    assert 1.001 * abs(rigid[1]) < abs(q[1]) < 1.05 * abs(rigid[1])
-    assert 0.98 * peak < Q.max() < 0.9999 * peak
-    assert np.count_nonzero(Q) >= loaded
-    K, K_rigid = bore.stiffness(rigid, angle), B6305.stiffness(rigid, angle)
-    # softer in every direction: their difference is negative semidefinite
-    assert np.linalg.eigvalsh(K - K_rigid).max() < 1e-9 * np.abs(K).max()
+    # an independent finite element model with the half-space taken out: 36.65 µm, 1971.5 N, to 0.3 and 0.2 %
+    assert -q[1] == pytest.approx(36.65e-6, rel=3e-3)
+    assert Q.max() == pytest.approx(1971.5, rel=2e-3)
+    assert abs(q[1]) < 0.99 * abs(rigid[1])
+    assert Q.max() > 1.0005 * peak
+    assert np.count_nonzero(Q) == loaded
+    # stiffer than rigid rings for every ball that carries: along the load
+    assert bore.stiffness(rigid, angle)[1, 1] > 1.005 * B6305.stiffness(rigid, angle)[1, 1]
 
     # the same in rubber, against a rigid ring in the same rubber
     cushioned = [FlexibleBearing(B6305, replace(CUSHIONED, material=m)) for m in (STEEL, STIFF)]
@@ -160,12 +161,9 @@ def test_a_flexible_ring_is_softer_and_spreads_the_load(capsys: pytest.CaptureFi
 
 
 def test_orders_converge_where_they_pass_the_number_of_balls(capsys: pytest.CaptureFixture[str]) -> None:
-    """Bending falls off as order⁻⁴, but cos Zψ is alike at all balls: their order is not to be left out.
-
-    What goes on beyond is the dent around each ball, which Hertz's contact has already.
-    """
+    """At rest every order is there, carried or folded: with Z orders as with twice as many."""
     angle, load = 0.3, (0.0, -3000.0, 300.0, 0.0, 0.0, 0.0)
-    orders = (1, 2, 3, 4, 6, 8, 10, 12)
+    orders = (7, 8, 10, 14)
     y, peak = [], []
     for order in orders:
         brg = FlexibleBearing(B6305, replace(CUSHIONED, order=order))
@@ -176,12 +174,9 @@ def test_orders_converge_where_they_pass_the_number_of_balls(capsys: pytest.Capt
         print("\n  order   y (µm)   peak (N)")
         for row in zip(orders, np.array(y) * 1e6, peak, strict=True):
             print("  {:5d} {:8.3f} {:10.2f}".format(*row))
-    assert (np.diff(y) > 0.0).all()  # every order is one more way to give
-    # past Z = 7 the next that all balls feel alike is 14
-    assert y[-1] - y[5] < 2e-4 * y[5]
-    assert abs(peak[-1] / peak[5] - 1) < 2e-4
-    # the distribution is there from order 4
-    assert abs(peak[3] / peak[-1] - 1) < 5e-3
+    # radial orders are folded exactly; of axial ones beyond, which fall off as order⁻⁴, nothing is kept
+    assert np.ptp(y) < 2e-4 * y[-1]
+    assert np.ptp(peak) < 2e-4 * peak[-1]
 
 
 @pytest.mark.parametrize("body", ["inner", "outer", "ball"])

@@ -128,7 +128,7 @@ def test_a_cut_groove_takes_its_mass_out() -> None:
 def test_the_reduced_ring_in_rubber_answers_as_the_whole_one(frequency: float) -> None:
     """Receptance on the raceway, the outside held, against the whole model order by order."""
     omega = 2 * np.pi * frequency
-    ring = replace(CUSHIONED, order=4, f_max=15e3)
+    ring = replace(CUSHIONED, bearing=None, order=4)
     element, body = ring.superelement(), ring.body
     D = element.stiffness(omega) - omega**2 * element.M
     inner = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
@@ -157,7 +157,7 @@ def test_the_reduced_ring_in_rubber_answers_as_the_whole_one(frequency: float) -
 def test_rubber_around_the_ring_keeps_its_stiffness_at_every_modulus(G: float) -> None:
     rubber = bd.Maxwell(G, [], [], K=2e9, density=1200.0)
     exact = FlexibleBearing(B6305, replace(CUSHIONED, layer=replace(LAYER, material=rubber)))
-    element = CUSHIONED.superelement()
+    element = replace(CUSHIONED, layer=replace(LAYER, moduli=(2e6, 7e6))).superelement()
     K = element.K + 2 * G * element.viscoelastic[0].H
     inner = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
     flexible = np.linalg.inv(K[np.ix_(inner, inner)])

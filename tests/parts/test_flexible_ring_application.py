@@ -122,7 +122,7 @@ def test_the_application_is_the_bearing_by_itself() -> None:
     assert state.radial_stiffness == pytest.approx(0.5 * (state.K[x, x] + state.K[x + 1, x + 1]))
 
 
-def test_the_response_at_0_hz_is_the_tangent_and_the_stiffest_mode_softens() -> None:
+def test_the_response_at_0_hz_is_the_tangent_and_a_rigid_bore_stiffens() -> None:
     eq = bd.equilibrium(hung(RING))
     K = FlexibleBearing(B6305, RING).stiffness(eq.displacement("rotor.centre"))
     K = K + np.diag([0, 0, 0, 1e4, 1e4, 1.0])
@@ -130,13 +130,14 @@ def test_the_response_at_0_hz_is_the_tangent_and_the_stiffest_mode_softens() -> 
     response = bd.frequency_response(eq, [0.0, 500.0], names, names)["response"].values
     np.testing.assert_allclose(response[0].real, np.linalg.inv(K)[:3, :3], rtol=1e-6, atol=1e-13)
     assert np.isfinite(response).all()
-    soft, hard = (bd.modes(bd.equilibrium(hung(ring)))["frequency"].values[:6] for ring in (RING, None))
-    assert soft[5] < hard[5]  # the stiffest, which feels the ring most
-    # by the 0.7 % that the ring adds to the bearing's deflection, more or less
-    np.testing.assert_allclose(soft, hard, rtol=0.01)
+    bore, rigid = (bd.modes(bd.equilibrium(hung(ring)))["frequency"].values[:6] for ring in (RING, None))
+    # the stiffest, which feels the ring most: the wall takes 0.527 µm/kN from what some 1 kN on a ball gives,
+    # 12 µm/kN, which is 4.4 %, and half of it in the frequency
+    assert bore[5] == pytest.approx(1.022 * rigid[5], rel=0.004)
+    np.testing.assert_allclose(bore, rigid, rtol=0.025)
 
 
-@pytest.mark.parametrize("ring", [replace(RING, damping=0.01), replace(CUSHIONED, damping=0.01, order=6)])
+@pytest.mark.parametrize("ring", [replace(RING, damping=0.01), replace(CUSHIONED, damping=0.01)])
 def test_energy_of_a_run_on_a_flexible_ring_is_accounted_for(ring: FlexibleRing) -> None:
     missing, after, run = audited(bd.equilibrium(hung(ring)), 2.5e-6, "b.force.z")
     # the bound of the motor's audit; powers are summed by the trapezoidal rule, second order in dt

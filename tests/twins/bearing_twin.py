@@ -16,10 +16,13 @@ def contact_damping(spec: Any, delta: Any, s: Any) -> tuple[Any, Any]:
     if spec.damping_law == "constant":
         return spec.damping_c, 0.0
     if spec.damping_law == "load":
-        root = np.sqrt(s)
-        return spec.damping_c * 1.5 * spec.kappa * root, spec.damping_c * 0.75 * spec.kappa / root
+        root, give = solid_root(spec, s), spec.give
+        firm = 1.5 * spec.kappa * root / (1 + 1.5 * give * spec.kappa * root)
+        # d²F/ds² of s = u² + give κ u³, F = κ u³
+        bend = 0.75 * spec.kappa / root / (1 + 1.5 * give * spec.kappa * root) ** 3
+        return spec.damping_c * firm, spec.damping_c * bend
     if spec.damping_law == "film":
-        root, half = np.sqrt(s), np.sqrt(spec.damping_c)
+        root, half = solid_root(spec, s), np.sqrt(spec.damping_c)
         at, rise = np.asarray(spec.damping_table).T
         cells = len(at) - 1
         x = cells * root / (root + half)
@@ -34,7 +37,8 @@ def contact_damping(spec: Any, delta: Any, s: Any) -> tuple[Any, Any]:
         )
         by_u = 6 * u * (1 - u) * (at[i + 1] - at[i])
         by_u += rise[i] * (1 - u) * (1 - 3 * u) + rise[i + 1] * u * (3 * u - 2)
-        return c, by_u * cells * half / (root + half) ** 2 / (2 * root)
+        by_s = 1 / (2 * root + 3 * spec.give * spec.kappa * root**2)
+        return c, by_u * cells * half / (root + half) ** 2 * by_s
     table = np.asarray(spec.damping_table)
     x, c = table[:, 0], table[:, 1]
     i = int(np.searchsorted(x, np.real(delta), side="left")) - 1
@@ -46,16 +50,25 @@ def contact_damping(spec: Any, delta: Any, s: Any) -> tuple[Any, Any]:
     return c[i] + slope * (delta - x[i]), slope
 
 
+def solid_root(spec: Any, s: Any) -> Any:
+    """Root u of what film and solids are compressed by: u² + give κ u³ = s."""
+    u = np.sqrt(s)
+    for _ in range(8 if spec.give else 0):
+        u = u - (u**2 + spec.give * spec.kappa * u**3 - s) / (2 * u + 3 * spec.give * spec.kappa * u**2)
+    return u
+
+
 def contact_force(spec: Any, delta: Any, rate: Any) -> tuple[Any, Any, Any]:
-    """F = κ(δ+h0)^1.5 + c(δ) δ̇, never tensile, with dF/dδ and dF/dδ̇ (paper eq. 1, clipped)."""
+    """F = κ(δ+h0−give F_e)^1.5 + c(δ) δ̇, never tensile, with dF/dδ and dF/dδ̇ (paper eq. 1, clipped)."""
     s = delta + spec.h0
     if not np.real(s) > 0:
         return 0.0, 0.0, 0.0
     c, slope = contact_damping(spec, delta, s)
-    F = spec.kappa * s * np.sqrt(s) + c * rate
+    root = solid_root(spec, s)
+    F = spec.kappa * root**3 + c * rate
     if not np.real(F) > 0:
         return 0.0, 0.0, 0.0
-    return F, 1.5 * spec.kappa * np.sqrt(s) + slope * rate, c
+    return F, 1.5 * spec.kappa * root / (1 + 1.5 * spec.give * spec.kappa * root) + slope * rate, c
 
 
 def drop(D: float, width: float, depth: float, s: Any) -> Any:

@@ -83,7 +83,7 @@ def stiff_rings() -> list[Row]:
     brg = BallBearing(
         8, 5.953 * MM, 25 * MM, 0.52, 0.53, clearance=10e-6, material=metal, ball_material=metal
     )
-    ring = FlexibleRing(14.5 * MM, 17.5 * MM, 11 * MM, arm=brg.arm, material=steel(207e15))
+    ring = FlexibleRing(14.5 * MM, 17.5 * MM, 11 * MM, bearing=brg, material=steel(207e15))
     flexible = FlexibleBearing(brg, ring)
     q = flexible.displacement((0, 0, 180.0, 0, 0, 0))
     K = flexible.stiffness(q)

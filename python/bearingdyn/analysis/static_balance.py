@@ -81,8 +81,7 @@ class Statics:
             pressed = press(B @ q)
             stored, total = 0.5 * float(q @ structure @ q), 0.0
             for kernel, (_, _, _, loads) in zip(kernels, pressed, strict=True):
-                # ∫κ s^{3/2} ds = (2/5) F s, s = (F/κ)^{2/3}
-                stored += float(0.4 * (loads * (loads / kernel.kappa) ** (2 / 3)).sum())
+                stored += kernel.stored(loads)
                 total += float(loads.sum())
             g = np.concatenate([np.zeros(0), *(p[0] for p in pressed)])
             K = diagonal_blocks([p[1] for p in pressed])

@@ -150,6 +150,11 @@ class Plan:
         raceway, name, arm = self.raceway(joint.outer), joint.name, joint.bearing.arm
         if raceway is None:
             return
+        if raceway.Z not in (None, joint.bearing.Z):
+            raise ValueError(
+                f"bearing {name!r} has {joint.bearing.Z} balls and {joint.outer} was made for {raceway.Z}; "
+                f"make the ring with bearing="
+            )
         if not math.isclose(raceway.arm, arm, rel_tol=1e-9):
             raise ValueError(
                 f"bearing {name!r} has its arm at {arm:.9g} m and {joint.outer} at {raceway.arm:.9g} m; "

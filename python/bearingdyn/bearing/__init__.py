@@ -22,6 +22,7 @@ from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.film_answer import AnswerUnderLoads, FilmAnswer
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
+from bearingdyn.bearing.half_space import footprint_profile, half_space_orders
 from bearingdyn.bearing.hertz import PointContact, contact_modulus, resultant_deflection_coefficient
 from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness
 from bearingdyn.bearing.kernel import BearingKernel
@@ -117,7 +118,9 @@ __all__ = [
     "equivalent_load",
     "equivalent_static_load",
     "fault_lines",
+    "footprint_profile",
     "friction",
+    "half_space_orders",
     "hamrock_dowson",
     "in_hours",
     "iso_ratings",

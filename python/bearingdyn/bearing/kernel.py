@@ -61,10 +61,16 @@ class BearingKernel:
     """+1, −1: axial load on the inner ring is borne towards +z, −z only; 0: both ways."""
     open_sine: float = 0.0
     """Sine of the contact angle on the open side from which a ball runs off."""
+    give: float = 0.0
+    """Compliance that the ring adds to Hertz at a ball of its own, m/N; negative where a wall stiffens it."""
     imperfections: Imperfections = field(default_factory=Imperfections)
     """Waves, pits and unequal balls; none by default."""
 
     __repr__ = short
+
+    def stored(self, loads: Array) -> float:
+        """Energy, J, of the contacts under loads (Z,), N: ∫κ u³ ds = (2/5) F u² + ½ give F², κ u³ = F."""
+        return float((loads * (0.4 * (loads / self.kappa) ** (2 / 3) + 0.5 * self.give * loads)).sum())
 
     def packed(self) -> dict[str, object]:
         """The fields by name, as the core parses them (bd_bearing_data).
@@ -88,6 +94,7 @@ class BearingKernel:
             "e0": self.e0,
             "kappa": self.kappa,
             "h0": self.h0,
+            "give": self.give,
             "law": self.damping_law,
             "c": self.damping_c,
             "table": np.asarray(self.damping_table, dtype=np.float64).reshape(-1, 2),

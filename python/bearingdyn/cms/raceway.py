@@ -25,11 +25,18 @@ class Raceway:
         Radius, m, at which tilts become axial motion.
     rows
         (len(series), n) coefficients from the superelement's coordinates; a load of balls g acts as rowsᵀ g.
+    give
+        What the ring adds to Hertz at each ball by itself, beyond the coefficients, m/N (mostly negative, for
+        the coefficients have some of Hertz's dent); it goes into the law of the contact.
+    Z
+        Number of balls it was worked out for; None: any, and no give.
     """
 
     series: RacewaySeries
     arm: float
     rows: Array
+    give: float = 0.0
+    Z: int | None = None
 
     __repr__ = short
 

@@ -1,6 +1,7 @@
 """Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
 
 from bearingdyn.fem import Section, quadrilaterals
+from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.damping_sample import damping_sample
 from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.flexible_bearing import FlexibleBearing
@@ -17,6 +18,8 @@ from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
 from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring
+from bearingdyn.parts.ring_compliance import RingCompliance
+from bearingdyn.parts.ring_support import RingBed, RingPoints
 from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
@@ -25,6 +28,7 @@ from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.strain import Strain
 
 __all__ = [
+    "BoreShape",
     "Cylinder",
     "Disc",
     "EndFace",
@@ -50,6 +54,9 @@ __all__ = [
     "RigidBody",
     "RigidSurface",
     "Ring",
+    "RingBed",
+    "RingCompliance",
+    "RingPoints",
     "RoundFace",
     "Section",
     "Shaft",

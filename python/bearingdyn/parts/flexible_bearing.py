@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -11,11 +11,12 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, minimum, runs_off
-from bearingdyn.checks import vector
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, BearingKernel, minimum, runs_off
+from bearingdyn.checks import numbers, vector
 from bearingdyn.cms import Superelement
 from bearingdyn.material import warn_beyond
 from bearingdyn.parts.flexible_ring import FlexibleRing
+from bearingdyn.parts.ring_support import waves
 from bearingdyn.types import Array
 
 
@@ -45,11 +46,19 @@ class FlexibleBearing:
     ring: FlexibleRing
 
     def __post_init__(self) -> None:
+        own = self.ring.bearing
+        if own is None or own.Z != self.bearing.Z:
+            told = "None" if own is None else f"one of {own.Z} balls"
+            raise ValueError(
+                f"ring.bearing is {told}; what a ring gives beyond Hertz depends on its {self.bearing.Z} "
+                f"balls: make it with bearing="
+            )
+        assert self.ring.arm is not None
         if not math.isclose(self.bearing.arm, self.ring.arm, rel_tol=1e-9):
             raise ValueError(
                 f"ring.arm is {self.ring.arm:.9g}; it must be the bearing's, {self.bearing.arm:.9g} m"
             )
-        if self.ring.layer is None and self.ring.outside != "rigid":
+        if self.ring.layer is None and self.ring.outside == "flexible":
             raise ValueError(f"ring.outside is {self.ring.outside!r}, and nothing holds the ring")
 
     @cached_property
@@ -65,30 +74,30 @@ class FlexibleBearing:
             math.inf,
             "the static stiffness",
         )
-        K = element.stiffness().real
-        held = element.interfaces["outer"]
-        rows = element.raceways["raceway"].rows
-        at = np.flatnonzero(rows.any(axis=0))  # the coefficients are coordinates
-        rest = np.setdiff1d(np.arange(element.n), np.concatenate([held, at]))
-        S = K[np.ix_(at, at)]
-        if rest.size:
-            S = S - K[np.ix_(at, rest)] @ np.linalg.solve(K[np.ix_(rest, rest)], K[np.ix_(rest, at)])
+        rest = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
+        K = element.stiffness().real[np.ix_(rest, rest)]
+        rows = element.raceways["raceway"].rows[:, rest]
+        S = np.linalg.inv(rows @ np.linalg.solve(K, rows.T))
         return np.asarray(0.5 * (S + S.T))
 
     @cached_property
     def _relative(self) -> Array:
         return self.bearing.coefficients(self._element.raceways["raceway"].series)
 
+    @cached_property
+    def _kernel(self) -> BearingKernel:
+        raceway = self._element.raceways["raceway"]
+        return replace(self.bearing.kernel(raceway.series), give=raceway.give)
+
     def _press(self, relative: Array, angle: float) -> tuple[float, Array, Array, Array]:
         """Energy of the balls, force, tangent and loads at relative coefficients."""
         from bearingdyn import core  # late: only here is the compiled kernel needed
 
         b = self.bearing
-        kernel = b.kernel(self._element.raceways["raceway"].series)
+        kernel = self._kernel
         shaft = angle / b.cage_ratio if b.cage_ratio else 0.0
         g, K, _, loads = core.bearing_force(kernel, relative, 0 * relative, b.angle0 + angle, 0.0, shaft)
-        # ∫κ s^{3/2} ds = (2/5) F s with s = (F/κ)^{2/3}
-        return float(0.4 * (loads * (loads / kernel.kappa) ** (2 / 3)).sum()), g, K, loads
+        return kernel.stored(loads), g, K, loads
 
     def _settle(self, q: ArrayLike, angle: float) -> _State:
         """The raceway's shape at which the ring balances the balls, the inner ring held at q."""
@@ -107,6 +116,36 @@ class FlexibleBearing:
     def raceway(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Displacement (n,) of the raceway, m, coefficients as in RacewaySeries.up_to(ring.order)."""
         return self._settle(q, angle).z
+
+    def race(self, q: ArrayLike, azimuth: ArrayLike, angle: float = 0.0) -> Array:
+        """Displacement (p, 2) of the race at azimuths (p,), rad: radial and axial, m, by its orders."""
+        return self._around("raceway", self._settle(q, angle).g, azimuth)
+
+    def outside(self, q: ArrayLike, azimuth: ArrayLike, angle: float = 0.0) -> Array:
+        """The same of the ring's outside, where it stands on beds or points.
+
+        A bed of stiffness k presses the ring there by k times the radial motion, Pa.
+
+        Raises
+        ------
+        ValueError
+            For a ring whose outside is kept round, or in rubber.
+        """
+        if "outside" not in self._element.raceways:
+            raise ValueError(
+                f"ring.outside is {self.ring.outside!r}; its outside does not move by orders: "
+                f"give the ring a RingBed or RingPoints"
+            )
+        return self._around("outside", self._settle(q, angle).g, azimuth)
+
+    def _around(self, name: str, g: Array, azimuth: ArrayLike) -> Array:
+        element, psi = self._element, numbers("azimuth", azimuth, "it must hold angles in rad")
+        rest = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
+        K = element.stiffness().real[np.ix_(rest, rest)]
+        x = np.linalg.solve(K, element.raceways["raceway"].rows[:, rest].T @ g)
+        found = element.raceways[name]
+        z = found.rows[:, rest] @ x
+        return np.stack([waves(found.series, psi, axial) @ z for axial in (0, 1)], axis=-1)
 
     def force(self, q: ArrayLike, angle: float = 0.0) -> Array:
         """Load (6,), N and N m, that holds the inner ring at q: +∇V, with the ring settled."""
@@ -156,7 +195,7 @@ class FlexibleBearing:
 
         size = (float(np.linalg.norm(f)) / self.bearing.kappa) ** (2 / 3) + abs(self.bearing.geometry.Pd) / 2
         x = minimum(stored, np.concatenate([unit @ f[:5], np.zeros(len(S))]), size or 1e-9)
-        kernel, relative = self.bearing.kernel(self._element.raceways["raceway"].series), J @ x
+        kernel, relative = self._kernel, J @ x
         astray = runs_off(kernel, relative, self._press(relative, angle)[3], self.bearing.angle0 + angle)
         if astray:
             raise ValueError(f"load is {f.tolist()}; {astray}; {OPEN_SIDE_REMEDY}")

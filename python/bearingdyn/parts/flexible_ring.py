@@ -4,23 +4,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
+import scipy
 
-from bearingdyn.checks import instance, one_of, positive
-from bearingdyn.cms import Superelement
+from bearingdyn.bearing import BallBearing, Waviness
+from bearingdyn.checks import instance, one_of, positive, require, whole
+from bearingdyn.cms import Superelement, Viscoelastic
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
-from bearingdyn.parts.revolved_faces import Cylinder, Face, Groove, Line, Where
+from bearingdyn.parts.revolved_faces import HIGHEST, Cylinder, Face, Footprint, Groove, Line, Where
+from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
+from bearingdyn.parts.ring_support import RingBed, RingPoints, held_by
 from bearingdyn.parts.round_face import RoundFace
+from bearingdyn.types import Array
+
+F_HEARD = 6e3  # Hz, up to which a ring's receptances are right unless f_max says otherwise
+# of the ball's diameter, the height of shoulders of deep groove bearings, and of angular contact ones
+SHOULDER = 0.16
+SHOULDER_ANGULAR = 0.3
+STIFF = 100e3  # Hz, the least natural frequency of what follows at once
+NEGLIGIBLE = 1e-9  # of the largest folded compliance
+UNDER = (0.15, 0.45)  # of the ring's height: lines of the mesh under the balls
 
 
 @dataclass(frozen=True)
@@ -28,9 +42,10 @@ class FlexibleRing:
     """A flexible outer ring, not turning, whose "raceway" carries the balls of one bearing.
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
-    Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with
-    outside="flexible", it is the raceway "outside", as flexible as the raceway inside, and the ring is held
-    only by what carries that raceway.
+    Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with outside=RingBed(…)
+    or RingPoints(…), "outer" is the rigid bore on which such springs stand; or, with outside="flexible", it
+    is the raceway "outside", as flexible as the raceway inside, and the ring is held only by what carries
+    that raceway.
 
     Parameters
     ----------
@@ -39,12 +54,13 @@ class FlexibleRing:
     r_outer, width
         m. The plane of the balls is at mid-width.
     arm
-        Radius, m, at which tilts become axial motion: the arm of the bearing that will run here
-        (BallBearing.arm).
+        Radius, m, at which tilts become axial motion, of a ring by itself; with a bearing it is the
+        bearing's.
     order
-        Highest Fourier order in the azimuth. Orders up to one more than the number of balls hold all the
-        bending that the balls cause, which falls off as order⁻⁴. Far higher orders do no good: they add the
-        dent around each ball, which falls off as 1/order only and which Hertz's contact has already.
+        Highest Fourier order in the azimuth; None: one more than the number of balls, or 10 without a
+        bearing.
+        What the orders beyond do at the balls, beyond Hertz, is folded onto those that are carried, so that
+        loads and displacements at rest do not depend on it; see `compliance`, which tells how much that is.
     groove
         Axial width of the face that carries the balls, m; None: half of the ring's.
     groove_radius
@@ -53,35 +69,49 @@ class FlexibleRing:
     layer
         Rubber, its r_inner equal to r_outer here; its material, moduli and refinement are taken.
     outside
-        "rigid" or "flexible", where there is no layer.
+        "rigid" or "flexible", where there is no layer; or what stands between the ring and the rigid
+        interface "outer": a RingBed, RingPoints, or several of them.
     damping
         Ratio ζ of the ring's free elastic modes.
     refinement
         Mesh density.
     f_max
-        Modes with the interfaces held are kept up to this frequency, Hz; 0: none, the default of bodies of
-        revolution. In rubber static shapes alone are some 6 % off at 5 kHz; with three times the highest
-        frequency of interest 0.2 % are left.
+        Receptances of the raceway, and what the interfaces feel, are right to 1 % up to this frequency, Hz;
+        0: at rest only. `error` is the estimate.
+    bearing
+        The bearing that runs in the ring. What Hertz's contact has already of the give of the race is then
+        taken out of it; without it a ring serves by itself, and carries no balls.
+    load
+        Load of a ball, N, whose contact ellipse is the footprint on the race; None: of the heaviest ball
+        under a quarter of the bearing's static rating. Eight times the load, twice the ellipse, change the
+        give by a few per cent.
+    outputs
+        name -> point (r, z, φ), m, m, rad, whose motion (x, y, z) can be recorded, as "ring.name.x".
 
     Raises
     ------
     ValueError
-        For dimensions out of order, a groove that does not fit, or a layer that does not touch.
+        For dimensions out of order, a groove that does not fit, a layer that does not touch, an order below
+        the number of balls, a ring thinner than the contact ellipse is long, or waves of f_max that the mesh
+        does not hold.
     """
 
     r_inner: float
     r_outer: float
     width: float
-    arm: float
-    order: int = 10
+    arm: float | None = None
+    order: int | None = None
     groove: float | None = None
     groove_radius: float | None = None
     layer: Layer | None = None
-    outside: Literal["rigid", "flexible"] = "rigid"
+    outside: Literal["rigid", "flexible"] | RingBed | RingPoints | tuple[RingBed | RingPoints, ...] = "rigid"
     material: Elastic = STEEL
     damping: float = 0.0
-    f_max: float = 0.0
+    f_max: float = F_HEARD
     refinement: float = 1.0
+    bearing: BallBearing | None = None
+    load: float | None = None
+    outputs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
@@ -92,7 +122,7 @@ class FlexibleRing:
         positive("refinement", self.refinement, "it must be a positive mesh density, 1 by default")
         for name in ("r_outer", "width"):
             plausible("length", name, getattr(self, name))
-        plausible("length", "arm", positive("arm", self.arm, "it must be a positive radius in m"))
+        self._take_bearing()
         for name in ("groove", "groove_radius"):
             if getattr(self, name) is not None:
                 positive(name, getattr(self, name), "it must be a positive length in m")
@@ -107,7 +137,8 @@ class FlexibleRing:
                 )
             if not self.depth < self.r_outer - self.r_inner:
                 raise ValueError(f"the groove is {self.depth:g} m deep and cuts the ring; make it narrower")
-        one_of("outside", self.outside, ("rigid", "flexible"))
+        if not self._supports:
+            one_of("outside", self.outside, ("rigid", "flexible"))
         if self.layer is not None:
             instance("layer", self.layer, Layer, "it must be a bd.Layer(…), or None")
             if not math.isclose(self.layer.r_inner, self.r_outer, rel_tol=1e-9):
@@ -116,8 +147,192 @@ class FlexibleRing:
                     f"r_outer = {self.r_outer} m"
                 )
             if self.outside != "rigid":
-                raise ValueError("outside is \"flexible\"; with a layer the ring's outside is the rubber's")
+                raise ValueError(
+                    f"outside is {self.outside!r}; with a layer the ring's outside is the rubber's: "
+                    "leave it out"
+                )
+        self._check_footprint()
         _ = self.body
+
+    @property
+    def _supports(self) -> tuple[RingBed | RingPoints, ...]:
+        """Beds and feet of the outside."""
+        given = self.outside if isinstance(self.outside, tuple) else (self.outside,)
+        return tuple(q for q in given if isinstance(q, RingBed | RingPoints)) if given else ()
+
+    def _take_bearing(self) -> None:
+        """Arm and order from the bearing, where they are not given."""
+        if self.bearing is None:
+            require(self.load is None, "load", self.load, "it is of a ball: give the bearing too")
+            arm, order = self.arm, 10 if self.order is None else self.order
+            remedy = "it must be a positive radius in m, or give the bearing that runs in the ring"
+            plausible("length", "arm", positive("arm", arm, remedy))
+        else:
+            instance("bearing", self.bearing, BallBearing, "it must be a bd.BallBearing(…), or None")
+            arm, Z = self.bearing.arm, self.bearing.Z
+            if self.arm is not None and not math.isclose(self.arm, arm, rel_tol=1e-9):
+                raise ValueError(f"arm is {self.arm!r}; the bearing's is {arm:.9g} m: leave it out")
+            order = Z + 1 if self.order is None else self.order
+            whole("order", order, 1, HIGHEST)
+            if not order >= Z:
+                raise ValueError(
+                    f"order is {order}; the bearing has {Z} balls, whose loads bend the ring by cos {Z}ψ: "
+                    f"give {Z + 1}, or leave it out"
+                )
+            if self.load is not None:
+                positive("load", self.load, "it must be the positive load of a ball in N")
+        object.__setattr__(self, "arm", arm)
+        object.__setattr__(self, "order", order)
+
+    def _check_footprint(self) -> None:
+        """Raise ValueError where the contact is as large as the ring."""
+        if self.footprint is None:
+            return
+        length, wall = 2.0 * self.footprint.half_length, self.wall
+        if not length < 2.0 * wall:
+            raise ValueError(
+                f"r_outer is {self.r_outer}; the ring is {1e3 * wall:.3g} mm thick under a contact "
+                f"{1e3 * length:.3g} mm long, and Hertz's law is of thick bodies: make r_outer at least "
+                f"{self.r_outer + 0.5 * length - wall:.6g} m, or state a smaller load"
+            )
+        if not length < self.track:
+            raise ValueError(
+                f"groove is {self.track:g} m wide; the contact is {length:.3g} m long: widen the groove, "
+                f"or state a smaller load"
+            )
+
+    @classmethod
+    def of(cls, bearing: BallBearing, **keywords: Any) -> FlexibleRing:
+        """The outer ring of a bearing with its groove, from its boundary dimensions; keywords as in
+        FlexibleRing.
+
+        The groove's bottom touches the balls of the centred bearing but for half the radial play; the
+        shoulders stand 0.16 of the ball's diameter above it, 0.3 in an angular contact bearing, where both
+        are drawn and the open side is too heavy.
+
+        Raises
+        ------
+        ValueError
+            For a bearing without boundary dimensions, or too thin a ring.
+
+        Examples
+        --------
+        >>> import bearingdyn as bd
+        >>> ring = bd.FlexibleRing.of(bd.catalogue.bearing("6305", clearance=10e-6), outside="flexible")
+        >>> f"{1e3 * ring.r_inner:.2f} mm at the shoulders, {1e3 * ring.depth:.2f} mm deep"
+        '25.54 mm at the shoulders, 1.65 mm deep'
+        """
+        instance("bearing", bearing, BallBearing, "it must be a bd.BallBearing(…)")
+        if bearing.boundary is None:
+            raise ValueError(
+                "bearing.boundary is None; give it (bore, outside, width) in m, or make the ring by hand"
+            )
+        _, outside, width = bearing.boundary
+        rho, angle = bearing.fo * bearing.Dw, bearing.contact_angle or 0.0
+        depth = (SHOULDER if angle == 0.0 else SHOULDER_ANGULAR) * bearing.Dw
+        bottom = bearing.geometry.R_o + rho
+        sizes = {
+            "r_inner": bottom - depth,
+            "r_outer": 0.5 * outside,
+            "width": width,
+            "groove": 2.0 * math.sqrt(rho**2 - (rho - depth) ** 2),
+            "groove_radius": rho,
+        }
+        return cls(**{**sizes, "bearing": bearing, **keywords})
+
+    @property
+    def wall(self) -> float:
+        """Thickness of the ring under the groove, m."""
+        return self.r_outer - self.r_inner - self.depth
+
+    @cached_property
+    def footprint(self) -> Footprint | None:
+        """Where the balls touch; None without a bearing."""
+        if self.bearing is None:
+            return None
+        angle = self.bearing.contact_angle or 0.0
+        load = self.load
+        if load is None:
+            load = 1.25 * self.bearing.static_rating / (self.bearing.Z * math.cos(angle))
+        if self.groove_radius is None:
+            at = (self.r_inner, 0.0)
+        else:
+            centre = self.r_inner + self.depth - self.groove_radius
+            at = (centre + self.groove_radius * math.cos(angle), self.groove_radius * math.sin(angle))
+        side = -1.0 if self.bearing.open_side == "+z" else 1.0
+        return Footprint((at[0], side * at[1]), side * angle, self.bearing.outer_contact.semi_axes(load)[0])
+
+    @cached_property
+    def compliance(self) -> RingCompliance:
+        """What the ring gives beyond Hertz, order by order, rubber at its relaxed modulus.
+
+        Raises
+        ------
+        ValueError
+            For a ring without a bearing.
+        """
+        if self.bearing is None or self.footprint is None:
+            raise ValueError(
+                "bearing is None; what a ring gives beyond Hertz depends on its balls: give bearing="
+            )
+        assert self.order is not None
+        normal, held = self.footprint.normal, self.body.interfaces
+        low = [
+            self.body.carried_compliance(n, "raceway", normal) if held or n > 1 else math.nan
+            for n in range(self.order + 1)
+        ]
+        if not held:
+            low[0] = self.body.groove_compliance(0, "raceway", normal)
+        return ring_compliance(
+            lambda n: self.body.groove_compliance(n, "raceway", normal),
+            np.array(low),
+            Z=self.bearing.Z,
+            half_length=self.footprint.half_length,
+            radius=self.footprint.point[0],
+            depth=self.wall,
+            material=self.material,
+        )
+
+    def race_waves(self, bore: BoreShape) -> tuple[Waviness, ...]:
+        """Waves of the race of this ring, pressed into a bore that is not round, as the bearing takes them.
+
+        The outside follows the bore all round, without friction along it; tilts of the section and the fit
+        itself, which is the clearance's affair, are left out.
+
+        Parameters
+        ----------
+        bore
+            The shape and the interference that keeps the ring in touch with it.
+
+        Returns
+        -------
+        tuple of Waviness
+            For BallBearing(waviness=…).
+
+        Raises
+        ------
+        ValueError
+            For a ring in rubber, or an interference at which the ring parts from the bore.
+        """
+        instance("bore", bore, BoreShape, "it must be a bd.BoreShape(…)")
+        if self.layer is not None:
+            raise ValueError(
+                "layer is given; a bore's shape is known to the ring only without rubber between"
+            )
+        free = self.body if "outside" in self.body.grooves else replace(self, outside="flexible").body
+        C = {n: free.groove_compliances(n) for n in (0, *bore.waves)}
+        least, psi = bore.parted({n: float(c[2, 2]) for n, c in C.items()})
+        if not bore.interference >= least:
+            raise ValueError(
+                f"bore.interference is {bore.interference:g} m; the ring parts from the bore at "
+                f"{math.degrees(psi):.3g} degrees: make it at least {least:.3g} m on the radius"
+            )
+        return tuple(
+            Waviness("outer", n, math.hypot(a, b) * float(c[0, 2] / c[2, 2]), phase=math.atan2(-b, a))
+            for n, c in C.items()
+            if n
+            for a, b in [bore.waves[n]]
+        )
 
     @property
     def track(self) -> float:
@@ -135,27 +350,32 @@ class FlexibleRing:
     def body(self) -> Revolved:
         """The ring, and its rubber, as a body of revolution."""
         half, track = 0.5 * self.width, 0.5 * self.track
-        regions = [Region((self.r_inner, self.r_outer), (-half, half), self.material)]
+        regions: list[Region] = [Region((self.r_inner, self.r_outer), (-half, half), self.material)]
         face: Face = Cylinder(self.r_inner, (-track, track))
         outer = self.r_outer
         if self.layer is not None:
             outer, reach = self.layer.r_outer, 0.5 * self.layer.width
             regions.append(Region((self.r_outer, outer), (-reach, reach), self.layer.material, graded=True))
         section = None
+        if self.groove_radius is None and self.footprint is not None:
+            section = self._mesh([q.rectangle for q in regions])
         if self.groove_radius is not None:
             face = Where(
                 lambda r, z: (np.abs(z) <= track * (1 + 1e-9)) & (r <= self.r_inner + 1.01 * self.depth)
             )
             section = self._grooved([q.rectangle for q in regions], track)
-        grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0)}
+        assert self.arm is not None
+        assert self.order is not None
+        grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0, footprint=self.footprint)}
         interfaces: dict[str, Face] = {}
-        if self.layer is None and self.outside == "flexible":
+        if self.layer is None and self.outside != "rigid":
             grooves["outside"] = Groove(Line((outer, -half), (outer, half)), outer, self.order, z=0.0)
         else:
             interfaces["outer"] = Cylinder(outer)
         return Revolved(
             tuple(regions) if section is None else tuple(Patch(q.material) for q in regions),
             interfaces,
+            self.outputs,
             damping=self.damping,
             f_max=self.f_max,
             moduli=None if self.layer is None else self.layer.moduli,
@@ -164,10 +384,29 @@ class FlexibleRing:
             section=section,
         )
 
+    def _mesh(self, rectangles: list[Rectangle], track: float | None = None) -> RevolutionMesh:
+        """The mesh of the rectangles, finer under the balls, with lines near the edges of the track."""
+        half = 0.5 * self.track if track is None else track
+        near = np.linspace(-half, half, 9)
+        if self.footprint is None:
+            return revolution_mesh(rectangles, self.refinement, z_near=near)
+        height = self.r_outer - self.r_inner
+        r_cuts = [self.r_inner + share * height for share in UNDER]
+        lines, edges = self.footprint.lines(), near[[0, -1]]
+        if self.groove_radius is not None:  # the flanks of the groove, whose arcs are drawn by parabolas
+            flanks = []
+            for end, line in zip(edges, (lines[0], lines[-1]), strict=True):
+                count = max(1, math.ceil(4.0 * abs(end - line) / half))
+                flanks.append(np.linspace(end, line, count + 1)[:-1])
+            edges = np.concatenate(flanks)
+        if self.layer is not None:  # cuts would be graded towards, as the rubber's edges are
+            return revolution_mesh(rectangles, self.refinement, r_cuts, z_near=[*edges, *lines])
+        return revolution_mesh(rectangles, self.refinement, r_cuts, lines, edges)
+
     def _grooved(self, rectangles: list[Rectangle], track: float) -> RevolutionMesh:
         """The mesh of the rectangles, the ring's lines bent so that the innermost follows the groove."""
         radius = self.groove_radius or 0.0
-        mesh = revolution_mesh(rectangles, self.refinement, z_near=np.linspace(-track, track, 9))
+        mesh = self._mesh(rectangles, track)
         z = np.clip(mesh.z, -track, track)
         bottom = np.sqrt(radius**2 - z**2) - math.sqrt(radius**2 - track**2)
         share = (self.r_outer - mesh.r) / (self.r_outer - self.r_inner)
@@ -180,12 +419,103 @@ class FlexibleRing:
         half = (-0.5 * self.width, 0.5 * self.width)
         if self.layer is None and self.outside == "flexible":
             known["outside"] = (RoundFace("shaft", self.r_outer, half),)
+        elif self._supports:
+            known["outer"] = (RoundFace("shaft", self.r_outer, half),)
         return known
 
+    @property
+    def error(self) -> dict[int, float]:
+        """Estimate, by order, of the largest error of receptances over 0…f_max; see Revolved.error."""
+        return self.body.error
+
+    @cached_property
+    def _folded(self) -> tuple[tuple[int, int, float], ...]:
+        """(order, sine, compliance) of what the orders beyond add to those that are carried."""
+        if self.bearing is None:
+            return ()
+        Z, folded = self.bearing.Z, self.compliance.folded
+        return tuple(
+            (p, sine, float(c))
+            for p, c in enumerate(folded)
+            for sine in ((0, 1) if p else (0,))
+            if c > NEGLIGIBLE * float(np.abs(folded).max()) and not (sine and 2 * p == Z)
+        )
+
     def superelement(self) -> Superelement:
-        """Reduced matrices: interface, raceway coefficients, internal modes; see Revolved.superelement."""
-        return self.body.superelement()
+        """Reduced matrices: interface and internal modes, and the raceways' coefficients; see
+        Revolved.superelement.
+
+        With a bearing, what orders beyond the carried ones add at its balls are coordinates of their own,
+        springs with so little mass that they follow at once.
+        """
+        element = self.body.superelement()
+        if self._supports:
+            element = self._upon_supports(element)
+        return element if self.bearing is None else self._with_folded(element)
+
+    def _upon_supports(self, element: Superelement) -> Superelement:
+        """The free ring between its supports and the rigid interface "outer" on which they stand."""
+        outside = element.raceways["outside"]
+        K, C = held_by(self._supports, outside.rows, outside.series, self.r_outer, self.width)
+        wide = _wider(element, 6, "raceway", "outside")
+        return replace(
+            wide,
+            K=wide.K + K,
+            C=wide.C + C,
+            interfaces={**wide.interfaces, "outer": np.arange(element.n, element.n + 6)},
+        )
+
+    def _with_folded(self, element: Superelement) -> Superelement:
+        """What the orders beyond do at the balls, in coordinates of its own, and the give of the race."""
+        assert self.bearing is not None
+        assert self.footprint is not None
+        rate = 2 * math.pi * max(STIFF, 10.0 * self.f_max)
+        count = len(self._folded)
+        own = np.arange(element.n, element.n + count)
+        wide = _wider(element, count, *element.raceways)
+        M, C, K = wide.M.copy(), wide.C.copy(), wide.K.copy()
+        M[own, own], C[own, own], K[own, own] = 1.0, 2.0 * self.damping * rate, rate**2
+        raceway = wide.raceways["raceway"]
+        rows = raceway.rows.copy()
+        for k, (p, sine, c) in zip(own, self._folded, strict=True):
+            for axial, share in enumerate(self.footprint.normal):
+                rows[raceway.series.index(axial, p, sine), k] = share * rate * math.sqrt(c)
+        carries = replace(raceway, rows=rows, give=self.compliance.give, Z=self.bearing.Z)
+        return replace(wide, M=M, C=C, K=K, raceways={**wide.raceways, "raceway": carries})
 
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""
-        return self.body.outline()
+        outline = self.body.outline()
+        none = np.zeros((len(outline.rows), len(self._folded) + (6 if self._supports else 0)))
+        return replace(outline, rows=np.hstack([outline.rows, none]))
+
+
+def _wider(element: Superelement, count: int, *raceways: str) -> Superelement:
+    """A part with `count` more coordinates, without mass and force, and those raceways that are named."""
+    none = np.zeros((count, count))
+
+    def wider(A: Array) -> Array:
+        return np.asarray(scipy.linalg.block_diag(A, none))
+
+    def padded(rows: Array) -> Array:
+        return np.hstack([rows, np.zeros((len(rows), count))])
+
+    def material(v: Viscoelastic) -> Viscoelastic:
+        strain = v.concentration
+        more = None if strain is None else np.concatenate([strain, np.ones(count)])
+        return replace(v, H=wider(v.H), concentration=more)
+
+    return replace(
+        element,
+        M=wider(element.M),
+        C=wider(element.C),
+        G=wider(element.G),
+        K=wider(element.K),
+        N=None if element.N is None else wider(element.N),
+        outputs={name: padded(r) for name, r in element.outputs.items()},
+        viscoelastic=tuple(map(material, element.viscoelastic)),
+        raceways={
+            name: replace(element.raceways[name], rows=padded(element.raceways[name].rows))
+            for name in raceways
+        },
+    )

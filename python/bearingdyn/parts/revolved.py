@@ -27,6 +27,7 @@ from bearingdyn.cms import (
     modulus_levels,
 )
 from bearingdyn.fem import (
+    ALL_COMPONENTS,
     AXIAL,
     TORSION,
     Harmonic,
@@ -34,6 +35,7 @@ from bearingdyn.fem import (
     RevolutionMesh,
     assemble_harmonic,
     deviatoric_strains,
+    factorise,
     lowest_modes,
     revolution_mesh,
 )
@@ -41,13 +43,14 @@ from bearingdyn.magnitude import plausible
 from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline, azimuths, revolved
 from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
+from bearingdyn.parts.raceway_shapes import Order, PortShapes, port_shapes
 from bearingdyn.parts.regions import Patch, Region, is_rubber
 from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_boundaries
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.round_face import RoundFace, face_of_nodes
-from bearingdyn.parts.shape_moduli import shape_moduli
+from bearingdyn.parts.shape_moduli import moduli_at, shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.static_modulus import quasi_static
 from bearingdyn.parts.strain import Strain
@@ -97,12 +100,12 @@ class Revolved:
         Ratio ζ of the free elastic modes of the elastic regions, to which the rubber adds its mass alone.
     f_max
         Modes with the interfaces held are kept up to this frequency, Hz; 0: none, the default of bodies of
-        revolution. They are taken at the lowest of the moduli.
+        revolution. They are taken at the lowest of the moduli. With grooves: what raceways and interfaces
+        feel is right to 1 % up to there, see raceway_shapes.
     moduli
         Real shear moduli, Pa, of the viscoelastic regions at which static shapes are taken; None: the relaxed
         modulus and |G*| at the fastest relaxation time of each material, and their geometric mean if they are
-        more than a hundredfold apart. Each modulus after the first adds up to five shapes for two interfaces,
-        and one for each coefficient of a groove.
+        more than a hundredfold apart. Each modulus after the first adds up to five shapes for two interfaces.
     refinement
         Mesh density; 1 gives layer stiffnesses within some 0.02 %. A mesh in `section` is taken as it is.
     grooves
@@ -201,6 +204,9 @@ class Revolved:
         ]
         z_cuts = [z for f in self.interfaces.values() if isinstance(f, Cylinder) and f.z for z in f.z]
         z_near = [z for f in tracks if isinstance(f, Cylinder) and f.z for z in f.z]
+        for groove in self.grooves.values():
+            if groove.footprint is not None:
+                z_near += groove.footprint.lines()
         return revolution_mesh(rectangles, self.refinement, r_cuts, z_cuts, z_near)
 
     @cached_property
@@ -274,7 +280,7 @@ class Revolved:
         S = np.zeros((rigid.n, rigid.n), dtype=np.complex128)
         for order, components, copies in rigid.families():
             h = self._harmonic(order, components)
-            _, k = self._shape_maker().constraint_shapes(h, shear, grooves=False)
+            _, k = self._shape_maker().constraint_shapes(h, shear)
             for copy in range(copies):
                 index, sign = rigid.place(h, copy)
                 S[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (k + k.T)
@@ -372,17 +378,122 @@ class Revolved:
         """
         if self.prestress is not None and not self.prestress.self_balanced:
             return np.eye(n)
-        Q = np.linalg.qr(self._boundaries.rigid_motion(n))[0]
+        R = self._boundaries.rigid_motion(n) if self.interfaces else np.zeros((n, 0))
+        moving = [
+            index[k]
+            for (_, _, places), shapes in zip(
+                self._placed(), self._ports if self.grooves else (), strict=False
+            )
+            for index, _ in places
+            for k in range(shapes.faces, shapes.faces + shapes.rigid)
+        ]
+        Q = np.linalg.qr(np.hstack([R, np.eye(n)[:, moving]]))[0]
         return np.asarray(np.eye(n) - Q @ Q.T)
 
     @cached_property
     def _families(self) -> list[tuple[Harmonic, Array, int, int]]:
         """Each family with its shapes, the number of constraint shapes among them, and its copies."""
+        if self.grooves:
+            return [
+                (o.h, s.Psi, s.faces, copies)
+                for (o, copies), s in zip(self._orders, self._ports, strict=True)
+            ]
         levels = shape_moduli(self.regions, self.moduli)
         found = []
         for order, components, copies in self._boundaries.families():
             h = self._harmonic(order, components)
             found.append((h, *self._shape_maker().basis(h, levels), copies))
+        return found
+
+    def order(self, n: int, components: tuple[int, ...] | None = None) -> Order:
+        """The whole model of order n: its matrices, what is held, and the rows of the raceways' coefficients.
+
+        Raises
+        ------
+        ValueError
+            For components that do not make up an order.
+        """
+        h = self._harmonic(n, (AXIAL if n == 0 else ALL_COMPONENTS) if components is None else components)
+        held, R = self._boundaries.held(h)
+        ports = self._boundaries.averages(h)
+        return Order(h=h, bulk=self._bulk, density=self._density, held=held, R=R, ports=ports)
+
+    def groove_compliance(self, n: int, groove: str, direction: Array) -> float:
+        """Static compliance of order n of a groove along a direction (r, z), the interfaces held, m/N.
+
+        Of any order, carried or not; rubber at its relaxed modulus. Of a body that nothing holds, order 0 is
+        that of the radial part alone.
+
+        Raises
+        ------
+        ValueError
+            In an order in which nothing holds the body.
+        """
+        at = 2 * list(self.grooves).index(groove)
+        return float(direction @ self.groove_compliances(n)[at : at + 2, at : at + 2] @ direction)
+
+    def groove_compliances(self, n: int) -> Array:
+        """The same of all grooves together: (2 grooves, 2 grooves), m/N, radial and axial of each in turn.
+
+        Of order 0 of a body that nothing holds only the radial part is there, its axial one zero.
+
+        Raises
+        ------
+        ValueError
+            In an order in which nothing holds the body.
+        """
+        h = assemble_harmonic(self.mesh, n, AXIAL if n == 0 else ALL_COMPONENTS)
+        held = self._boundaries.held(h)[0]
+        rows = self._boundaries.averages(h, beyond=True)
+        if not held.size and n == 1:
+            raise ValueError("order 1 of a body that nothing holds has no static compliance")
+        if not held.size and n == 0:
+            # it breathes where it is; along the axis it would fly away
+            rows[1::2], held = 0.0, np.array([1], dtype=np.intp)
+        inner = np.setdiff1d(h.free, held)
+        K = h.stiffness(self._bulk, shape_moduli(self.regions, self.moduli)[0])[inner][:, inner]
+        return np.asarray(rows[:, inner] @ factorise(K).solve(np.asarray(rows[:, inner].T, order="F")))
+
+    def carried_compliance(self, n: int, groove: str, direction: Array) -> float:
+        """The same of an order that is carried, from its shapes, which have it exactly: m/N."""
+        shear = shape_moduli(self.regions, self.moduli)[0]
+        for (order, _), shapes in zip(self._orders, self._ports, strict=True):
+            if order.h.order == n and order.h.components != TORSION:
+                Psi = shapes.Psi[:, shapes.faces :]
+                at = 2 * list(self.grooves).index(groove)
+                row = direction @ order.ports[at : at + 2] @ Psi
+                return float(row @ np.linalg.solve(Psi.T @ (order.h.stiffness(self._bulk, shear) @ Psi), row))
+        raise ValueError(f"order {n} is not carried")
+
+    @cached_property
+    def _orders(self) -> list[tuple[Order, int]]:
+        return [(self.order(n, components), copies) for n, components, copies in self._boundaries.families()]
+
+    @cached_property
+    def _ports(self) -> list[PortShapes]:
+        """Shapes of each family of a body with grooves."""
+        levels = shape_moduli(self.regions, self.moduli)
+        slow = self._shape_maker().slow_rate(levels[-1])
+        return [
+            port_shapes(order, levels, lambda omega: moduli_at(self.regions, omega), self.f_max, slow)
+            for order, _ in self._orders
+        ]
+
+    @property
+    def error(self) -> dict[int, float]:
+        """Estimate, by order, of the largest relative error over 0…f_max of what raceways and interfaces
+        feel.
+
+        Raises
+        ------
+        ValueError
+            For a body without grooves: `cms.reduction_error` tells it of the basis.
+        """
+        if not self.grooves:
+            raise ValueError("grooves is empty; ask reduction_error(part.full_model(), part.basis(), …)")
+        found: dict[int, float] = {}
+        for (order, _), shapes in zip(self._orders, self._ports, strict=True):
+            found[order.h.order] = max(shapes.error, found.get(order.h.order, 0.0))
         return found
 
     @property
@@ -477,6 +588,12 @@ class Revolved:
                     full[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (a + a.T)
                 for name, (r, z, phi) in self.outputs.items():
                     rows[name][:, index] += sign * h.point_rows(r, z, phi, whole, sine=copy == 1)
+        raceways = {name: np.zeros((len(t.series), n)) for name, t in self._boundaries.tracks.items()}
+        for h, Psi, places in self._placed():
+            felt = self._boundaries.averages(h) @ Psi
+            for copy, (index, sign) in enumerate(places):
+                for k, (name, at) in enumerate(self._boundaries.coefficients(h, copy)):
+                    raceways[name][np.ix_(at, index)] = sign * felt[2 * k : 2 * k + 2]
         loaded = np.arange(6 * len(self.interfaces))
         K[loaded, loaded] += self._load_terms
         P = self._free_of_rigid_motion(n)
@@ -492,8 +609,7 @@ class Revolved:
                 for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
             ),
             raceways={
-                name: Raceway(t.series, t.arm, np.eye(n)[self._boundaries.starts[name] :][: len(t.series)])
-                for name, t in self._boundaries.tracks.items()
+                name: Raceway(t.series, t.arm, raceways[name]) for name, t in self._boundaries.tracks.items()
             },
         )
 
@@ -569,7 +685,7 @@ class Revolved:
         volume = np.zeros(0)
         for order, components, copies in rigid.families():
             h = self._harmonic(order, components)
-            u, _ = self._shape_maker().constraint_shapes(h, levels[0], grooves=False)
+            u, _ = self._shape_maker().constraint_shapes(h, levels[0])
             e, volume = deviatoric_strains(self.mesh, order, components, h.complete(u.copy()))
             e, volume = e[elements], volume[elements].ravel()
             for copy in range(copies):

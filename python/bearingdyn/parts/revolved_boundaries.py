@@ -41,8 +41,8 @@ class Track:
 class Boundaries:
     """Boundaries of a revolved body, rigid faces and grooves, by name.
 
-    Their coordinates come in this order: six for each face, then the raceway coefficients of each groove, in
-    the order of its series.
+    The faces have six coordinates each, in their order; a groove has none: its coefficients are read off the
+    shapes.
     """
 
     faces: Mapping[str, MeshFace]
@@ -57,14 +57,13 @@ class Boundaries:
 
     @cached_property
     def starts(self) -> dict[str, int]:
-        """First coordinate of every face and groove."""
-        sizes = [6] * len(self.faces) + [len(t.series) for t in self.tracks.values()]
-        return dict(zip([*self.faces, *self.tracks], np.cumsum([0, *sizes]).tolist(), strict=False))
+        """First coordinate of every face."""
+        return {name: 6 * i for i, name in enumerate(self.faces)}
 
     @property
     def n(self) -> int:
         """Number of boundary coordinates."""
-        return 6 * len(self.faces) + sum(len(t.series) for t in self.tracks.values())
+        return 6 * len(self.faces)
 
     def families(self) -> list[tuple[int, Components, int]]:
         """Orders, components and copies that the boundaries excite.
@@ -88,10 +87,10 @@ class Boundaries:
         R = scipy.linalg.block_diag(*[h.rigid_shapes(f.nodes, f.reference) for f in faces])
         return at[kept], R[kept]
 
-    def averages(self, h: Harmonic) -> Array:
-        """Rows (2 t, n): radial and axial coefficient of this order of each groove that has it."""
+    def averages(self, h: Harmonic, beyond: bool = False) -> Array:
+        """Rows (2 t, n): radial and axial coefficient of this order of each groove that has it, or of all."""
         rows = [np.zeros((0, h.n))]
-        for track in self._with(h):
+        for track in self.tracks.values() if beyond else self._with(h):
             row = np.zeros((2, h.n))
             c = len(h.components)
             row[:, c * track.nodes + h.components.index(0)] = track.weights[:, :, 0]
@@ -103,7 +102,7 @@ class Boundaries:
         return [t for t in self.tracks.values() if h.order <= t.order and 0 in h.components]
 
     def place(self, h: Harmonic, copy: int) -> tuple[Index, Array]:
-        """Coordinates and signs of the columns of `held` and then of the rows of `averages`, in a copy."""
+        """Coordinates and signs of the columns of `held`, in a copy."""
         index: list[int] = []
         sign: list[float] = []
         if (h.order, h.components) in RIGID_SHAPES:
@@ -111,21 +110,22 @@ class Boundaries:
             for name in self.faces:
                 index += [self.starts[name] + k for k in coordinates]
                 sign += signs
-        for name, track in self.tracks.items():
-            if track in self._with(h):
-                index += [self.starts[name] + track.series.index(axial, h.order, copy) for axial in (0, 1)]
-                sign += [1.0, 1.0]
         return np.array(index, dtype=np.intp), np.array(sign)
 
+    def coefficients(self, h: Harmonic, copy: int) -> list[tuple[str, Index]]:
+        """Names of the grooves that have this order, and where a copy's rows of `averages` stand."""
+        return [
+            (name, np.array([t.series.index(axial, h.order, copy) for axial in (0, 1)], dtype=np.intp))
+            for name, t in self.tracks.items()
+            if t in self._with(h)
+        ]
+
     def rigid_motion(self, n: int) -> Array:
-        """Rigid motions (n, 5 or 6) of the body about the origin in n coordinates, internal ones at rest."""
+        """Rigid motions (n, 6) of the body about the origin in n coordinates, internal ones at rest."""
         R = np.zeros((n, 6))
         for name, face in self.faces.items():
             R[self.starts[name] + np.arange(6)] = rigid_transfer([(0.0, 0.0, face.reference)])
-        for name, t in self.tracks.items():
-            at = self.starts[name] + np.arange(len(t.series))
-            R[at] = t.series.rigid(t.arm) @ rigid_transfer([(0.0, 0.0, t.z)])
-        return R[:, np.abs(R).max(axis=0) > 0.0]
+        return R
 
 
 def find_boundaries(
@@ -137,7 +137,7 @@ def find_boundaries(
     for name, groove in grooves.items():
         face = find_face(mesh, f"grooves[{name!r}]", groove.surface)
         z = face.reference if groove.z is None else groove.z
-        nodes, weights = groove_weights(mesh, face, groove.arm, z)
+        nodes, weights = groove_weights(mesh, face, groove.arm, z, groove.footprint)
         series = RacewaySeries.up_to(groove.order)
         tracks[name] = Track(
             nodes=nodes, weights=weights, series=series, order=groove.order, arm=groove.arm, z=z

@@ -9,8 +9,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from bearingdyn.bearing import footprint_profile
 from bearingdyn.checks import positive, whole
-from bearingdyn.fem import SAME, RevolutionMesh
+from bearingdyn.fem import SAME, RevolutionMesh, lagrange
 from bearingdyn.types import Array, Index
 
 HIGHEST = 64  # Fourier order of a raceway: far more than any number of balls asks for
@@ -77,6 +78,35 @@ Face: TypeAlias = Cylinder | EndFace | Line | Where | MeshNodes
 
 
 @dataclass(frozen=True)
+class Footprint:
+    """Where the balls touch a raceway: the contact ellipse across the rolling direction.
+
+    Parameters
+    ----------
+    point
+        (r, z) of its middle, m.
+    angle
+        Of the line of contact, rad: the ring is pressed along (cos, sin) in (r, z).
+    half_length
+        Semi-axis, m.
+    """
+
+    point: tuple[float, float]
+    angle: float
+    half_length: float
+
+    @property
+    def normal(self) -> Array:
+        """(2,) the line of contact in (r, z)."""
+        return np.array([math.cos(self.angle), math.sin(self.angle)])
+
+    def lines(self) -> tuple[float, ...]:
+        """Places along z, m, at which a mesh should have lines."""
+        reach = self.half_length * math.cos(self.angle)
+        return tuple(self.point[1] + k * reach for k in (-1.0, -0.5, 0.0, 0.5, 1.0))
+
+
+@dataclass(frozen=True)
 class Groove:
     """Grooved face of a revolved body, a raceway: the motion of its groove centre by Fourier orders.
 
@@ -95,6 +125,9 @@ class Groove:
         Highest Fourier order. Raise it, up to the number of balls, until what you need has converged.
     z
         Plane of the balls, m; None: the middle of the surface.
+    footprint
+        Where the balls touch. Along the line of contact the motion is then the average under Hertz's
+        pressure, and loads act with that; None: everywhere over the surface.
 
     Raises
     ------
@@ -106,6 +139,7 @@ class Groove:
     arm: float
     order: int = 8
     z: float | None = None
+    footprint: Footprint | None = None
 
     def __post_init__(self) -> None:
         positive("arm", self.arm, "it must be a positive radius in m, as BallBearing.arm")
@@ -181,11 +215,14 @@ def _with_middles(mesh: RevolutionMesh, nodes: Index) -> Index:
     return np.union1d(nodes, mesh.edges[both, 1])
 
 
-def groove_weights(mesh: RevolutionMesh, face: MeshFace, arm: float, z: float) -> tuple[Index, Array]:
+def groove_weights(
+    mesh: RevolutionMesh, face: MeshFace, arm: float, z: float, footprint: Footprint | None = None
+) -> tuple[Index, Array]:
     """Nodes (k,), weights (2, k, 2) of a grooved face: motion of the groove centre from U and W there.
 
     The least-squares rigid motion of the section, u_r = a + φ (z − z_m), u_z = b − φ (r − r_m), taken at
-    (arm, z): exact for a rigid ring. V, along the track, does not enter: balls roll.
+    (arm, z): exact for a rigid ring. Along the line of contact of a footprint it is the average under it
+    instead, carried to the groove centre by the same turn φ. V, along the track, does not enter: balls roll.
     """
     ends = face.sides[:, [0, 2]]
     length = np.hypot(np.diff(mesh.r[ends]), np.diff(mesh.z[ends]))[:, 0]
@@ -200,4 +237,41 @@ def groove_weights(mesh: RevolutionMesh, face: MeshFace, arm: float, z: float) -
     rows[0, :, 0] = rows[1, :, 1] = w
     rows[0] += (z - z_m) * turn
     rows[1] -= (arm - r_m) * turn
+    if footprint is not None:
+        normal = footprint.normal
+        under = _pressed(mesh, face, footprint)[nodes]
+        own = under[:, None] * normal
+        # a turn about the origin moves (r, z) by (z, −r): what the footprint has of it, and the groove
+        # centre should
+        lacking = normal @ [z, -arm] - float(np.sum(own * np.stack([mesh.z[nodes], -mesh.r[nodes]], axis=-1)))
+        across = np.array([-normal[1], normal[0]])
+        rows = np.multiply.outer(normal, own + lacking * turn) + np.multiply.outer(
+            across, np.tensordot(across, rows, 1)
+        )
     return nodes, rows
+
+
+def _pressed(mesh: RevolutionMesh, face: MeshFace, footprint: Footprint) -> Array:
+    """Share (nodes,) of a ball's load at each node of the mesh, 1 in all.
+
+    Raises
+    ------
+    ValueError
+        If the footprint lies off the face.
+    """
+    x, weight = np.polynomial.legendre.leggauss(6)
+    N, slope = lagrange(x)
+    along = np.array([-footprint.normal[1], footprint.normal[0]])
+    share = np.zeros(mesh.r.size)
+    for side in face.sides:
+        at = np.stack([mesh.r[side], mesh.z[side]])
+        s = along @ (at @ N.T - np.array(footprint.point)[:, None])
+        length = weight * np.hypot(*(at @ slope.T))
+        np.add.at(share, side, N.T @ (length * footprint_profile(s / footprint.half_length)))
+    total = float(share.sum()) / footprint.half_length
+    if not total > 0.98:
+        raise ValueError(
+            f"the contact ellipse is {2e3 * footprint.half_length:.3g} mm long and {100 * (1 - total):.3g} % "
+            f"of its load lies off the groove; widen the groove, or state a smaller load"
+        )
+    return np.asarray(share / share.sum())

@@ -1,4 +1,4 @@
-"""Shapes of a body of revolution, order by order: static ones of its boundaries, and what joins them."""
+"""Shapes of a body of revolution that rigid faces join, order by order; of raceways, see raceway_shapes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy
 
 from bearingdyn.cms import inertia_shapes, orthogonalise
 from bearingdyn.fem import Harmonic, factorise, lowest_modes
@@ -41,50 +40,28 @@ class ShapeMaker:
     size: float
     inertia_rounds: int = 0
 
-    def constraint_shapes(
-        self, h: Harmonic, shear: Sequence[complex], grooves: bool = True
-    ) -> tuple[Any, Any]:
-        """Static shapes (n, columns) of unit boundary motions at given moduli, and their stiffness.
-
-        Boundary motions are those of the interfaces and, unless they are left free, of the grooves: the
-        shape of least energy that has the groove's averages, which is what loads on the groove make.
-        """
+    def constraint_shapes(self, h: Harmonic, shear: Sequence[complex]) -> tuple[Any, Any]:
+        """Static shapes (n, columns) of unit motions of the faces at given moduli, and their stiffness."""
         K = h.stiffness(self.bulk, shear)
         at, R = self.boundaries.held(h)
         inner = np.setdiff1d(h.free, at)
-        L = self.boundaries.averages(h)[: None if grooves else 0, inner]
-        faces = R.shape[1]
-        u = np.zeros((h.n, faces + len(L)), dtype=K.dtype)
-        u[at, :faces] = R
-        if inner.size:
-            lu = self._held(h, K)
-            if faces:
-                u[inner, :faces] = -lu.solve(np.asarray(K[inner][:, at] @ R, dtype=K.dtype))
-            if len(L):
-                X = lu.solve(np.asarray(L.T, dtype=K.dtype, order="F"))
-                X = X @ np.linalg.inv(L @ X)
-                u[inner, :faces] -= X @ (L @ u[inner, :faces])
-                u[inner, faces:] = X
+        u = np.zeros((h.n, R.shape[1]), dtype=K.dtype)
+        u[at] = R
+        if inner.size and R.shape[1]:
+            u[inner] = -self._held(h, K).solve(np.asarray(K[inner][:, at] @ R, dtype=K.dtype))
         return u, u.T @ (K @ u)
 
     def _held(self, h: Harmonic, K: Any) -> Any:
-        """Factors of a stiffness (n, n), the interfaces held or, where there are none, the grooves sprung."""
-        at, _ = self.boundaries.held(h)
-        inner = np.setdiff1d(h.free, at)
-        A = K[inner][:, inner]
-        if not at.size:
-            # Springs on the averages hold a free body; given averages, they change no shape.
-            L = self.boundaries.averages(h)[:, inner]
-            hold = abs(A).max() / (L**2).sum(axis=1).min()
-            A = A + hold * scipy.sparse.csr_matrix(L.T) @ scipy.sparse.csr_matrix(L)
-        return factorise(A)
+        """Factors of a stiffness (n, n), the interfaces held."""
+        inner = np.setdiff1d(h.free, self.boundaries.held(h)[0])
+        return factorise(K[inner][:, inner])
 
     def basis(self, h: Harmonic, levels: Sequence[Sequence[float]]) -> tuple[Array, int]:
         """Basis (n, columns) of a family: constraint shapes, then internal ones; and the number of the first.
 
         Internal are the differences of constraint shapes between moduli, which vanish on the boundaries,
-        and the modes with the interfaces held and the grooves free, less their motion there. They are made
-        modes of each other, of unit modal mass, and those
+        and the modes with the interfaces held. They are made modes of each other, of unit modal mass, and
+        those
         without energy of their own are dropped (torsion has none: it changes no volume, so its shape does
         not depend on the modulus).
         """
@@ -100,7 +77,7 @@ class ShapeMaker:
             for level in levels:
                 extra += self._inertia_shapes(h, h.stiffness(self.bulk, level), M, level)
         if self.f_max > 0:
-            extra.append(self._modes_beyond(h, K, M, levels[0], static))
+            extra.append(self._modes(h, K, M, levels[0]))
         internal = np.hstack(extra) if extra else np.zeros((h.n, 0))
         _, internal = orthogonalise(internal, K, M)
         return np.hstack([static, internal]), static.shape[1]
@@ -116,17 +93,12 @@ class ShapeMaker:
         def answer(load: Array) -> Array:
             u = np.zeros((h.n, load.shape[1]))
             u[inner] = lu.solve(load)
-            return self._beyond(h, u, static)[inner]
+            return u[inner]
 
         return inertia_shapes(answer, K, M, static, inner, self.inertia_rounds)
 
-    def _beyond(self, h: Harmonic, shapes: Array, static: Array) -> Array:
-        """Shapes (n, m) at rest on the interfaces, less the constraint shapes that move the grooves alike."""
-        faces = self.boundaries.held(h)[1].shape[1]
-        return np.asarray(shapes - static[:, faces:] @ (self.boundaries.averages(h) @ shapes))
-
-    def _modes_beyond(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float], static: Array) -> Array:
-        """Modes (n, m) with interfaces held and grooves free, less the constraint shapes they move by."""
+    def _modes(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float]) -> Array:
+        """Modes (n, m) with interfaces held."""
         at, _ = self.boundaries.held(h)
         inner = np.setdiff1d(h.free, at)
         shift = 0.0 if at.size else self.slow_rate(shear) ** 2
@@ -137,7 +109,7 @@ class ShapeMaker:
         elastic = squares > 1e-6 * shift
         modes = np.zeros((h.n, int(elastic.sum())))
         modes[inner] = phi[:, elastic] / np.sqrt(squares[elastic])
-        return self._beyond(h, modes, static)
+        return modes
 
     def slow_rate(self, shear: Sequence[float]) -> float:
         """A tenth of the slowest shear wave's rate, 1/s: as a shift it holds a free body and keeps digits."""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from bearingdyn.cms import modulus_levels
-from bearingdyn.material import Elastic
+from bearingdyn.material import Elastic, Maxwell
 from bearingdyn.parts.regions import Patch, Region
 
 
@@ -19,3 +21,19 @@ def shape_moduli(regions: Sequence[Region | Patch], moduli: Sequence[float] | No
     levels = np.tile(shear, (len(given := modulus_levels(materials, moduli)), 1))
     levels[:, soft] = given
     return [level.tolist() for level in levels]
+
+
+def moduli_at(regions: Sequence[Region | Patch], omega: float) -> list[complex]:
+    """Shear moduli G*(ω), Pa, of the regions, also beyond the band of a fit; ω in rad/s.
+
+    Shapes are asked for at all frequencies: nothing warns here.
+    """
+    found: list[complex] = []
+    for q in regions:
+        if isinstance(q.material, Elastic):
+            found.append(complex(q.material.G))
+            continue
+        material: Any = q.material
+        bare = replace(material, fit=None, band=None) if isinstance(material, Maxwell) else material
+        found.append(complex(np.asarray(bare.complex_modulus(omega)).item()))
+    return found

@@ -19,6 +19,7 @@ from bearingdyn.plot.mode_geometry import mode_geometry, mode_scene
 from bearingdyn.plot.mode_shape import mode_shape
 from bearingdyn.plot.orbit import orbit
 from bearingdyn.plot.orders import order_spectrum, orders
+from bearingdyn.plot.ring_shape import ring_shape
 from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.squeezed_section import squeezed_section
 from bearingdyn.plot.time_traces import time
@@ -45,6 +46,7 @@ __all__ = [
     "orbit",
     "order_spectrum",
     "orders",
+    "ring_shape",
     "shifts",
     "spectrum",
     "spectrum_of",

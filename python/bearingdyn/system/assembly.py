@@ -93,7 +93,8 @@ def assemble(app: Application) -> System:
         speeds = plan.ring_speeds(hung)
         known = hung.bearing.ring_speeds == speeds
         bearing = hung.bearing if known else replace(hung.bearing, turning=speeds)
-        bearings.append(BearingTerm(hung.name, bearing, B, series, hung.offset, ends))
+        give = 0.0 if raceway is None else raceway.give
+        bearings.append(BearingTerm(hung.name, bearing, B, series, hung.offset, ends, give))
 
     for seat in plan.fits.values():
         contacts, hold = _loose(plan, seat, select, outputs)

@@ -45,6 +45,8 @@ class BearingTerm:
         Distance along z, m, of the inner ring from where B x puts it.
     ends
         Rows (n_coefs, 6) of the interface at each end, by the interface's name.
+    give
+        What flexible rings add to Hertz at each ball by itself, m/N.
     """
 
     name: str
@@ -53,12 +55,15 @@ class BearingTerm:
     series: RacewaySeries = RIGID
     offset: float = 0.0
     ends: Mapping[str, Array] = field(default_factory=dict)
+    give: float = 0.0
 
     __repr__ = short
 
     def kernel(self) -> BearingKernel:
         """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves."""
         kernel = self.bearing.kernel(self.series)
+        if self.give != 0.0:
+            kernel = replace(kernel, give=self.give)
         if self.offset == 0.0:
             return kernel
         # e0 = x0² + y0² − A² moves by offset (2 x0 + offset), without cancellation

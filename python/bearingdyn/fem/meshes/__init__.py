@@ -5,6 +5,7 @@ from bearingdyn.fem.meshes.box_mesh import box_mesh
 from bearingdyn.fem.meshes.disc_section import disc_section
 from bearingdyn.fem.meshes.grid_lines import crowded
 from bearingdyn.fem.meshes.o_ring_mesh import o_ring_mesh
+from bearingdyn.fem.meshes.quadrilateral_element import lagrange
 from bearingdyn.fem.meshes.quadrilaterals import quadrilaterals
 from bearingdyn.fem.meshes.revolution_mesh import SAME, Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.fem.meshes.ring_mesh import ring_mesh
@@ -23,6 +24,7 @@ __all__ = [
     "crowded",
     "disc_section",
     "face_shapes",
+    "lagrange",
     "o_ring_mesh",
     "quadrilaterals",
     "revolution_mesh",

@@ -8,7 +8,18 @@ from bearingdyn.types import Array
 
 
 def lagrange(x: Array) -> tuple[Array, Array]:
-    """Lagrange functions of a quadrilateral's side, nodes −1, 0, 1, and derivatives, (points, 3) each."""
+    """Lagrange functions of a quadrilateral's side, nodes −1, 0, 1, and their derivatives.
+
+    Parameters
+    ----------
+    x
+        (points,) places along the side, −1…1.
+
+    Returns
+    -------
+    tuple of Array
+        The functions and their derivatives, (points, 3) each.
+    """
     N = np.stack([0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)], axis=-1)
     return N, np.stack([x - 0.5, -2 * x, x + 0.5], axis=-1)
 

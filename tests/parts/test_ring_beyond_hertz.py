@@ -1,0 +1,286 @@
+"""What a ring gives beyond Hertz's contact, and receptances up to a frequency, against finite elements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import bearingdyn as bd
+from bearingdyn.bearing import half_space_orders
+from bearingdyn.material import STEEL
+from bearingdyn.parts import FlexibleBearing, FlexibleRing, RigidBody, Ring, RingBed, RingPoints
+from bearingdyn.parts.raceway_shapes import felt, lossy, misfit, own_scale
+from bearingdyn.parts.shape_moduli import moduli_at
+from flexible_rings import B6305, CUSHIONED, LAYER, RING, SIZE
+
+# The contact ellipse of a ball of the 6305 under 2 kN is 3.07 mm long; the independent models have 3.0 mm.
+LOAD = 2000.0
+SOFT = bd.Maxwell(1e6, [], [], K=2e6 * 1.49 / (3 * 0.02), density=1200.0)  # ν = 0.49
+
+
+@cache
+def beyond(Z: int, order: int, outside: str) -> float:
+    """Compliance of Z equal loads beyond Hertz, µm/kN."""
+    ring = FlexibleRing(*SIZE, bearing=replace(B6305, Z=Z), order=order, outside=outside, load=LOAD)
+    return ring.compliance.of(0) * 1e9
+
+
+@pytest.mark.parametrize(("Z", "wanted"), [(3, 31.91), (7, 5.376), (8, 5.125)])
+def test_equal_loads_bend_a_free_ring_as_solid_elements_do(Z: int, wanted: float) -> None:
+    # CalculiX, 3.0 × 0.4 mm patch, less the half-space; the issue's 2 %: an even patch is not an ellipse
+    assert beyond(Z, Z + 1, "flexible") == pytest.approx(wanted, rel=0.02)
+    # orders beyond are folded: the issue's 0.5 %, here what interpolation between orders leaves
+    assert beyond(Z, 2 * Z, "flexible") == pytest.approx(beyond(Z, Z + 1, "flexible"), rel=5e-4)
+
+
+@pytest.mark.parametrize("Z", [3, 7, 8])
+def test_a_rigid_bore_stiffens(Z: int) -> None:
+    # an independent model, 3.0 × 0.4 mm patch, Z = 7; a wall 3.5 mm deep leaves balls far apart alone: any Z
+    assert beyond(Z, Z + 1, "rigid") == pytest.approx(-0.527, rel=0.03)
+
+
+def test_the_orders_of_the_half_space_are_the_half_space() -> None:
+    """h_n(a, R) = h(n a/R)/R: of twice the length half as many orders, each twice; Parseval at high ones."""
+    R, count = 0.0275, 4000
+    one, other = (half_space_orders(count, a, R, STEEL) for a in (1e-3, 2e-3))
+    # orders 50 … 99 of the length 2a are the shares of k a from 99/R to 199/R, orders 99.5 … 199.5 of a
+    joined = one[100:199].sum() + 0.5 * (one[99] + one[199])
+    assert 2 * other[50:100].sum() == pytest.approx(joined, rel=1e-5)  # halves of a bin, to its curvature
+    # at high orders only the energy of the profile counts: (1 − ν²)/(πE)·∫q̂²dκ/k, ∫q̂²dκ = 2π·(3/5)/a
+    n = 3000
+    k = n / R
+    energy = 2 * math.pi * 0.6 / 1e-3
+    wanted = (1 - STEEL.nu**2) / (math.pi * STEEL.E) * energy / k / (math.pi * R)
+    assert one[n] == pytest.approx(wanted, rel=1e-2)
+
+
+def test_a_6305_in_a_rigid_bore() -> None:
+    brg, angle = FlexibleBearing(B6305, RING), -0.5 * math.pi
+    q = brg.displacement((0.0, -3000.0, 0.0, 0.0, 0.0, 0.0), angle)
+    # an independent model; the issue's 0.3 and 0.2 %
+    assert -q[1] == pytest.approx(36.65e-6, rel=3e-3)
+    assert brg.ball_loads(q, angle).max() == pytest.approx(1971.5, rel=2e-3)
+
+
+def varying(ring: FlexibleRing, angles: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Depth of the inner ring, µm, and largest ball load, N, under 3 kN at cage angles from a ball below."""
+    brg, load = FlexibleBearing(B6305, ring), (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)
+    found = []
+    for a in angles:
+        q = brg.displacement(load, a - 0.5 * math.pi)
+        found.append((-1e6 * q[1], brg.ball_loads(q, a - 0.5 * math.pi).max()))
+    depth, peak = np.array(found).T
+    return depth, peak
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "depth", "peak", "swing"),
+    [(1e9, 1869.34, 1464.6, 2.884), (1e10, 236.35, 1502.0, 1.990), (1e11, 65.290, 1708.0, 1.192)],
+)
+def test_a_bearing_on_a_bed(stiffness: float, depth: float, peak: float, swing: float) -> None:
+    """Raw orders to 10 give the independent figures; what they lack of the race's give is 0.28 µm.
+
+    The figures were made with orders to 10 and Hertz's dent in them, 2.2 % too stiff for equal loads.
+    """
+    bed, half = RingBed(stiffness), math.pi / 7
+    y, Q = varying(replace(RING, outside=bed), (0.0, half))
+    raw = FlexibleRing(*SIZE, arm=B6305.arm, order=10, outside=bed)
+    brg = FlexibleBearing(B6305, replace(RING, order=10, outside=bed))
+    brg.__dict__["_element"] = raw.superelement()
+    load = (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)
+    q = brg.displacement(load, -0.5 * math.pi)
+    # the issue's 1e-3, and its digits
+    assert -1e6 * q[1] == pytest.approx(depth, rel=1e-4)
+    assert brg.ball_loads(q, -0.5 * math.pi).max() == pytest.approx(peak, rel=1e-4)
+    other = brg.displacement(load, half - 0.5 * math.pi)
+    # between two ball positions, the swing but for where its extremes lie
+    assert abs(1e6 * (q[1] - other[1])) == pytest.approx(swing, rel=0.02)
+    assert y[0] - depth == pytest.approx(0.28, abs=0.03)
+    assert Q[0] == pytest.approx(peak, rel=1e-3)
+
+
+def test_a_bearing_on_two_points() -> None:
+    # a soft bed keeps the ring, on whose x no load acts, from rolling off
+    held = (RingPoints((0.5 * math.pi, -0.5 * math.pi), 5e7), RingBed(1e6))
+    y, Q = varying(replace(RING, outside=held, order=10), np.linspace(0.0, 2 * math.pi / 7, 13)[:-1])
+    # order 42 of an independent model; the issue's 1.5 %
+    assert y[0] == pytest.approx(92.53, rel=0.015)
+    assert Q[0] == pytest.approx(2412.6, rel=2e-3)
+    assert np.ptp(y) == pytest.approx(26.60, rel=0.015)
+
+
+def test_free_modes_of_rings() -> None:
+    plain = Ring(*SIZE)
+    for n, wanted in ((2, 2611.8), (3, 7325.8), (4, 13869.0)):
+        # own finite elements, Timoshenko's ring and CalculiX; the issue's 0.3 %
+        assert plain.modes(n, 1).frequency[0] == pytest.approx(wanted, rel=3e-3)
+    section = {"groove": 9.2e-3, "groove_radius": 6.1e-3}
+    grooved = FlexibleRing(25.6e-3, 31e-3, 17e-3, bearing=B6305, outside="flexible", **section)
+    for n, wanted in ((2, 3849.4), (3, 10685.0)):
+        # CalculiX on the same section; the issue's 0.3 %
+        assert grooved.body.modes(n, 1).frequency[0] == pytest.approx(wanted, rel=3e-3)
+
+
+def test_orders_of_the_race_by_itself() -> None:
+    ring = FlexibleRing(*SIZE, arm=B6305.arm, outside="flexible")
+    for n, wanted in ((0, 0.43628), (2, 68.140), (3, 9.5510), (7, 0.31495), (8, 0.19937)):
+        # own finite elements, nm/N, half of the width pressed evenly; a mesh as coarse as this, to 0.2 %
+        got = ring.body.groove_compliance(n, "raceway", np.array([1.0, 0.0])) * 1e9
+        assert got == pytest.approx(wanted, rel=2e-3)
+
+
+def test_f_max_means_right_up_to_there() -> None:
+    """The stretch mode of order 1 lies above f_max, at 39.6 kHz, and is felt far below."""
+    ring = FlexibleRing(*SIZE, arm=0.021978, order=2, outside="flexible", f_max=30e3)
+    element = ring.superelement()
+    raceway = element.raceways["raceway"]
+    row = raceway.rows[raceway.series.index(0, 1, 0)]
+    for frequency, wanted in ((5e3, -1.1505e-8), (9.078e3, -3.2735e-9)):
+        D = element.K - (2 * math.pi * frequency) ** 2 * element.M
+        # the unreduced ring, in the issue to five digits; a net of 0.1 % from another mesh
+        assert row @ np.linalg.solve(D, row) == pytest.approx(wanted, rel=2e-3)
+
+
+def worst(ring: FlexibleRing, frequencies: np.ndarray) -> dict[int, float]:
+    """Largest relative error of what raceway and interface feel, by order, against the whole model."""
+    body, found = ring.body, {}
+    for (order, _), shapes in zip(body._orders, body._ports, strict=True):
+        if not len(order.ports):
+            continue
+        pairs = []
+        for f in frequencies:
+            w = 2 * math.pi * f
+            G = lossy(moduli_at(body.regions, w))
+            D = shapes.Psi.T @ (order.dynamic(G, w) @ shapes.Psi)
+            pairs.append((order.motion(G, w)[1], felt(D, order.ports @ shapes.Psi, shapes.faces)))
+        usual = np.median([np.abs(np.diag(T)) for T, _ in pairs], axis=0)
+        found[order.h.order] = max(misfit(got, T, own_scale(T, usual)) for T, got in pairs)
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rubber", ["springy", "lossy"])
+def test_receptances_in_rubber_are_right_up_to_f_max(rubber: str) -> None:
+    layer = replace(LAYER, material=SOFT) if rubber == "springy" else LAYER
+    ring = replace(CUSHIONED, layer=layer, order=10)
+    assert ring.superelement().n <= 150
+    got = worst(ring, 6e3 * np.array([0.01, 0.13, 0.31, 0.53, 0.69, 0.79, 5 / 6, 0.93, 1.0]))
+    assert max(got.values()) < 0.01  # what f_max promises
+    # what is told is that, within a factor of two, where there is anything to tell
+    for n, told in ring.error.items():
+        if got[n] > 1e-3:
+            assert 0.5 * got[n] < told < 2.0 * got[n]
+
+
+@cache
+def lines(speed: float, steps: int) -> np.ndarray:
+    """Amplitudes, µm, of the first ball-pass lines of the outside below, on a bed of 3e9 N/m³ under 500 N."""
+    bed = RingBed(3e9, damping=3e-5)
+    ring = replace(RING, outside=bed, order=10, outputs={"below": (SIZE[1], 0.0, -0.5 * math.pi)})
+    app = bd.Application()
+    app.add("rotor", RigidBody(2.0, (0.01, 0.01, 0.005)))
+    app.ground("rotor.centre", stiffness=(0, 0, 1e4, 1e4, 1e4, 1.0), damping=(500, 500, 500, 1, 1, 0.1))
+    app.add("ring", ring)
+    app.ground("ring.outer")
+    bearing = replace(B6305, angle0=-0.5 * math.pi)
+    app.bearing("b", bearing, inner="rotor.centre", outer="ring.raceway")
+    app.load("rotor.centre", (0.0, -500.0, 0.0, 0.0, 0.0, 0.0))
+    eq = bd.equilibrium(app)
+    passage = 2 * math.pi / (bearing.Z * bearing.cage_ratio * speed)
+    dt, settle = passage / steps, math.ceil(0.05 / passage)
+    periods = 4
+    run = bd.transient(
+        eq,
+        speed=speed,
+        dt=dt,
+        steps=periods * steps,
+        record=["ring.below.y"],
+        settle=settle * steps,
+        filter=False,
+    )
+    y = run["record"].values[-periods * steps :, 0]
+    return 2e6 * np.abs(np.fft.rfft(y))[periods : 5 * periods : periods] / y.size
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("speed", "steps", "wanted"),
+    [(20.0, 10000, (2.7831, 0.1822, 0.0318, 0.0459)), (300.0, 2000, (3.198, 0.5615))],
+)
+def test_lines_of_the_outside_on_a_bed(speed: float, steps: int, wanted: tuple[float, ...]) -> None:
+    # an independent march; the issue's 1 %
+    np.testing.assert_allclose(lines(speed, steps)[: len(wanted)], wanted, rtol=0.01)
+
+
+def test_the_bed_carries_the_load_that_the_race_takes() -> None:
+    stiffness, load = 1e10, (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)
+    brg = FlexibleBearing(B6305, replace(RING, outside=RingBed(stiffness), f_max=0.0))
+    q = brg.displacement(load, 0.2)
+    psi = np.linspace(0.0, 2 * math.pi, 400, endpoint=False)
+    outside, race = brg.outside(q, psi, 0.2), brg.race(q, psi, 0.2)
+    # pressure by depth, over the ring's outside: the trapezoidal rule is exact for its orders
+    area = SIZE[1] * SIZE[2] * 2 * math.pi / psi.size
+    pressed = stiffness * area * (outside[:, 0] @ np.stack([np.cos(psi), np.sin(psi)], axis=-1))
+    np.testing.assert_allclose(pressed, load[:2], atol=1e-6 * 3000)
+    # between them is the dent of 1.5 kN by orders to 8, some 2 µm of the 200
+    np.testing.assert_allclose(race[:, 0], outside[:, 0], rtol=0, atol=0.02 * np.abs(race).max())
+    with pytest.raises(ValueError, match="outside is 'rigid'"):
+        FlexibleBearing(B6305, RING).outside(q, psi)
+    with pytest.raises(ValueError, match="azimuth"):
+        brg.race(q, [math.nan])
+
+
+def test_the_shape_of_a_ring_is_drawn() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    load, below = (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0), -0.5 * math.pi
+    brg = FlexibleBearing(B6305, replace(RING, outside=RingBed(1e11), f_max=0.0))
+    ax = bd.plot.ring_shape(brg, load, below)
+    race = ax.lines[1].get_xydata()
+    motion = 1e-3 * np.hypot(*race.T) - SIZE[0]
+    q = brg.displacement(load, below)
+    wanted = brg.race(q, np.linspace(0, 2 * math.pi, 721), below)[:, 0]
+    # drawn in one proportion to what it is
+    assert np.ptp(motion / np.abs(motion).max() - wanted / np.abs(wanted).max()) < 1e-9
+    assert f"{brg.ball_loads(q, below).max():.0f} N" in ax.lines[2].get_label()
+    with pytest.raises(ValueError, match="bearing"):
+        bd.plot.ring_shape(B6305, load)
+    import matplotlib.pyplot as plt
+
+    plt.close(ax.figure)
+
+
+def test_bad_input_names_what_would_do() -> None:
+    for change, name in (
+        ({"order": 6}, "order is 6; the bearing has 7 balls.*give 8"),
+        ({"r_outer": 28.0e-3}, "r_outer.*mm thick under a contact .* at least"),
+        ({"groove": 2e-3}, "groove is 0.002"),
+        ({"load": -1.0}, "load"),
+        ({"bearing": "6305"}, "bearing"),
+        ({"outside": ()}, "outside"),
+    ):
+        with pytest.raises(ValueError, match=name):
+            replace(RING, **change)
+    with pytest.raises(ValueError, match="bearing is None"):
+        _ = FlexibleRing(*SIZE, arm=0.02).compliance
+    with pytest.raises(ValueError, match="boundary is None"):
+        FlexibleRing.of(replace(B6305, boundary=None))
+    app = bd.Application()
+    app.add("rotor", RigidBody(1.0, (1e-3,) * 3))
+    app.add("ring", RING)
+    with pytest.raises(ValueError, match="made for 7"):
+        app.bearing("b", replace(B6305, Z=8), inner="rotor.centre", outer="ring.raceway")
+    for wrong in (
+        {"stiffness": 0.0},
+        {"stiffness": 1e9, "arc": (1.0, 1.0)},
+        {"stiffness": 1e9, "axial": -1.0},
+    ):
+        with pytest.raises(ValueError, match=list(wrong)[-1]):
+            RingBed(**wrong)
+    with pytest.raises(ValueError, match="azimuth"):
+        RingPoints((), 1e7)
