@@ -159,7 +159,7 @@ def test_the_speeds_that_the_table_holds_are_told_and_true():
 @pytest.mark.slow
 def test_solving_knows_no_limits_of_the_table():
     """An oil too thick for the table: a film, a damping, and its law, which is the damping under the load."""
-    with pytest.raises(ValueError, match="L is .*the table holds"):
+    with pytest.raises(ValueError, match=r"L is .*the table holds"):
         lubricate(BRG, OIL, 0.0, 700.0, AXIAL)
     thick = lubricate(BRG, OIL, 0.0, 700.0, AXIAL, method="solve")
     assert 0 < thick.film_inner < thick.film_outer
