@@ -49,7 +49,7 @@ class Linear:
         x = np.zeros((omega.size, len(rows), len(force)), dtype=np.complex128)
         for part in (omega > 0, omega == 0):
             if part.any():
-                held = system if omega[part][0] > 0 else self._held_at_rest(modulus[part][0], force)
+                held = system if omega[part][0] > 0 else self.held_at_rest(modulus[part][0], force)
                 model = held.model([], relaxed=False)
                 x[part] = core.harmonic(
                     model,
@@ -74,7 +74,7 @@ class Linear:
             found += np.einsum("fb,bk,bl->fkl", k, v, v, optimize=True)
         return np.asarray(found)
 
-    def _held_at_rest(self, modulus: Complex, force: Array) -> System:
+    def held_at_rest(self, modulus: Complex, force: Array) -> System:
         """The system with its free motions held, which no force drives; modulus (layers,) at 0 Hz, Pa.
 
         Raises
