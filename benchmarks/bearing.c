@@ -9,7 +9,7 @@
 #include "bearing.h"
 #include "kernels.h"
 
-enum { COEFS = 5, EVALUATIONS = 2000, REPEATS = 20 };
+enum { COEFS = 5, EVALUATIONS = 2000, REPEATS = 300 };
 
 static double now(void)
 {
