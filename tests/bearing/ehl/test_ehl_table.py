@@ -59,7 +59,7 @@ def test_closed_form_over_the_density_is_the_film_of_a_hertz_contact() -> None:
 
 
 def test_beyond_l_of_20_the_damping_of_the_table_errs_a_little_more() -> None:
-    """Between L = 20 and 25 one node fewer bends the curves: 2.1 % of C0 here, where 2 % are kept below 20."""
+    """2.1 % of C0 at the upper end of L, where splines have no node beyond; 2 % are kept below L = 20."""
     solved, found = ehl.steady(150, 22.6, 0.05, accuracy=0.02), ehl.lookup(150, 22.6, 0.05).figures
     assert (found.Hc, found.H0) == pytest.approx((solved.Hc, solved.H0), rel=0.02)
     assert found.C0 == pytest.approx(solved.C0, rel=0.025)
