@@ -1,11 +1,12 @@
-/* Nanoseconds that one bearing costs, kernel by kernel: one line "isa Z turn force both" for each instruction
- * set of this machine and each number of balls. Built and run by bearing.py. */
+/* Nanoseconds that one bearing costs, kernel by kernel: one line "isa Z turn force both film" for each instruction
+ * set of this machine and each number of balls; film is both with the damping of a film instead of a constant. Built and run by bearing.py. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
+#include "bearing.h"
 #include "kernels.h"
 
 enum { COEFS = 5, EVALUATIONS = 2000, REPEATS = 300 };
@@ -59,6 +60,13 @@ int main(void)
     static const int order[COEFS] = {1, 1, 0, 1, 1}, sine[COEFS] = {0, 1, 0, 0, 1};
     static const int balls[] = {4, 8, 9, 16, 17, 24, 32, 48, 64};
 
+    double c[BD_FILM_NODES], rise[BD_FILM_NODES];
+    for (int i = 0; i < BD_FILM_NODES; i++) {
+        const double w = (double)i / BD_FILM_CELLS;
+        c[i] = 30.0 * w * w * w;
+        rise[i] = 90.0 * w * w / BD_FILM_CELLS;
+    }
+
     for (size_t s = 0; s < sizeof sets / sizeof sets[0]; s++) {
         const bd_kernels *kernels = bd_kernels_for(sets[s].isa);
         if (!kernels)
@@ -79,8 +87,11 @@ int main(void)
             };
             bd_bearing bearing;
             bd_bearing_work work;
-            double *constants = aligned_alloc(64, (bd_bearing_constants(&data) + 8) / 8 * 64);
-            double *memory = aligned_alloc(64, (bd_bearing_work_size(&data) + 8) / 8 * 64);
+            bd_bearing_data largest = data;
+            largest.contact.n_table = BD_FILM_NODES;
+            largest.contact.law = BD_DAMPING_FILM;
+            double *constants = aligned_alloc(64, (bd_bearing_constants(&largest) + 8) / 8 * 64);
+            double *memory = aligned_alloc(64, (bd_bearing_work_size(&largest) + 8) / 8 * 64);
             if (!constants || !memory)
                 return 1;
             bd_bearing_setup(&bearing, &data, constants);
@@ -88,7 +99,16 @@ int main(void)
             double turn = least(kernels, &bearing, &work, TURN);
             double force = least(kernels, &bearing, &work, FORCE);
             double both = least(kernels, &bearing, &work, BOTH);
-            printf("%s %d %.2f %.2f %.2f\n", sets[s].name, balls[b], turn, force, both);
+            data.contact = (bd_contact){.kappa = 8e9,
+                                        .law = BD_DAMPING_FILM,
+                                        .c = 2e-6,
+                                        .n_table = BD_FILM_NODES,
+                                        .table_delta = c,
+                                        .table_c = rise};
+            bd_bearing_setup(&bearing, &data, constants);
+            bd_bearing_work_carve(&bearing, &work, memory);
+            double film = least(kernels, &bearing, &work, BOTH);
+            printf("%s %d %.2f %.2f %.2f %.2f\n", sets[s].name, balls[b], turn, force, both, film);
             free(constants);
             free(memory);
         }

@@ -13,6 +13,7 @@ import tempfile
 from pathlib import Path
 
 import architecture
+import contact_figure
 import sheet_figure
 
 HERE = Path(__file__).parent
@@ -31,6 +32,8 @@ def make() -> None:
     sheet_figure.draw(STATIC / "sheet.svg")
     squeezed_picture(STATIC / "squeezed.png")
     ring_picture(STATIC / "ring.png")
+    contact_figure.maps(STATIC / "contact_maps.png")
+    contact_figure.damping(STATIC / "contact_damping.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))

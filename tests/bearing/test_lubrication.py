@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import math
+import re
 
 import numpy as np
 import pytest
@@ -137,6 +139,33 @@ def test_a_contact_outside_of_the_table_is_named_with_what_helps():
     assert math.isnan(formula.damping)
     with pytest.raises(ValueError, match="damping is True; the table"):
         formula.applied(BRG)
+
+
+def test_the_speeds_that_the_table_holds_are_told_and_true():
+    with pytest.raises(ValueError, match="it holds") as told:
+        lubricate(BRG, OIL, 70.0, 1.0, AXIAL)
+    held = re.search(r"it holds (\S+) to (\S+) rad/s$", str(told.value))
+    assert held is not None
+    low, high = map(float, held.groups())
+    # three digits are told
+    for race_speed in (low * 1.01, high * 0.99):
+        with contextlib.suppress(ValueError):  # the outer race may end before
+            assert lubricate(BRG, OIL, 70.0, race_speed, AXIAL).damping_inner > 0
+    for race_speed in (low * 0.99, high * 1.01):
+        with pytest.raises(ValueError, match="inner race"):
+            lubricate(BRG, OIL, 70.0, race_speed, AXIAL)
+
+
+@pytest.mark.slow
+def test_solving_knows_no_limits_of_the_table():
+    """An oil too thick for the table: a film, a damping, and its law, which is the damping under the load."""
+    with pytest.raises(ValueError, match=r"L is .*the table holds"):
+        lubricate(BRG, OIL, 0.0, 700.0, AXIAL)
+    thick = lubricate(BRG, OIL, 0.0, 700.0, AXIAL, method="solve")
+    assert 0 < thick.film_inner < thick.film_outer
+    assert thick.law is not None
+    s = (thick.Q / BRG.kappa) ** (2 / 3)
+    assert float(thick.law.at(s)) == pytest.approx(thick.damping, rel=1e-2)  # cubics between 65 nodes
 
 
 def test_kinematics_at_the_loaded_angle():

@@ -49,6 +49,8 @@ class AnswerUnderLoads:
 class FilmAnswer:
     """The contacts of a ball and what they run on, from which the table of `ehl` has their answer.
 
+    Contacts that it does not hold answer as the nearest that it holds.
+
     Parameters
     ----------
     inner, outer
@@ -65,17 +67,15 @@ class FilmAnswer:
     temperature: float
     us: float
 
-    def loads(self) -> tuple[float, float] | None:
-        """Least and largest load at which the table holds both contacts, N; None where it holds none."""
+    def loads(self) -> tuple[float, float]:
+        """Least and largest load at which the table holds both contacts, N."""
         low, high = 0.0, np.inf
         for contact in (self.inner, self.outer):
-            M, L, D = self._groups(contact)
-            if not ehl.in_table(L, D):
-                return None
+            M, _, D = self._groups(contact)
             least, largest = ehl.loads_between(D)
             # a hair inside, for round-off
             low, high = max(low, least / M * (1 + 1e-9)), min(high, largest / M * (1 - 1e-9))
-        return (low, high) if low < high else None
+        return low, high
 
     def turning_load(self) -> float:
         """Load, N, at which both contacts have turned from rigid bodies on a film to Hertz contacts."""
@@ -87,17 +87,8 @@ class FilmAnswer:
         return in_series(*self._looked_up(Q))
 
     def under(self, loads: Array) -> AnswerUnderLoads:
-        """The answer of balls under loads (b,), N; those that the table does not hold are taken at its end.
-
-        Raises
-        ------
-        ValueError
-            Where the table holds none.
-        """
-        ends = self.loads()
-        if ends is None:
-            raise ValueError(f"loads is {loads!r}; the table of contacts holds none of these contacts")
-        held = np.log(np.clip(loads, *ends))
+        """The answer of balls under loads (b,), N; one that the table does not hold is taken at its end."""
+        held = np.log(np.clip(loads, *self.loads()))
         nodes, to_balls = held, np.eye(held.size)
         if held.size > _LOADS:
             nodes = np.linspace(held.min(), held.max() + 1e-9, _LOADS)
@@ -106,19 +97,22 @@ class FilmAnswer:
         return AnswerUnderLoads(tuple(found), to_balls)
 
     def _looked_up(self, Q: float) -> _Pair:
+        eta0, alpha = self.lubricant.viscosity(self.temperature), self.lubricant.alpha
         inner, outer = (
-            ehl.look_up(contact, self.lubricant, Q, self.us, self.temperature)
+            ehl.LubricatedContact(contact, Q, self.us, eta0, alpha, ehl.lookup(M * Q, L, D))
             for contact in (self.inner, self.outer)
+            for M, L, D in (self._groups(contact),)
         )
         return inner, outer
 
     def _groups(self, contact: PointContact) -> tuple[float, float, float]:
-        """M, L, D under 1 N."""
+        """M under 1 N, and the L and D of the table that are nearest."""
         oil = self.lubricant
-        return ehl.scales(contact, 1.0, self.us, oil.viscosity(self.temperature), oil.alpha)
+        M, L, D = ehl.scales(contact, 1.0, self.us, oil.viscosity(self.temperature), oil.alpha)
+        return M, *ehl.nearest_in_table(L, D)
 
 
 def in_series(inner: ehl.LubricatedContact, outer: ehl.LubricatedContact) -> float:
-    """Damping of two contacts under one force at low frequency, N s/m: c = k²(c_i/k_i² + c_o/k_o²)."""
+    """Damping of one ball by two lubricated contacts, N s/m, at low frequency: k²(c_i/k_i² + c_o/k_o²)."""
     k = 1 / (1 / inner.k0 + 1 / outer.k0)
     return k**2 * (inner.c0 / inner.k0**2 + outer.c0 / outer.k0**2)

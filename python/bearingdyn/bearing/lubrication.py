@@ -15,6 +15,7 @@ from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.contact_damping import FILM_NODES, FilmDamping
 from bearingdyn.bearing.film_answer import FilmAnswer, in_series
 from bearingdyn.bearing.film_thickness import hamrock_dowson, nijenbanning_venner_moes
+from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.load_distribution import load_distribution
 from bearingdyn.bearing.lubricant import Lubricant
 from bearingdyn.bearing.oil_supply import OilSupply
@@ -24,9 +25,8 @@ from bearingdyn.magnitude import check_speed_value, plausible
 FilmLaw = Literal["ehl", "nijenbanning-venner-moes", "hamrock-dowson"]
 Method = Literal["table", "solve"]
 _RACES = ("inner", "outer")
-_WIDE = (
-    10.0  # load at w = ½ of FilmDamping over that at which a ball turns from a rigid one to a Hertz contact
-)
+# load at w = ½ of FilmDamping over that at which a ball turns from a rigid one to a Hertz contact
+_WIDE = 10.0
 _RIGID = 3  # c of rigid bodies on a film is as Q³: film as Q^−2, damping as film^−3/2
 
 
@@ -110,8 +110,8 @@ def lubricate(
         relative density at the Hertz pressure, because formulas are fits of an oil that does not yield.
     method
         Where the figures of "ehl" come from: the "table", or "solve" the equations for both contacts, which
-        takes some seconds and knows no limits of a table. The damping over other loads is the table's, in
-        proportion.
+        takes some seconds and knows no limits of a table. The damping over other loads is the table's, at the
+        nearest L and D that it holds, in proportion.
     starvation
         Film over fully flooded film, in 0..1. Grease soon runs starved, at about half the flooded film: a
         rule of thumb, unverified; the factor is approximate by nature. Damping is that of the flooded film.
@@ -194,6 +194,7 @@ def lubricated(
             if law == "ehl":
                 raise ValueError(
                     f"{race} race under {Q:.4g} N: {outside}, here method='solve', or a formula by law=…"
+                    f"{_speeds_held(contact, supply, Q, us)}"
                 ) from None
             found.append(None)
     if law == "ehl":
@@ -234,10 +235,9 @@ def _over_load(
 ) -> FilmDamping | None:
     """Damping of a ball over its load: the table's, in proportion so that it is c under Q; else None."""
     answer = FilmAnswer(bearing.inner_contact, bearing.outer_contact, oil, T, us)
-    ends = answer.loads()
-    if math.isnan(c) or ends is None:
+    low, high = answer.loads()
+    if math.isnan(c) or not low < high:
         return None
-    low, high = ends
 
     def damping(F: float) -> float:
         return answer.damping(min(max(F, low), high)) * min(F / low, 1.0) ** _RIGID
@@ -248,6 +248,19 @@ def _over_load(
     values = [0.0, *(damping(float(F)) for F in loads)]
     values.append(values[-1])
     return FilmDamping(scale, np.array(values) * (c / damping(Q)), answer)
+
+
+def _speeds_held(contact: PointContact, supply: OilSupply, Q: float, us: float) -> str:
+    """What to say of the speeds at which the table holds a contact under Q; nothing where there is none."""
+    oil = supply.lubricant
+    M, L, D = ehl.scales(contact, Q, us, oil.viscosity(supply.temperature), oil.alpha)
+    if D != ehl.nearest_in_table(L, D)[1]:
+        return ""
+    (M_low, M_high), (L_low, L_high) = ehl.table_ends(D)
+    # M falls with speed^¾, L rises with speed^¼
+    slow = abs(supply.speed) * max((M / M_high) ** (4 / 3), (L_low / L) ** 4)
+    fast = abs(supply.speed) * min((M / M_low) ** (4 / 3), (L_high / L) ** 4)
+    return f"; under this load it holds {slow:.3g} to {fast:.3g} rad/s" if slow < fast else ""
 
 
 def _check_rolling(bearing: BallBearing, supply: OilSupply) -> None:

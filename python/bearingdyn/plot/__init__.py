@@ -9,7 +9,9 @@ from bearingdyn.plot.ball_loads import ball_loads
 from bearingdyn.plot.bearing_spectrum import bearing_spectrum
 from bearingdyn.plot.bearing_stiffness import bearing_stiffness
 from bearingdyn.plot.campbell import campbell
+from bearingdyn.plot.contact_damping import contact_damping
 from bearingdyn.plot.film import film
+from bearingdyn.plot.film_map import film_map
 from bearingdyn.plot.frequency_response import frequency_response
 from bearingdyn.plot.isotherms import isotherms, master, shifts
 from bearingdyn.plot.layer_stiffness import layer_stiffness
@@ -34,7 +36,9 @@ __all__ = [
     "campbell",
     "causality",
     "cole_cole",
+    "contact_damping",
     "film",
+    "film_map",
     "frequency_response",
     "isotherms",
     "layer_stiffness",

@@ -9,7 +9,7 @@ from bearingdyn.bearing.ehl.lubricated_contact import LubricatedContact, SolvedC
 from bearingdyn.bearing.ehl.march import March, march
 from bearingdyn.bearing.ehl.oil import relative_density
 from bearingdyn.bearing.ehl.steady_film import Figures, Level, Steady, steady
-from bearingdyn.bearing.ehl.table_lookup import Lookup, in_table, loads_between, lookup
+from bearingdyn.bearing.ehl.table_lookup import Lookup, loads_between, lookup, nearest_in_table, table_ends
 from bearingdyn.bearing.ehl.table_places import turning_load
 
 __all__ = [
@@ -20,14 +20,15 @@ __all__ = [
     "March",
     "SolvedContact",
     "Steady",
-    "in_table",
     "loads_between",
     "look_up",
     "lookup",
     "march",
+    "nearest_in_table",
     "relative_density",
     "scales",
     "solve",
     "steady",
+    "table_ends",
     "turning_load",
 ]

@@ -151,12 +151,15 @@ def lookup(M: float, L: float, D: float) -> Lookup:
     )
 
 
-def in_table(L: float, D: float) -> bool:
-    """Whether a lookup in the table can serve L and D."""
+def nearest_in_table(L: float, D: float) -> tuple[float, float]:
+    """The L and D of the table that are nearest to those given."""
     _, (L_low, L_high), (D_low, D_high) = _pieces().ends
-    return (
-        L_low - _SLACK <= L <= L_high + _SLACK and D > 0 and D_low - _SLACK <= math.log(D) <= D_high + _SLACK
-    )
+    return min(max(L, L_low), L_high), min(max(D, math.exp(D_low)), math.exp(D_high))
+
+
+def table_ends(D: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Least and largest M that the table holds for D, and least and largest L."""
+    return loads_between(D), _pieces().ends[1]
 
 
 def loads_between(D: float) -> tuple[float, float]:

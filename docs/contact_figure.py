@@ -1,0 +1,102 @@
+"""Draws film and pressure of a 6205's contact, and its damping by frequency, load, speed and temperature."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+
+INK, BLUE, ORANGE, GREEN = "#22313f", "#2b6ea6", "#c9692c", "#3a8a6e"
+RPM = math.pi / 30
+LOAD, SPEED, TEMPERATURE = 100.0, 3000.0, 60.0  # N on a ball, rpm, °C
+
+
+def maps(path: Path) -> None:
+    """Write the maps of film and pressure of the inner contact as PNG."""
+    import matplotlib.pyplot as plt
+
+    import bearingdyn as bd
+    from bearingdyn.bearing import ehl
+
+    ball = bd.catalogue.bearing("6205", clearance=10e-6)
+    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
+    us = surface_speed(ball, SPEED)
+    found = ehl.solve(ball.inner_contact, oil, LOAD, us, TEMPERATURE, accuracy=0.02)
+    figure, axes = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
+    bd.plot.film_map(found, axes[0])
+    bd.plot.film_map(found, axes[1], quantity="pressure")
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def surface_speed(ball: object, rpm: float) -> float:
+    """Sum of the surface speeds in each contact, m/s, by `lubricate` at a light axial load."""
+    import bearingdyn as bd
+
+    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
+    return bd.bearing.lubricate(ball, oil, TEMPERATURE, rpm * RPM, (0, 0, 500.0, 0, 0, 0)).us
+
+
+def damping(path: Path) -> None:
+    """Write c of a 6205 over frequency, load, speed and temperature as SVG or PNG."""
+    import matplotlib.pyplot as plt
+
+    import bearingdyn as bd
+    from bearingdyn.bearing import OilSupply, ehl
+    from bearingdyn.bearing.lubrication import lubricated
+
+    ball = bd.catalogue.bearing("6205", clearance=10e-6)
+    walther = bd.bearing.Walther
+    oils = {f"VG {vg}": bd.bearing.Lubricant(walther.iso_vg(vg)) for vg in (32, 100)}
+    oil = oils["VG 32"]
+    figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.2), layout="constrained")
+
+    ax, us = axes[0, 0], surface_speed(ball, SPEED)
+    f = np.geomspace(50, 20e3, 300)
+    for T, colour in ((40.0, BLUE), (60.0, GREEN), (80.0, ORANGE)):
+        one = ehl.look_up(ball.inner_contact, oil, LOAD, us, T)
+        ax.semilogx(f, one.stiffness(f).imag / (2 * np.pi * f), color=colour, label=f"{T:.0f} °C")
+    ax.set_xlabel("frequency, Hz")
+    ax.set_title(f"inner contact, {LOAD:.0f} N, {SPEED:.0f} rpm, VG 32", fontsize=10)
+
+    def of_ball(oil: object, Q: float, rpm: float, T: float) -> float:
+        return lubricated(ball, OilSupply(oil, T, rpm * RPM), Q, 0.2).damping
+
+    ax = axes[0, 1]
+    for rpm, colour in ((1000.0, BLUE), (3000.0, GREEN), (8000.0, ORANGE)):
+        loads = np.geomspace(1, 1000, 60)
+        law = lubricated(ball, OilSupply(oil, TEMPERATURE, rpm * RPM), LOAD, 0.2).law
+        ax.semilogx(loads, law.at((loads / ball.kappa) ** (2 / 3)), color=colour, label=f"{rpm:.0f} rpm")
+    ax.set_xlabel("load of the ball, N")
+    ax.set_title("both contacts in series, VG 32, 60 °C", fontsize=10)
+
+    ax = axes[1, 0]
+    speeds = np.geomspace(1000, 8000, 30)
+    for T, colour in ((40.0, BLUE), (60.0, GREEN), (80.0, ORANGE)):
+        ax.plot(speeds, [of_ball(oil, LOAD, rpm, T) for rpm in speeds], color=colour, label=f"{T:.0f} °C")
+    ax.axhline(30.0, color=INK, lw=0.7, ls="--")
+    ax.set_xlabel("speed, rpm")
+    ax.set_title(f"both contacts, {LOAD:.0f} N, VG 32; dashed: 30 N s/m", fontsize=10)
+
+    ax = axes[1, 1]
+    T = np.linspace(40, 100, 31)
+    for (name, each), colour in zip(oils.items(), (BLUE, ORANGE), strict=True):
+        ax.plot(T, [of_ball(each, LOAD, SPEED, t) for t in T], color=colour, label=name)
+    ax.axhline(30.0, color=INK, lw=0.7, ls="--")
+    ax.set_xlabel("temperature, °C")
+    ax.set_title(f"both contacts, {LOAD:.0f} N, {SPEED:.0f} rpm; dashed: 30 N s/m", fontsize=10)
+
+    for ax in axes.flat:
+        ax.set_ylabel("c, N s/m")
+        ax.legend(frameon=False, fontsize=8)
+        ax.spines[["top", "right"]].set_visible(False)
+    figure.savefig(path)
+    plt.close(figure)
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    maps(folder / "contact_maps.png")
+    damping(folder / "contact_damping.png")
