@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, TypeAlias
 
 from bearingdyn.application.channel import GROUND
@@ -101,6 +101,46 @@ def check_bearing(
     if seat.kind != own.kind:
         _check_shoulder(own, seat.room, title, str(place))
         _check_carried(own, seat, title, str(place), least=HALF)
+
+
+def check_beside(
+    name: str,
+    bearing: BallBearing,
+    faces: Sequence[RoundFace],
+    others: Mapping[str, tuple[BallBearing, Sequence[RoundFace]]],
+) -> None:
+    """Check that a bearing finds room on its shaft beside those that sit there.
+
+    Parameters
+    ----------
+    name, bearing, faces
+        The bearing, and the faces of its seat.
+    others
+        name -> bearing and faces of the others on the same part.
+
+    Raises
+    ------
+    ValueError
+        Where two rings would lie in one place.
+    """
+    here = _place_on_shaft(bearing, faces)
+    for other, neighbour in others.items():
+        there = _place_on_shaft(*neighbour)
+        if here is None or there is None:
+            continue
+        room, needed = abs(here[0] - there[0]), 0.5 * (here[1] + there[1])
+        if not room >= (1.0 - INTRUDES) * needed:
+            raise ValueError(
+                f"bearings {name!r} and {other!r} sit {1e3 * room:.4g} mm apart on one shaft and need "
+                f"{1e3 * needed:.4g} mm, for they are {1e3 * here[1]:.4g} and {1e3 * there[1]:.4g} mm wide; "
+                "give each a seat of its own, or pass fits=False"
+            )
+
+
+def _place_on_shaft(bearing: BallBearing, faces: Sequence[RoundFace]) -> tuple[float, float] | None:
+    """z along the shaft and width, m, of a bearing's inner ring; None where either is not known."""
+    at = next((face.at for face in faces if face.at is not None and face.kind == "shaft"), None)
+    return None if at is None or bearing.boundary is None else (at, bearing.boundary[2])
 
 
 def _misfit(inside: float, around: float) -> float:

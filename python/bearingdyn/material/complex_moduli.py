@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import positive, require, two
 from bearingdyn.magnitude import check_density, check_waves, plausible
 from bearingdyn.material.amplitude import Payne, Softening
 from bearingdyn.material.dma import DMAData
@@ -50,7 +50,7 @@ def _approximate(
     tolerance: float,
 ) -> Maxwell:
     """Maxwell model of a modulus in a band, Hz; its `fit` holds the rms and largest error."""
-    low, high = float(band[0]), float(band[1])
+    low, high = two("band", band, "it must be a lower and a higher frequency, both positive, Hz")
     if not 0 < low < high < math.inf:
         raise ValueError(f"band is {band!r} Hz; it must be a lower and a higher frequency, both positive")
     count = max(40, round(_PER_DECADE * math.log10(high / low)))
@@ -119,6 +119,9 @@ class TabulatedModulus(Softening):
                 )
             if not (np.all(values > 0) and np.all(np.isfinite(values))):
                 raise ValueError(f"TabulatedModulus.{name}: every value must be positive and finite")
+            kind = {"frequency": "frequency", "storage": "shear modulus"}.get(name, "branch modulus")
+            for limit in (values.min(), values.max()):
+                plausible(kind, f"TabulatedModulus.{name}", float(limit))
             values.flags.writeable = False
             object.__setattr__(self, name, values)
         if not np.all(np.diff(self.frequency) > 0):

@@ -1,5 +1,6 @@
 """Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
 
+from bearingdyn.cms import HasRoundFaces, RoundFace
 from bearingdyn.fem import Section, quadrilaterals
 from bearingdyn.parts.damping_sample import damping_sample
 from bearingdyn.parts.disc import Disc
@@ -17,7 +18,6 @@ from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
 from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring
-from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
 from bearingdyn.parts.specimen import specimen_factor

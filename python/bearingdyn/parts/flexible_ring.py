@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from bearingdyn.checks import instance, one_of, positive
-from bearingdyn.cms import Superelement
+from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
@@ -20,7 +20,6 @@ from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder, Face, Groove, Line, Where
-from bearingdyn.parts.round_face import RoundFace
 
 
 @dataclass(frozen=True)
@@ -93,6 +92,11 @@ class FlexibleRing:
         for name in ("r_outer", "width"):
             plausible("length", name, getattr(self, name))
         plausible("length", "arm", positive("arm", self.arm, "it must be a positive radius in m"))
+        if not self.arm < self.r_outer:
+            raise ValueError(
+                f"arm is {self.arm} m; it must lie inside the ring, below r_outer = {self.r_outer} m: it is "
+                "the radius on which the centres of the outer groove lie; take bearing.arm"
+            )
         for name in ("groove", "groove_radius"):
             if getattr(self, name) is not None:
                 positive(name, getattr(self, name), "it must be a positive length in m")
@@ -184,7 +188,7 @@ class FlexibleRing:
 
     def superelement(self) -> Superelement:
         """Reduced matrices: interface, raceway coefficients, internal modes; see Revolved.superelement."""
-        return self.body.superelement()
+        return replace(self.body.superelement(), faces=self.round_faces())
 
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""

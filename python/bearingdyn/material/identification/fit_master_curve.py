@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import positive, require, two
 from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.fit_report import FitReport, OutsideBand
@@ -281,7 +281,7 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
     low, high = float(master.frequency[0]), float(master.frequency[-1])
     if band is None:
         band = (low, high)
-    f_lo, f_hi = float(band[0]), float(band[1])
+    f_lo, f_hi = two("band", band, "it must be a lower and a higher frequency, both positive, Hz")
     if not 0 < f_lo < f_hi < math.inf:
         raise ValueError(f"band is {band!r} Hz; it must be a lower and a higher frequency, both positive")
     keep = (master.frequency >= f_lo) & (master.frequency <= f_hi)

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import nonnegative, positive, require
+from bearingdyn.checks import instance, nonnegative, positive, require
 from bearingdyn.material.dma import DMAData, Mode, check_range
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shear_from_tension import shear_modulus
@@ -195,6 +195,7 @@ def master_curve(
     require(-ZERO_CELSIUS < T_ref < 1e4, "T_ref", T_ref, "it must be a temperature in °C")
     if smoothness is not None:
         nonnegative("smoothness", smoothness)
+    instance("dma", dma, (DMAData, RelaxationData), "it must be the result of `read_dma`")
     check_range(dma)
     doubt_runs(dma)
     # converted relaxation is causal by construction
