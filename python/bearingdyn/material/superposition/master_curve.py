@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import instance, nonnegative, positive, require
+from bearingdyn.checks import instance, nonnegative, number, positive, require, truth
 from bearingdyn.material.dma import DMAData, Mode, check_range
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shear_from_tension import shear_modulus
@@ -189,9 +189,15 @@ def master_curve(
     Paper §3.2; M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
     """
     known = ("wlf", "arrhenius", "joined", "free")
-    require(law in known, "law", law, "it must be 'wlf', 'arrhenius', 'joined' or 'free'")
+    require(
+        isinstance(law, str) and law in known, "law", law, "it must be 'wlf', 'arrhenius', 'joined' or 'free'"
+    )
     possible = law_from == "shifts" or (law_from == "data" and law != "free")
     require(possible, "law_from", law_from, "it must be 'shifts', or 'data' with a law that has constants")
+    T_ref = number("T_ref", T_ref, "it must be a temperature in °C")
+    clean = truth("clean", clean)
+    if shifts is not None:
+        instance("shifts", shifts, Mapping, "it must be a mapping, temperature -> decades, or None")
     require(-ZERO_CELSIUS < T_ref < 1e4, "T_ref", T_ref, "it must be a temperature in °C")
     if smoothness is not None:
         nonnegative("smoothness", smoothness)
@@ -201,7 +207,8 @@ def master_curve(
     # converted relaxation is causal by construction
     used, left_out = _cleaned(dma, clean and not isinstance(dma, RelaxationData))
     if vertical is not None:
-        vertical = RhoT(float(T_ref)) if vertical == "rhoT" else vertical
+        vertical = RhoT(float(T_ref)) if isinstance(vertical, str) and vertical == "rhoT" else vertical
+        instance("vertical", vertical, RhoT, "it must be 'rhoT', a RhoT(T_ref), or None")
         remedy = f"its T_ref must be that of the curve, {T_ref:g} °C"
         require(vertical.T_ref == T_ref, "vertical", vertical, remedy)
         factor = vertical.factor(used.temperature)
@@ -276,9 +283,10 @@ def _levels(
     smoothness: float | None,
 ) -> Levels | None:
     """Factors of the runs, as asked for; None to leave moduli as measured."""
-    if levels is None or (levels == "find" and by_hand):
+    find = isinstance(levels, str) and levels == "find"
+    if levels is None or (find and by_hand):
         return None
-    if levels == "find":
+    if find:
         return find_levels(dma, T_ref, law, smoothness)
     require(isinstance(levels, Mapping), "levels", levels, "it must be 'find', {run: factor} or None")
     unknown = sorted(set(levels) - set(dma.runs))
