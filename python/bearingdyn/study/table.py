@@ -43,7 +43,7 @@ def table(cases: Sequence[Case], units: Mapping[str, str] | None = None) -> xarr
     cases = items("cases", cases, remedy)
     for case in cases:
         instance("cases", case, Case, remedy)
-    units = named("units", units or {}, "it must be a mapping, column -> unit, or None")
+    units = named("units", {} if units is None else units, "it must be a mapping, column -> unit, or None")
     if not cases:
         raise ValueError("a table needs at least one case")
     parameters = list(cases[0].parameters)

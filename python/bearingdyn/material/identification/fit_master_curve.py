@@ -125,8 +125,14 @@ def fit_maxwell(
         require(pin is None, "pin", pin, "a fit to relaxation reaches as far down as its data; leave it out")
         return fit_relaxation(master, n, band, K=K, density=density, fixed=fixed, tolerance=tolerance)
     master = one_curve(master)
-    fixed = named("fixed", fixed or {}, "it must be a mapping, parameter -> value, or None")
-    bounds = named("bounds", bounds or {}, "it must be a mapping, parameter -> (lowest, highest), or None")
+    fixed = named(
+        "fixed", {} if fixed is None else fixed, "it must be a mapping, parameter -> value, or None"
+    )
+    bounds = named(
+        "bounds",
+        {} if bounds is None else bounds,
+        "it must be a mapping, parameter -> (lowest, highest), or None",
+    )
     points = replace(_inside(master, band, K, 1 if n == "auto" else n), pin=_pinned(master, K, pin))
     held = dict(fixed) | ({} if dashpot else {"eta0": 0.0})
     limits = {k: v for k, v in bounds.items() if dashpot or k != "eta0"}
