@@ -283,11 +283,11 @@ def _levels(
     smoothness: float | None,
 ) -> Levels | None:
     """Factors of the runs, as asked for; None to leave moduli as measured."""
-    find = isinstance(levels, str) and levels == "find"
-    if levels is None or (find and by_hand):
+    if levels is None:
         return None
-    if find:
-        return find_levels(dma, T_ref, law, smoothness)
+    if isinstance(levels, str):
+        require(levels == "find", "levels", levels, "it must be 'find', {run: factor} or None")
+        return None if by_hand else find_levels(dma, T_ref, law, smoothness)
     require(isinstance(levels, Mapping), "levels", levels, "it must be 'find', {run: factor} or None")
     unknown = sorted(set(levels) - set(dma.runs))
     require(not unknown, "levels", levels, f"there are the runs {list(dma.runs)}, not {unknown}")
