@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, TypeAlias
 
 from bearingdyn.application.channel import GROUND
+from bearingdyn.application.joints import BearingJoint
 from bearingdyn.application.place import Place
-from bearingdyn.bearing import BallBearing
 from bearingdyn.notice import FitWarning, warn
 from bearingdyn.parts import RoundFace
 
@@ -63,9 +63,7 @@ def check_connection(
             _check_carried(own, other, str(name), str(neighbour), least=0.0)
 
 
-def check_bearing(
-    name: str, bearing: BallBearing, ring: Ring, place: Place, faces: Sequence[RoundFace]
-) -> None:
+def check_bearing(joint: BearingJoint, ring: Ring, place: Place, faces: Sequence[RoundFace]) -> None:
     """Check that one ring of a bearing fits its neighbour: a seat, or a body that stands for the ring.
 
     Raises
@@ -75,7 +73,8 @@ def check_bearing(
     """
     if not faces or place == GROUND:
         return
-    title = f"the {ring} ring of bearing {name!r}"
+    bearing, at = joint.bearing, joint.place
+    title = f"the {ring} ring of bearing {joint.name!r}"
     half = 0.5 * (bearing.Dpw + (-1 if ring == "inner" else 1) * bearing.Dw)
     hollow = {face.kind for face in faces} == {"shaft", "bore"}
     if bearing.boundary is None:
@@ -85,7 +84,7 @@ def check_bearing(
     own = RoundFace(
         "bore" if ring == "inner" else "shaft",
         0.5 * (bore if ring == "inner" else outside),
-        (-0.5 * width, 0.5 * width),
+        (at - 0.5 * width, at + 0.5 * width),
     )
     # a ring of its own has the bearing's bore or outside, a seat meets it: the radius is the same
     candidates = [face for face in faces if face.kind != own.kind or (hollow and face.beside)]
@@ -104,43 +103,36 @@ def check_bearing(
 
 
 def check_beside(
-    name: str,
-    bearing: BallBearing,
-    faces: Sequence[RoundFace],
-    others: Mapping[str, tuple[BallBearing, Sequence[RoundFace]]],
+    joint: BearingJoint,
+    others: Sequence[BearingJoint],
+    faces: Callable[[Place], Sequence[RoundFace]],
 ) -> None:
-    """Check that a bearing finds room on its shaft beside those that sit there.
-
-    Parameters
-    ----------
-    name, bearing, faces
-        The bearing, and the faces of its seat.
-    others
-        name -> bearing and faces of the others on the same part.
+    """Check that a bearing finds room on its shaft beside the others that sit there.
 
     Raises
     ------
     ValueError
         Where two rings would lie in one place.
     """
-    here = _place_on_shaft(bearing, faces)
-    for other, neighbour in others.items():
-        there = _place_on_shaft(*neighbour)
+    here = _place_on_shaft(joint, faces(joint.inner))
+    for other in others:
+        there = _place_on_shaft(other, faces(other.inner))
         if here is None or there is None:
             continue
         room, needed = abs(here[0] - there[0]), 0.5 * (here[1] + there[1])
         if not room >= (1.0 - INTRUDES) * needed:
             raise ValueError(
-                f"bearings {name!r} and {other!r} sit {1e3 * room:.4g} mm apart on one shaft and need "
-                f"{1e3 * needed:.4g} mm, for they are {1e3 * here[1]:.4g} and {1e3 * there[1]:.4g} mm wide; "
-                "give each a seat of its own, or pass fits=False"
+                f"bearings {joint.name!r} and {other.name!r} sit {1e3 * room:.4g} mm apart on one shaft and "
+                f"need {1e3 * needed:.4g} mm, for they are {1e3 * here[1]:.4g} and {1e3 * there[1]:.4g} mm "
+                "wide; give each a seat of its own, or pass fits=False"
             )
 
 
-def _place_on_shaft(bearing: BallBearing, faces: Sequence[RoundFace]) -> tuple[float, float] | None:
+def _place_on_shaft(joint: BearingJoint, faces: Sequence[RoundFace]) -> tuple[float, float] | None:
     """z along the shaft and width, m, of a bearing's inner ring; None where either is not known."""
     at = next((face.at for face in faces if face.at is not None and face.kind == "shaft"), None)
-    return None if at is None or bearing.boundary is None else (at, bearing.boundary[2])
+    boundary = joint.bearing.boundary
+    return None if at is None or boundary is None else (at + joint.place, boundary[2])
 
 
 def _misfit(inside: float, around: float) -> float:
