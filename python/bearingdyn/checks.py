@@ -84,8 +84,17 @@ def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> 
     return x
 
 
-def name_list(field: str, value: object, what: str = "channels") -> list[str]:
-    """Check a list of names; ValueError for one name alone, or an entry that is not text."""
+def two(field: str, value: object, remedy: str) -> tuple[float, float]:
+    """Check two numbers of any size, as floats; ValueError for anything else."""
+    try:
+        low, high = (float(x) for x in value)  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; {remedy}") from None
+    return low, high
+
+
+def name_list(field: str, value: object, what: str = "channels", least: int = 0) -> list[str]:
+    """Check a list of names; ValueError for one name alone, too few, one twice, or what is no text."""
     if isinstance(value, str):
         raise ValueError(f"{field} is {value!r}; give a list of {what}, [{value!r}]")
     try:
@@ -95,6 +104,9 @@ def name_list(field: str, value: object, what: str = "channels") -> list[str]:
     wrong = next((name for name in found if not isinstance(name, str)), "")
     remedy = f"it must be a list of {what}, each a text"
     require(isinstance(wrong, str), field, value, remedy)
+    twice = next((name for i, name in enumerate(found) if name in found[:i]), None)
+    require(twice is None, field, value, f"it names {twice!r} twice; name each once")
+    require(len(found) >= least, field, value, f"it must be a list of {what}, of at least {least}")
     return [str(name) for name in found]
 
 
@@ -159,8 +171,9 @@ def existing(path: str | os.PathLike[str], what: str = "file") -> Path:
     IsADirectoryError
         Where a folder is.
     ValueError
-        Where a device or a pipe is.
+        Where a device or a pipe is, and for what is no path.
     """
+    require(isinstance(path, str | os.PathLike), f"the path of a {what}", path, "give a text or a Path")
     p = Path(path)
     if p.is_dir():
         raise IsADirectoryError(f"{p} is a folder; give the path of a {what}")

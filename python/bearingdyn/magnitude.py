@@ -195,6 +195,12 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "waviness": Magnitude(
             "m", (0.0, 2e-4), (0.0, 5e-5), "waves of ground races are 1 nm to some µm high", (_UM, _NM, _MM)
         ),
+        "wave order": Magnitude(
+            "waves a turn",
+            (0.0, 1e6),
+            (0.0, 2e4),
+            "shorter waves than a contact, 20 to 2000 a turn, hardly move a ball; roughness has 1e5",
+        ),
         "oversize": Magnitude(
             "m", (0.0, 2e-4), (0.0, 5e-5), "balls of one bearing differ by 0.1 to some µm", (_UM, _NM, _MM)
         ),
@@ -234,8 +240,8 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "deflection coefficient": Magnitude(
             "N/m^1.5",
             (1e3, 1e16),
-            (1e6, 1e13),
-            "steel balls have 1e9 to 1e11 N/m^1.5",
+            (1e6, 1e14),
+            "steel balls have 1e9 to 1e11 N/m^1.5, a ring in its bore 3e13",
             (Slip("N/mm^1.5", 10**4.5), Slip("N/µm^1.5", 1e9)),
         ),
         # ---------------------------------------------------------------- loads
@@ -274,6 +280,12 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         # ------------------------------------------------------- time and speed
         "speed": Magnitude(
             "rad/s", (0.0, 1e6), (0.0, 5e4), "5e4 rad/s are 477 000 rpm, a dental drill's", (_RPM,)
+        ),
+        "angular acceleration": Magnitude(
+            "rad/s²", (0.0, 1e12), (0.0, 1e7), "a dental drill takes 0.05 s to 5e4 rad/s, 1e6 rad/s²"
+        ),
+        "time at rest": Magnitude(
+            "s", (1e-30, 1e12), (1e-20, 1e10), "a machine serves for a hundred years, 3e9 s"
         ),
         "speed value n·dm": Magnitude(
             "mm/min",

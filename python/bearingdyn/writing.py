@@ -8,6 +8,8 @@ import secrets
 import stat
 from pathlib import Path
 
+from bearingdyn.checks import require
+
 KINDS = (
     (stat.S_ISDIR, "folder"),
     (stat.S_ISCHR, "device"),
@@ -48,7 +50,14 @@ def write_whole(path: str | os.PathLike[str], data: bytes | memoryview) -> None:
 
 
 def check_target(path: str | os.PathLike[str]) -> int | None:
-    """Check that a file can be written: its permissions, None where there is none yet; OSError otherwise."""
+    """Check that a file can be written: its permissions, None where there is none yet; OSError otherwise.
+
+    Raises
+    ------
+    ValueError
+        For what is no path.
+    """
+    require(isinstance(path, str | os.PathLike), "the path to write to", path, "give a text or a Path")
     target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
         raise _named(

@@ -162,3 +162,45 @@ def test_a_loose_ring_that_is_too_large_for_its_bore_is_refused():
 def test_numbers_that_make_no_bearing_are_refused():
     with pytest.raises(ValueError, match=r"boundary is .*the races"):
         bearing("6205", clearance=1e-5, boundary=(0.035, 0.052, 0.015))
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.008, 0.014])
+def test_two_bearings_in_one_place_of_a_shaft_are_refused(apart):
+    """15 mm each: at one seat, and at two nearer than a width; at 15 mm they stand beside each other."""
+    seats = {"a": 0.03, "b": 0.03 + apart, "c": 0.045} if apart else {"a": 0.03, "c": 0.045}
+    app = bd.Application()
+    app.add("s", bd.Shaft([bd.Section(0.1, 0.025)], seats, f_max=1e3))
+    app.bearing("one", BALL, inner="s.a", outer="ground")
+    second = {"inner": "s.b" if apart else "s.a", "outer": "ground"}
+    with pytest.raises(ValueError, match=f"'two' and 'one' sit {1e3 * apart:.4g} mm apart .* need 15 mm"):
+        app.bearing("two", BALL, **second)
+    app.bearing("beside", BALL, inner="s.c", outer="ground")
+    app.bearing("meant", BALL, **second, fits=False)
+
+
+@pytest.mark.parametrize(("case", "found"), [c[1:] for c in REFUSED], ids=[c[0] for c in REFUSED])
+def test_reduced_parts_know_their_faces(case, found):
+    """What a part knew of radius and width its superelement knows, and refuses alike."""
+    a, at_a, b, at_b = case
+    with pytest.raises(ValueError, match=f"(?s){found}.*fits=False"):
+        join(a.superelement(), at_a, b.superelement(), at_b)
+    join(a.superelement(), at_a, b.superelement(), at_b, fits=False)
+
+
+def test_reduced_parts_that_fit_are_silent():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        join(layer(0.026, 0.03).superelement(), "outer", housing(0.06).superelement(), "bore")
+        hang(BALL, shaft((0.1, 0.025)), housing(0.052))
+
+
+def test_an_imported_body_knows_its_bore():
+    """Of another program's matrices: the nodes of an interface lie on a cylinder, the rest outside it."""
+    mesh = bd.block_with_bore(0.12, 0.14, 0.02, 0.06, 0.07, 0.03)
+    model = bd.Solid(mesh, bd.STEEL, {"bore": "bore"}, f_max=0.0).full_model()
+    matrices = bd.fem.FEMatrices(K=model.K, M=model.M, points=mesh.points)
+    bore = bd.Imported(matrices, {"bore": bd.NodeSet(bd.at_radius(0.03))}, f_max=0.0)
+    assert [(f.kind, round(f.radius, 9)) for f in bore.round_faces()["bore"]] == [("bore", 0.03)]
+    with pytest.raises(ValueError, match=r"Ø48 mm.*Ø60 mm: gap of 6 mm"):
+        join(layer(0.02, 0.024), "outer", bore, "bore")
+    join(layer(0.026, 0.03), "outer", bore, "bore")

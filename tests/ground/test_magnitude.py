@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -48,7 +49,10 @@ def test_millimetres_are_not_metres(field, make):
 
 def test_a_solid_of_millimetres_is_refused():
     pytest.importorskip("skfem")
-    mesh = box_mesh([0, 60.0, 120.0], [0, 60.0], [0, 20.0], "hex20")
+    with pytest.raises(ValueError, match=r"x is 120 m; .*is it in mm"):
+        box_mesh([0, 60.0, 120.0], [0, 60.0], [0, 20.0], "hex20")
+    mesh = box_mesh([0, 0.06, 0.12], [0, 0.06], [0, 0.02], "hex20")
+    mesh = replace(mesh, points=1e3 * mesh.points)
     with pytest.raises(ValueError, match=r"the body's extent is 120 m; .*is it in mm"):
         bd.Solid(mesh, bd.STEEL, {"end": "x-"}, 0.0)
 

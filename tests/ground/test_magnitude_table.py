@@ -170,10 +170,31 @@ SLIPS = {
     "400 kN on a 6205": lambda: bd.equilibrium(rotor((0, -4e5, 0, 0, 0, 0))),
     "1e6 N": lambda: ball().displacement([0, -1e6, 0, 0, 0, 0]),
     "30 kN": lambda: ball().displacement([0, -3e4, 0, 0, 0, 0]),
+    "table of moduli in MPa": lambda: bd.TabulatedModulus(
+        [1.0, 10.0, 100.0], [1.0, 2.0, 3.0], [0.1, 0.2, 0.3], K=2e9, density=1100.0
+    ),
+    "after in years as 1e30 s": lambda: bd.equilibrium(held(), after=1e30),
+    "load's course of 1e300": lambda: held().load(
+        "r.centre", (0, 1.0, 0, 0, 0, 0), time=[0, 1], value=[0, 1e300]
+    ),
+    "base motion's course in mm/s²": lambda: held().base_motion((0, 1.0, 0), time=[0, 1], value=[0, 5e4]),
+    "run-up in ns": lambda: marched(speed=([0, 1e-9], [0, 1e2])),
+    "order of 1e9": lambda: bd.Waviness("inner", 10**9, 1e-9),
+    "element length in mm": lambda: bd.Shaft([bd.Section(0.3, 0.03)], {"a": 0.05}, element_length=5.0),
+    "box in mm": lambda: bd.box_mesh([0, 100.0], [0, 20.0], [0, 30.0]),
+    "arm as a diameter": lambda: bd.FlexibleRing(0.0228, 0.026, 0.015, 2 * ball().arm),
     "overflow": lambda: ball().displacement([0, 1e200, 0, 0, 0, 0]),
     "pressed by 1 mm": lambda: ball().force([0, -1e-3, 0, 0, 0, 0]),
     "pressed by 10 in µm": lambda: ball().force([0, -10.0, 0, 0, 0, 0]),
 }
+
+
+def test_the_defaults_of_every_joint_are_usual():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        bd.LooseFit(20e-6)
+        bd.Housing(0.12, 0.14, 0.02, 0.052)
+        bd.ThermalNetwork()
 
 
 @pytest.mark.parametrize("slip", SLIPS)

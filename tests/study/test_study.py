@@ -579,3 +579,11 @@ def test_a_missing_guard_is_one_sentence(tmp_path):
     assert run.stderr.splitlines()[-1].startswith(
         f"ValueError: {script}, line 10 calls sweep outside `if __name__"
     )
+
+
+@pytest.mark.parametrize("alien", [5, "6205", [None], [5], {"a": 5}, object(), study.Case])
+def test_a_table_refuses_what_is_no_list_of_cases(alien: object) -> None:
+    with pytest.raises(ValueError, match="cases is "):
+        study.table(alien)
+    with pytest.raises(ValueError, match="units is "):
+        study.table([study.Case({"k": 1.0}, {"m": 1.0})], units=alien if not isinstance(alien, dict) else 5)

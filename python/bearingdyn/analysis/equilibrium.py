@@ -220,6 +220,7 @@ def equilibrium(
     if after is not None:
         require(modulus is None, "modulus", modulus, f"with after={after!r}, leave it out: give one of them")
         after = positive("after", after, "it must be a positive and finite time, s")
+        plausible("time at rest", "after", after)
     if modulus is not None:
         one_of("modulus", modulus, ("relaxed", "instantaneous"))
     system = system_of("app", app)

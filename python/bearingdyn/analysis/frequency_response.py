@@ -120,7 +120,7 @@ def frequency_response(
     (('frequency', 'output', 'input'), ['1.000e-06', '1.109e-06'])
     """
     f = frequencies(frequency)
-    inputs, outputs = name_list("inputs", inputs), name_list("outputs", outputs)
+    inputs, outputs = name_list("inputs", inputs, least=1), name_list("outputs", outputs, least=1)
     one_of("quantity", quantity, QUANTITIES)
     state = linear(source, contacts)
     state.system.check_speed(speed)

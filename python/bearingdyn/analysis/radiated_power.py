@@ -72,7 +72,7 @@ def radiated_power(
         `frequency_response`.
     """
     f = frequencies(frequency)
-    inputs, surfaces = name_list("inputs", inputs), name_list("surfaces", surfaces, "surfaces")
+    inputs, surfaces = name_list("inputs", inputs, least=1), name_list("surfaces", surfaces, "surfaces", 1)
     density, sound_speed = positive("density", density), positive("sound_speed", sound_speed)
     state = linear(source)
     state.system.check_speed(speed)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.checks import number, table
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ def drive_of(speed: float | tuple[ArrayLike, ArrayLike]) -> float | tuple[Array,
         )
     if not (np.isfinite(times).all() and np.isfinite(speeds).all() and (np.diff(times) > 0).all()):
         raise ValueError("speed: times must increase and all numbers be finite, in s and rad/s")
+    ramp = float(np.abs(np.diff(speeds) / np.diff(times)).max())
+    plausible("angular acceleration", "speed: the steepest change of the profile", ramp)
     return times, speeds
 
 

@@ -119,7 +119,7 @@ def state_space(
     >>> model, [f"{abs(h):.3e}" for h in model.response([0.0, 50.0]).ravel()]  # m/N
     (<StateSpace: 12 states, 1 inputs, 1 outputs>, ['1.000e-06', '1.109e-06'])
     """
-    inputs, outputs = name_list("inputs", inputs), name_list("outputs", outputs)
+    inputs, outputs = name_list("inputs", inputs, least=1), name_list("outputs", outputs, least=1)
     one_of("quantity", quantity, QUANTITIES)
     state = linear(source)
     system = state.system

@@ -64,7 +64,7 @@ def unbalance_response(
     given = numbers(
         "speeds", speeds, "speeds must be one or more finite values of zero or more, in rad/s", 0.0
     )
-    outputs = name_list("outputs", outputs)
+    outputs = name_list("outputs", outputs, least=1)
     one_of("quantity", quantity, QUANTITIES)
     state = linear(source)
     system = state.system

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.application.channel import GROUND
-from bearingdyn.application.fit_of_neighbours import RINGS, check_bearing, check_connection
+from bearingdyn.application.fit_of_neighbours import RINGS, check_bearing, check_beside, check_connection
 from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
 from bearingdyn.application.loads import Unbalance, in_time
 from bearingdyn.application.part import Part
@@ -17,7 +17,7 @@ from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.application.plan import Plan
 from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, RowSet
-from bearingdyn.checks import require
+from bearingdyn.checks import require, truth
 from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
@@ -135,7 +135,7 @@ class Application:
                     f"interface of either"
                 )
         joint = Connection(first, second)
-        if fits:
+        if truth("fits", fits):
             check_connection((first, second), (self.plan.faces(first), self.plan.faces(second)))
         self.plan.connections.append(joint)
 
@@ -246,7 +246,7 @@ class Application:
             its rows in the other order too.
         fits
             Whether bore, outside and width are compared with the seats, as by `connect`; of a bearing without
-            `boundary`, whether the seats leave room for its rings.
+            `boundary`, whether the seats leave room for its rings. Two on one shaft must not overlap.
 
         Raises
         ------
@@ -271,9 +271,11 @@ class Application:
         for joint in _hung(name, bearing, ends, offset, mirrored):
             self.plan.check_new("bearing", joint.name)
             self.plan.check_raceway(joint)
-            if fits:
+            if truth("fits", fits):
                 for ring, place in zip(RINGS, (joint.inner, joint.outer), strict=True):
                     check_bearing(joint, ring, place, self.plan.faces(place))
+                others = [b for b in self.plan.bearings.values() if b.inner.part == joint.inner.part]
+                check_beside(joint, others, self.plan.faces)
             joints.append(joint)
         self.plan.bearings |= {joint.name: joint for joint in joints}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, TypeAlias
 
 from bearingdyn.application.channel import GROUND
@@ -100,6 +100,39 @@ def check_bearing(joint: BearingJoint, ring: Ring, place: Place, faces: Sequence
     if seat.kind != own.kind:
         _check_shoulder(own, seat.room, title, str(place))
         _check_carried(own, seat, title, str(place), least=HALF)
+
+
+def check_beside(
+    joint: BearingJoint,
+    others: Sequence[BearingJoint],
+    faces: Callable[[Place], Sequence[RoundFace]],
+) -> None:
+    """Check that a bearing finds room on its shaft beside the others that sit there.
+
+    Raises
+    ------
+    ValueError
+        Where two rings would lie in one place.
+    """
+    here = _place_on_shaft(joint, faces(joint.inner))
+    for other in others:
+        there = _place_on_shaft(other, faces(other.inner))
+        if here is None or there is None:
+            continue
+        room, needed = abs(here[0] - there[0]), 0.5 * (here[1] + there[1])
+        if not room >= (1.0 - INTRUDES) * needed:
+            raise ValueError(
+                f"bearings {joint.name!r} and {other.name!r} sit {1e3 * room:.4g} mm apart on one shaft and "
+                f"need {1e3 * needed:.4g} mm, for they are {1e3 * here[1]:.4g} and {1e3 * there[1]:.4g} mm "
+                "wide; give each a seat of its own, or pass fits=False"
+            )
+
+
+def _place_on_shaft(joint: BearingJoint, faces: Sequence[RoundFace]) -> tuple[float, float] | None:
+    """z along the shaft and width, m, of a bearing's inner ring; None where either is not known."""
+    at = next((face.at for face in faces if face.at is not None and face.kind == "shaft"), None)
+    boundary = joint.bearing.boundary
+    return None if at is None or boundary is None else (at + joint.place, boundary[2])
 
 
 def _misfit(inside: float, around: float) -> float:

@@ -75,18 +75,24 @@ class DirectedLoad(Load):
 
     def __post_init__(self) -> None:
         of_all = self.where in (GROUND, GRAVITY)
-        name = {GROUND: "acceleration of the base", GRAVITY: "gravity"}.get(
-            self.where, f"load at {self.where}"
-        )
         shape, meaning = ((3,), ACCELERATION) if of_all else ((6,), FORCE)
-        given = vector(name, self.vector, shape, meaning)
-        for k, x in enumerate(given.tolist()):
-            if of_all:
+        object.__setattr__(self, "vector", vector(self._label, self.vector, shape, meaning))
+        self._check_magnitudes(1.0, f"{self._label}:")
+
+    @property
+    def _label(self) -> str:
+        """Its name in messages."""
+        special = {GROUND: "acceleration of the base", GRAVITY: "gravity"}
+        return special.get(self.where, f"load at {self.where}")
+
+    def _check_magnitudes(self, factor: float, name: str) -> None:
+        """Check the magnitude of every entry times the factor."""
+        for k, x in enumerate(self.vector.tolist()):
+            if self.where in (GROUND, GRAVITY):
                 kind = "gravity" if self.where == GRAVITY else "acceleration"
             else:
                 kind = "force" if k < 3 else "moment"
-            plausible(kind, f"{name}: {kind} along {'xyz'[k % 3]}", x)
-        object.__setattr__(self, "vector", given)
+            plausible(kind, f"{name} {kind} along {'xyz'[k % 3]}", factor * x)
 
     @property
     def size(self) -> str:
@@ -200,6 +206,8 @@ class SampledLoad(DirectedLoad):
             )
         if not (np.isfinite(t).all() and np.isfinite(v).all() and (np.diff(t) > 0).all()):
             raise ValueError(f"{self._name('time')} must increase and all samples must be finite")
+        most = float(np.abs(v).max())
+        self._check_magnitudes(most, f"{self._label}, its largest value {most:.6g} times its")
         object.__setattr__(self, "time", t)
         object.__setattr__(self, "value", v)
 

@@ -136,8 +136,12 @@ class Plan:
 
     def faces(self, place: Place) -> tuple[RoundFace, ...]:
         """Cylinders that the part at a place offers there; none where it knows of none, or of the ground."""
-        source = self.sources.get(place.part)
-        return source.round_faces().get(place.name, ()) if isinstance(source, HasRoundFaces) else ()
+        if place.part not in self.parts:
+            return ()
+        source = self.sources[place.part]
+        # a squeezed or bonded part says more than its matrices; one of another's making may say less
+        known = source if isinstance(source, HasRoundFaces) else self.parts[place.part]
+        return known.round_faces().get(place.name, ())
 
     def check_raceway(self, joint: BearingJoint) -> None:
         """Check a new bearing against the raceway it is hung in, if it is hung in one.

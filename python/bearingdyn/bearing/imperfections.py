@@ -63,6 +63,7 @@ class Waviness:
         one_of("waviness.body", self.body, BODIES)
         waves = isinstance(self.order, int) and not isinstance(self.order, bool) and self.order >= 0
         require(waves, "waviness.order", self.order, "it must be a whole number of waves, zero or more")
+        plausible("wave order", "waviness.order", self.order)
         plausible("waviness", "waviness.amplitude", self.amplitude, "it must be a finite length in m")
         plausible("angle", "waviness.phase", self.phase, "it must be a finite angle in rad")
         one_of("waviness.direction", self.direction, ("radial", "axial"))

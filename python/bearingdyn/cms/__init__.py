@@ -24,6 +24,7 @@ from bearingdyn.cms.reduction_options import (
     check_moduli,
     check_rounds,
 )
+from bearingdyn.cms.round_face import HasRoundFaces, RoundFace, face_of_nodes
 from bearingdyn.cms.superelement import Superelement
 from bearingdyn.cms.viscoelastic import ComplexModulus, Viscoelastic
 
@@ -33,10 +34,12 @@ __all__ = [
     "ComplexModulus",
     "Dynamics",
     "FullModel",
+    "HasRoundFaces",
     "March",
     "Raceway",
     "ReductionError",
     "RigidInterface",
+    "RoundFace",
     "Superelement",
     "Surface",
     "Transfer",
@@ -49,6 +52,7 @@ __all__ = [
     "check_rounds",
     "coupled_blocks",
     "craig_bampton",
+    "face_of_nodes",
     "inertia_shapes",
     "march",
     "modal_damping",

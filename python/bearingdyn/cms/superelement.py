@@ -10,6 +10,7 @@ import numpy as np
 from bearingdyn.cms.frozen_matrices import check_symmetry, frozen
 from bearingdyn.cms.raceway import Raceway
 from bearingdyn.cms.radiating_surface import Surface
+from bearingdyn.cms.round_face import RoundFace
 from bearingdyn.cms.viscoelastic import Viscoelastic
 from bearingdyn.types import Array, Complex, Index
 
@@ -42,6 +43,9 @@ class Superelement:
         name -> Raceway, where a bearing's balls may run on a flexible ring.
     surfaces
         name -> Surface, from which sound is radiated.
+    faces
+        name -> the round faces at an interface or raceway, with which an application compares the
+        neighbours; what is left out is taken to fit.
 
     Raises
     ------
@@ -60,6 +64,7 @@ class Superelement:
     viscoelastic: tuple[Viscoelastic, ...] = ()
     raceways: Mapping[str, Raceway] = field(default_factory=dict)
     surfaces: Mapping[str, Surface] = field(default_factory=dict)
+    faces: Mapping[str, tuple[RoundFace, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) else 0
@@ -117,6 +122,12 @@ class Superelement:
             if raceway.rows.shape[1] != n:
                 raise ValueError(f"raceways[{name!r}].rows has {raceway.rows.shape[1]} columns, not {n}")
 
+        object.__setattr__(self, "faces", {name: tuple(found) for name, found in self.faces.items()})
+        for name in self.faces:
+            if name not in interfaces and name not in self.raceways:
+                known = sorted([*interfaces, *self.raceways])
+                raise ValueError(f"faces has {name!r}, no interface or raceway; there are {known}")
+
     def __repr__(self) -> str:
         """One line instead of the matrices."""
         return f"<Superelement of {self.n} coordinates, interfaces {list(self.interfaces)}>"
@@ -129,6 +140,10 @@ class Superelement:
     def superelement(self) -> Superelement:
         """Itself: what is reduced already is added to an application as it is."""
         return self
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        return self.faces
 
     def rows(self, name: str) -> Array:
         """Rows (6, n) or (3, n) giving the motion of an interface or output point.

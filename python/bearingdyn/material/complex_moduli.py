@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import number, positive, real, require, two
 from bearingdyn.magnitude import check_density, check_waves, plausible
 from bearingdyn.material.amplitude import Payne, Softening
 from bearingdyn.material.dma import DMAData
@@ -50,7 +50,7 @@ def _approximate(
     tolerance: float,
 ) -> Maxwell:
     """Maxwell model of a modulus in a band, Hz; its `fit` holds the rms and largest error."""
-    low, high = float(band[0]), float(band[1])
+    low, high = two("band", band, "it must be a lower and a higher frequency, both positive, Hz")
     if not 0 < low < high < math.inf:
         raise ValueError(f"band is {band!r} Hz; it must be a lower and a higher frequency, both positive")
     count = max(40, round(_PER_DECADE * math.log10(high / low)))
@@ -111,7 +111,12 @@ class TabulatedModulus(Softening):
     def __post_init__(self) -> None:
         _check("TabulatedModulus", {"K": self.K, "density": self.density})
         for name in ("frequency", "storage", "loss"):
-            values = np.array(getattr(self, name), dtype=np.float64)
+            try:
+                values = real(getattr(self, name))
+            except (TypeError, ValueError):
+                remedy = "it must be real numbers, two or more"
+                require(False, f"TabulatedModulus.{name}", getattr(self, name), remedy)
+                raise
             if values.ndim != 1 or values.size < 2 or values.size != np.size(self.frequency):
                 raise ValueError(
                     f"TabulatedModulus.{name} has shape {values.shape}; it must be one-dimensional, with "
@@ -119,6 +124,9 @@ class TabulatedModulus(Softening):
                 )
             if not (np.all(values > 0) and np.all(np.isfinite(values))):
                 raise ValueError(f"TabulatedModulus.{name}: every value must be positive and finite")
+            kind = {"frequency": "frequency", "storage": "shear modulus"}.get(name, "branch modulus")
+            for limit in (values.min(), values.max()):
+                plausible(kind, f"TabulatedModulus.{name}", float(limit))
             values.flags.writeable = False
             object.__setattr__(self, name, values)
         if not np.all(np.diff(self.frequency) > 0):
@@ -228,7 +236,8 @@ class PowerLaw(Softening):
     def __post_init__(self) -> None:
         values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
         _check("PowerLaw", values)
-        require(0 < self.exponent < 1, "PowerLaw.exponent", self.exponent, "it must lie between 0 and 1")
+        exponent = number("PowerLaw.exponent", self.exponent)
+        require(0 < exponent < 1, "PowerLaw.exponent", self.exponent, "it must lie between 0 and 1")
 
     @classmethod
     def of_loss_factor(
@@ -302,9 +311,12 @@ class FractionalZener(Softening):
         values = {"G_inf": self.G_inf, "tau": self.tau, "K": self.K, "density": self.density}
         _check("FractionalZener", values)
         remedy = f"it must lie between 0 and G_inf = {self.G_inf:g} Pa"
-        require(0 <= self.G0 < self.G_inf, "FractionalZener.G0", self.G0, remedy)
+        require(
+            0 <= number("FractionalZener.G0", self.G0) < self.G_inf, "FractionalZener.G0", self.G0, remedy
+        )
         remedy = "it must lie above 0 and be at most 1"
-        require(0 < self.alpha <= 1, "FractionalZener.alpha", self.alpha, remedy)
+        alpha = number("FractionalZener.alpha", self.alpha)
+        require(0 < alpha <= 1, "FractionalZener.alpha", self.alpha, remedy)
 
     def complex_modulus(self, omega: ArrayLike) -> Complex:
         """G*(ω), Pa, at ω rad/s, any shape; the conjugate at −ω, G0 at rest."""

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, number, positive, real, require, vector
+from bearingdyn.checks import instance, nonnegative, number, positive, real, require, vector
 from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
 from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
 from bearingdyn.material.creep import creep_compliance
@@ -139,6 +139,14 @@ class Maxwell(Retunable, Softening):
         low_end: LowEnd | None = None,
         payne: Payne | None = None,
     ) -> None:
+        instance("Maxwell.fit", fit, (FitReport, type(None)), "it must be the report of a fit, or None")
+        shifts = law is None or (callable(getattr(law, "log_shift", None)) and hasattr(law, "T_ref"))
+        require(
+            shifts and not isinstance(law, type),
+            "Maxwell.law",
+            law,
+            "give a law of shifts, as WLF(C1, C2, T_ref)",
+        )
         if band is None and fit is not None:
             band = fit.band
         edges = band if band is None else vector("Maxwell.band", band, (2,), "lowest and highest, in Hz")

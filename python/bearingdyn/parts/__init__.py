@@ -1,5 +1,6 @@
 """Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
 
+from bearingdyn.cms import HasRoundFaces, RoundFace
 from bearingdyn.fem import Section, quadrilaterals
 from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.damping_sample import damping_sample
@@ -20,7 +21,6 @@ from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring
 from bearingdyn.parts.ring_compliance import RingCompliance
 from bearingdyn.parts.ring_support import RingBed, RingPoints
-from bearingdyn.parts.round_face import HasRoundFaces, RoundFace
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
 from bearingdyn.parts.specimen import specimen_factor

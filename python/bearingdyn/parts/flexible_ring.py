@@ -13,7 +13,7 @@ import scipy
 
 from bearingdyn.bearing import BallBearing, Waviness
 from bearingdyn.checks import instance, one_of, positive, require, whole
-from bearingdyn.cms import Superelement, Viscoelastic
+from bearingdyn.cms import RoundFace, Superelement, Viscoelastic
 from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
@@ -25,7 +25,6 @@ from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import HIGHEST, Cylinder, Face, Footprint, Groove, Line, Where
 from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
 from bearingdyn.parts.ring_support import RingBed, RingPoints, held_by
-from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.types import Array
 
 F_HEARD = 6e3  # Hz, up to which a ring's receptances are right unless f_max says otherwise
@@ -123,6 +122,11 @@ class FlexibleRing:
         for name in ("r_outer", "width"):
             plausible("length", name, getattr(self, name))
         self._take_bearing()
+        if not self.arm < self.r_outer:
+            raise ValueError(
+                f"arm is {self.arm} m; it must lie inside the ring, below r_outer = {self.r_outer} m: it is "
+                "the radius on which the centres of the outer groove lie; take bearing.arm"
+            )
         for name in ("groove", "groove_radius"):
             if getattr(self, name) is not None:
                 positive(name, getattr(self, name), "it must be a positive length in m")
@@ -448,7 +452,7 @@ class FlexibleRing:
         With a bearing, what orders beyond the carried ones add at its balls are coordinates of their own,
         springs with so little mass that they follow at once.
         """
-        element = self.body.superelement()
+        element = replace(self.body.superelement(), faces=self.round_faces())
         if self._supports:
             element = self._upon_supports(element)
         return element if self.bearing is None else self._with_folded(element)

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from bearingdyn.checks import instance, named, nonnegative, positive, vector
-from bearingdyn.cms import F_MAX, Superelement, check_damping, check_f_max
+from bearingdyn.cms import F_MAX, RoundFace, Superelement, check_damping, check_f_max
 from bearingdyn.fem import block_with_bore
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.parts.solid import RigidSurface, Solid
 from bearingdyn.short_repr import short
 
@@ -160,7 +159,7 @@ class Housing:
 
     def superelement(self) -> Superelement:
         """The housing reduced onto its bore and feet and the fixed-interface modes up to f_max."""
-        return self.body.superelement()
+        return replace(self.body.superelement(), faces=self.round_faces())
 
     def outline(self) -> Outline:
         """Its surface; see Solid.outline."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy.sparse
@@ -13,10 +13,12 @@ from bearingdyn.cms import (
     F_MAX,
     FullModel,
     RigidInterface,
+    RoundFace,
     Superelement,
     check_damping,
     check_f_max,
     check_held,
+    face_of_nodes,
     reduce,
 )
 from bearingdyn.fem import FEMatrices
@@ -89,7 +91,23 @@ class Imported:
 
     def superelement(self) -> Superelement:
         """The body reduced onto its interfaces and the fixed-interface modes up to f_max."""
-        return reduce(self.full_model(), f_max=self.f_max, damping=self.damping, held=self.held)
+        element = reduce(self.full_model(), f_max=self.f_max, damping=self.damping, held=self.held)
+        return replace(element, faces=self.round_faces())
+
+    def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
+        """Cylinders at its interfaces, where the nodes of one lie on one about z.
+
+        The body lies where the nodes are that the stiffness joins to them.
+        """
+        p, at = self._points(), self.matrices.places[:, 0]
+        K, found = scipy.sparse.csr_matrix(self.matrices.K), {}
+        for name, face in self._faces().items():
+            joined = at[np.unique(K[face.dofs].indices)]
+            nodes, around = np.unique(at[face.dofs]), np.unique(joined[joined >= 0])
+            x, y, z = face.position
+            radius = np.hypot(p[:, 0] - x, p[:, 1] - y)
+            found[name] = face_of_nodes(radius[nodes], p[nodes, 2], radius[around], float(z))
+        return found
 
     def _points(self) -> Array:
         assert self.matrices.points is not None

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, one_of, positive, require
-from bearingdyn.cms import Superelement, check_moduli
+from bearingdyn.cms import RoundFace, Superelement, check_moduli
 from bearingdyn.fem import (
     NoBalance,
     revolution_mesh,
@@ -22,7 +22,6 @@ from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
-from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
 from bearingdyn.parts.strain import Strain
 from bearingdyn.types import Array, Complex
@@ -235,7 +234,7 @@ class Layer:
 
     def superelement(self) -> Superelement:
         """Reduced matrices: 12 interface coordinates, and up to 5 internal ones for each further modulus."""
-        return self.body.superelement()
+        return replace(self.body.superelement(), faces=self.round_faces())
 
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""

@@ -17,12 +17,14 @@ from bearingdyn.cms import (
     Basis,
     FullModel,
     Raceway,
+    RoundFace,
     Superelement,
     Viscoelastic,
     check_damping,
     check_f_max,
     check_moduli,
     check_rounds,
+    face_of_nodes,
     modal_damping,
     modulus_levels,
 )
@@ -49,7 +51,6 @@ from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_shapes import ShapeMaker
-from bearingdyn.parts.round_face import RoundFace, face_of_nodes
 from bearingdyn.parts.shape_moduli import moduli_at, shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.static_modulus import quasi_static
@@ -608,6 +609,7 @@ class Revolved:
                 Viscoelastic(m, P @ h @ P, *self._strain_scale(j))
                 for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
             ),
+            faces=self.round_faces(),
             raceways={
                 name: Raceway(t.series, t.arm, raceways[name]) for name, t in self._boundaries.tracks.items()
             },

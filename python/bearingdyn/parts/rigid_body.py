@@ -9,11 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.checks import instance, nonnegative, positive, vector
-from bearingdyn.cms import Superelement
+from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, box, carried, cylinder
-from bearingdyn.parts.round_face import RoundFace
 
 
 @dataclass(frozen=True)
@@ -122,6 +121,7 @@ class RigidBody:
             G=G,
             K=np.zeros((6, 6)),
             interfaces={"centre": np.arange(6)},
+            faces=self.round_faces(),
         )
 
     def outline(self) -> Outline:

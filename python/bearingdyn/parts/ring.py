@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from bearingdyn.checks import positive
-from bearingdyn.cms import Superelement
+from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import Region
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder
-from bearingdyn.parts.round_face import RoundFace
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -17,6 +17,7 @@ from bearingdyn.cms import (
     Basis,
     FullModel,
     RigidInterface,
+    RoundFace,
     Superelement,
     basis_of,
     check_damping,
@@ -28,7 +29,6 @@ from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
-from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
@@ -66,7 +66,7 @@ class Shaft:
     ------
     ValueError
         For a position off the shaft, a name used twice, two seats in one place, values that are not positive
-        and finite, or more than 100 m in all.
+        and finite, more than 100 m in all, or an element longer than the shaft.
 
     References
     ----------
@@ -130,8 +130,13 @@ class Shaft:
                 raise ValueError(f"seats {a!r} and {b!r} are both at z = {za} m; move one, or keep one")
         check_damping(self.damping)
         check_f_max(self.f_max, may_be_zero=False)
-        if self.element_length is not None and not positive("element_length", self.element_length) > 1e-4 * L:
-            raise ValueError(f"element_length is {self.element_length}; it must exceed {1e-4 * L:.3g} m")
+        if self.element_length is not None:
+            longest = positive("element_length", self.element_length)
+            if not 1e-4 * L < longest <= L * (1.0 + 1e-9):
+                raise ValueError(
+                    f"element_length is {longest} m; it must exceed {1e-4 * L:.3g} m, and not the shaft's "
+                    f"length, {L:.6g} m; is it in mm?"
+                )
 
     @property
     def length(self) -> float:
@@ -183,7 +188,7 @@ class Shaft:
                     -math.inf if room[0] == 0.0 else room[0] - place,
                     math.inf if room[1] == ends[-1] else room[1] - place,
                 )
-                found.append(RoundFace(kind, own, (z[0] - place, z[1] - place), room, beside=True))
+                found.append(RoundFace(kind, own, (z[0] - place, z[1] - place), room, beside=True, at=place))
         return tuple(found)
 
     def full_model(self) -> FullModel:
@@ -216,7 +221,8 @@ class Shaft:
     def superelement(self) -> Superelement:
         """The shaft reduced onto its seats and the fixed-interface modes up to f_max."""
         model = self.full_model()
-        return project(model, self._basis(model), damping=self.damping)
+        element = project(model, self._basis(model), damping=self.damping)
+        return replace(element, faces=self.round_faces())
 
     def _basis(self, model: FullModel) -> Basis:
         return basis_of(model, f_max=self.f_max, inertia=0)

@@ -16,6 +16,7 @@ from bearingdyn.cms import (
     Basis,
     FullModel,
     RigidInterface,
+    RoundFace,
     Superelement,
     Surface,
     Viscoelastic,
@@ -25,6 +26,7 @@ from bearingdyn.cms import (
     check_held,
     check_moduli,
     check_rounds,
+    face_of_nodes,
     project,
 )
 from bearingdyn.fem import (
@@ -40,7 +42,6 @@ from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
-from bearingdyn.parts.round_face import RoundFace, face_of_nodes
 from bearingdyn.parts.static_modulus import quasi_static
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -323,7 +324,8 @@ class Solid:
             If moduli cannot be chosen for a material.
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
-        return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
+        surfaces = {name: self._radiation(name) for name in self.radiating}
+        return replace(element, surfaces=surfaces, faces=self.round_faces())
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""

@@ -8,11 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from bearingdyn.cms import Superelement
+from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.fem import NoBalance
 from bearingdyn.notice import MeshDependent, warn
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.round_face import RoundFace
 from bearingdyn.short_repr import short
 from bearingdyn.types import Complex
 

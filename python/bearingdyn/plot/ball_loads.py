@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.analysis import BearingState
+from bearingdyn.plot.arguments import figure, row
 from bearingdyn.plot.frame import (
     COLOURS,
     GREY,
@@ -19,6 +20,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+def _loads(name: str, value: object) -> None:
+    if not isinstance(value, BearingState):
+        row("it must be one finite load per ball, in N, or a bearing of an equilibrium")(name, value)
+
+
+@figure(loads=_loads)
 def ball_loads(loads: BearingState | ArrayLike, ax: Axes | None = None, *, angle: float = 0.0) -> Axes:
     """Draw the recorded load of each ball, N, around the bearing: azimuth from x (right) towards y (up).
 

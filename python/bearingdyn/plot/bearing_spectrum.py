@@ -9,6 +9,7 @@ import numpy as np
 
 from bearingdyn.bearing import BallBearing, fault_lines
 from bearingdyn.bearing import waviness_lines as lines_of_waviness
+from bearingdyn.plot.arguments import figure, results
 from bearingdyn.plot.frame import new_axes, style
 from bearingdyn.plot.spectrum import spectrum
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(datasets=results("bd.spectrum", "frequency", "amplitude"))
 def bearing_spectrum(
     datasets: Mapping[str, xarray.Dataset],
     bearing: BallBearing,

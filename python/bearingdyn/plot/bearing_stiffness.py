@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import BallBearing, Running
+from bearingdyn.plot.arguments import figure, row, several
 from bearingdyn.plot.frame import DASHES, colour, finish, new_axes, some, style
 
 if TYPE_CHECKING:
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
 STIFFNESSES = {"x": 0, "y": 1, "z": 2, "θx": 3, "θy": 4}
 
 
+@figure(
+    bearings=several(BallBearing, Running, maker="a bd.BallBearing(…) or Running"),
+    loads=row("it must be loads in N"),
+)
 def bearing_stiffness(
     bearings: Mapping[str, BallBearing | Running],
     direction: ArrayLike,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.plot.arguments import figure, result
 from bearingdyn.plot.frame import RPM, colour, finish, new_axes, style
 from bearingdyn.types import Array
 
@@ -21,6 +22,7 @@ ROOM = 1.12  # above the highest mode of a Campbell diagram, for the names of th
 NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, points
 
 
+@figure(data=result("bd.campbell", "speed", "frequency", "mac"))
 def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes | None = None) -> Axes:
     """Campbell diagram of a result of `bd.campbell` over the speed, in rpm; modes told apart by their motion.
 

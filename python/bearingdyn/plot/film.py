@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import BallBearing, Lubricant, lubricate
+from bearingdyn.plot.arguments import figure
 from bearingdyn.plot.frame import colour, finish, halve, new_axes, style
 from bearingdyn.types import Array
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure()
 def film(
     bearing: BallBearing,
     lubricant: Lubricant,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.application import RATES, Channel
+from bearingdyn.plot.arguments import figure, results
 from bearingdyn.plot.frame import (
     DASHES,
     colour,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(datasets=results("bd.frequency_response", "response", alone=True))
 def frequency_response(
     datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
     output: str,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.material import DMAData, MasterCurve, Maxwell, OutsideBand, ShiftTable
+from bearingdyn.plot.arguments import figure, maybe, one
 from bearingdyn.plot.frame import COLOURS, finish, frame_log, halve, new_axes, style
 from bearingdyn.plot.temperature_colours import (
     temperature_bar,
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(dma=one(DMAData, maker="the result of `read_dma`"))
 def isotherms(dma: DMAData, ax: Axes | None = None) -> Axes:
     """Draw isotherms: storage modulus, and loss factor below it, against frequency, coloured by temperature.
 
@@ -59,6 +61,10 @@ def isotherms(dma: DMAData, ax: Axes | None = None) -> Axes:
     return ax
 
 
+@figure(
+    curve=one(MasterCurve, maker="the result of `master_curve`"),
+    maxwell=maybe(one(Maxwell, maker="a bd.Maxwell(…)")),
+)
 def master(curve: MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None) -> Axes:
     """Draw isotherms as a master curve: storage modulus and loss factor against reduced frequency.
 
@@ -145,6 +151,7 @@ def _draw_model(ax: Axes, lower: Axes, curve: MasterCurve, maxwell: Maxwell) -> 
         panel.plot(f, np.where(inside, value, np.nan), color=COLOURS[1], linewidth=1.6, label=name)
 
 
+@figure(curve=one(MasterCurve, maker="the result of `master_curve`"))
 def shifts(curve: MasterCurve, ax: Axes | None = None) -> Axes:
     """Draw the shifts of isotherms, log10 a_T, two standard errors each way, with the law fitted to them.
 

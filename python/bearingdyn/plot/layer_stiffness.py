@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.parts import Layer
+from bearingdyn.plot.arguments import figure, several
 from bearingdyn.plot.frame import colour, finish, new_axes, some, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(layers=several(Layer, maker="a bd.Layer(…)"))
 def layer_stiffness(layers: Mapping[str, Layer], frequency: ArrayLike, ax: Axes | None = None) -> Axes:
     """Stiffness |k| of layers, held outside and moved inside, against frequency: radial solid, axial dashed.
 

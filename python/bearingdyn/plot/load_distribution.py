@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.bearing import LoadDistribution
+from bearingdyn.plot.arguments import figure, several
 from bearingdyn.plot.frame import DASHES, colour, new_axes, some, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(distributions=several(LoadDistribution, maker="the result of `load_distribution`"))
 def load_distribution(distributions: Mapping[str, LoadDistribution], ax: Axes | None = None) -> Axes:
     """Draw how load is distributed over the inner contacts, N, around the bearing, several states by label.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.material import KK_LIMIT, DMAData, MasterCurve, Maxwell, kk_ratio, suspects
+from bearingdyn.plot.arguments import figure, maybe, one, several
 from bearingdyn.plot.frame import COLOURS, colour, finish, new_axes, some, style
 from bearingdyn.plot.isotherms import letter_of
 from bearingdyn.plot.temperature_colours import temperature_bar, temperature_colour, temperature_scale
@@ -16,7 +17,11 @@ from bearingdyn.types import Array, Complex
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+MEASURED = one(DMAData, MasterCurve, maker="the result of `read_dma` or `master_curve`")
+MODEL = one(Maxwell, maker="a bd.Maxwell(…)")
 
+
+@figure(dma=one(DMAData, maker="the result of `read_dma`"))
 def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
     """Check a measurement's causality: local Kramers–Kronig ratio G″/((π/2) dG′/d ln ω) against frequency.
 
@@ -61,6 +66,7 @@ def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
     return ax
 
 
+@figure(data=MEASURED, maxwell=maybe(MODEL))
 def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None) -> Axes:
     """Check a measurement by Cole and Cole: loss against storage modulus, both logarithmic, with a model.
 
@@ -90,6 +96,7 @@ def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: A
     return ax
 
 
+@figure(data=MEASURED, maxwell=maybe(MODEL))
 def van_gurp_palmen(
     data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None
 ) -> Axes:
@@ -121,6 +128,7 @@ def van_gurp_palmen(
     return ax
 
 
+@figure(materials=several(Maxwell, maker="a bd.Maxwell(…)"))
 def spectrum_of(materials: Mapping[str, Maxwell], ax: Axes | None = None) -> Axes:
     """Relaxation spectra to check a measurement's models: strength against time of the branches, as stems.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from bearingdyn.analysis import Equilibrium, MovedSurface, mode_surfaces
 from bearingdyn.application import Application
+from bearingdyn.plot.arguments import figure, result
 from bearingdyn.plot.frame import STYLE, style
 from bearingdyn.system import System
 from bearingdyn.types import Array, Index
@@ -26,6 +27,7 @@ LIGHT = np.array([0.3, -0.5, 0.8])  # where the light comes from, in the axes z,
 TO_FIGURE = [2, 0, 1]  # z along the figure's first axis, y up
 
 
+@figure(found=result("bd.modes", "frequency", "shape"))
 def mode_geometry(
     source: Equilibrium | Application | System,
     found: xarray.Dataset,
@@ -107,6 +109,7 @@ def mode_geometry(
     return drawn_in
 
 
+@figure(found=result("bd.modes", "frequency", "shape"))
 def mode_scene(
     source: Equilibrium | Application | System,
     found: xarray.Dataset,

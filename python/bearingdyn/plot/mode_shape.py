@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.application import Place
+from bearingdyn.plot.arguments import figure, result
 from bearingdyn.plot.frame import colour, finish, new_axes, style
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 SWING = 0.1
 
 
+@figure(data=result("bd.mode_shapes", "frequency", "motion"))
 def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis: str = "y") -> Axes:
     """One mode by `bd.mode_shapes` from the side, part by part: motion along `axis` over z, at rest in grey.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.plot.arguments import figure, results
 from bearingdyn.plot.frame import (
     colour,
     finish,
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(datasets=results("bd.orbit", "x", "y"))
 def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
     """Draw orbits by bd.orbit, several by label, in µm, each about its own mean, both axes to one scale.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.plot.arguments import figure, result, results
 from bearingdyn.plot.frame import DASHES, RPM, colour, engineering, finish, halve, new_axes, some, style
 from bearingdyn.plot.phase_axis import continuous_phase, finish_phase
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 DEPTH = 1e-6  # of the largest line: 120 dB, as in `spectrum`
 
 
+@figure(datasets=results("bd.order_spectrum", "amplitude"))
 def order_spectrum(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
     """Amplitudes by bd.order_spectrum over orders of the shaft speed, several by label, 120 dB deep at most.
 
@@ -64,6 +66,7 @@ def order_spectrum(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = Non
     return ax
 
 
+@figure(data=result("bd.track_orders", "amplitude"))
 def orders(
     data: xarray.Dataset,
     wanted: Sequence[float] | None = None,

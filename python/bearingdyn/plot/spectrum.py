@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.plot.arguments import figure, frequencies, maybe, results
 from bearingdyn.plot.frame import (
     GREY,
     colour,
@@ -31,6 +32,7 @@ POINT = 1.0 / 72.0  # inch
 NAME, PITCH, LEADER = 8.0, 1.35, 0.07
 
 
+@figure(datasets=results("bd.spectrum", "frequency", "amplitude"), lines=maybe(frequencies))
 def spectrum(
     datasets: Mapping[str, xarray.Dataset],
     lines: Mapping[str, float] | None = None,

@@ -8,6 +8,7 @@ import numpy as np
 
 from bearingdyn.checks import require
 from bearingdyn.parts import Prestress, Squeezed
+from bearingdyn.plot.arguments import figure
 from bearingdyn.plot.frame import COLOURS, GREY, finish, new_axes, style
 from bearingdyn.types import Array, Index
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 TRIANGLES = ((0, 3, 4), (0, 4, 1), (1, 4, 5), (1, 5, 2), (3, 6, 7), (3, 7, 4), (4, 7, 8), (4, 8, 5))
 
 
+@figure()
 def squeezed_section(squeezed: Squeezed, ax: Axes | None = None) -> Axes:
     """The section of a squeezed body of revolution, coloured by its largest stretch, in mm.
 

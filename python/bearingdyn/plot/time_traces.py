@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.checks import name_list
+from bearingdyn.plot.arguments import figure, results
 from bearingdyn.plot.frame import colour, engineering, finish, new_axes, some, stack, style
 from bearingdyn.types import Array
 
@@ -31,6 +32,7 @@ QUANTITIES = {
 }
 
 
+@figure(datasets=results("bd.transient"))
 def time(
     datasets: Mapping[str, xarray.Dataset],
     channels: Sequence[str] | None = None,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.plot.arguments import figure, result
 from bearingdyn.plot.frame import COLOURS, engineering, finish, new_axes, style
 
 if TYPE_CHECKING:
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(study=result("study.table"))
 def trade_off(
     study: xarray.Dataset, x: str, y: str, colour: str | None = None, ax: Axes | None = None
 ) -> Axes:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from bearingdyn.plot.arguments import figure, results
 from bearingdyn.plot.frame import (
     DASHES,
     RPM,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(datasets=results("bd.unbalance_response", "response"))
 def unbalance_response(
     datasets: Mapping[str, xarray.Dataset], output: str, ax: Axes | None = None, *, phase: bool = True
 ) -> Axes:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.plot.arguments import figure, result
 from bearingdyn.plot.frame import RPM, finish, new_axes, style
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 DEPTH = 1e-4  # of the largest line of a waterfall: 80 dB
 
 
+@figure(data=result("bd.waterfall", "amplitude", "frequency"))
 def waterfall(data: xarray.Dataset, ax: Axes | None = None, *, f_max: float | None = None) -> Axes:
     """Draw a waterfall: spectra of a record by bd.waterfall, frequency across, speed or time up.
 

@@ -3,6 +3,6 @@
 from bearingdyn.results.datasets import dataset, march_dataset
 from bearingdyn.results.provenance import inputs_of, versions
 from bearingdyn.results.result_file import groups, open_result, save
-from bearingdyn.results.universal_file import write_uff
+from bearingdyn.results.uff import write_uff
 
 __all__ = ["dataset", "groups", "inputs_of", "march_dataset", "open_result", "save", "versions", "write_uff"]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.checks import instance, items, named
 from bearingdyn.results import dataset
 from bearingdyn.study.cases import Case, label
 
@@ -38,6 +39,11 @@ def table(cases: Sequence[Case], units: Mapping[str, str] | None = None) -> xarr
     ValueError
         Where there are no cases, a value has the name of a parameter, or a unit none of either.
     """
+    remedy = "it must be the result of `sweep`, a list of cases"
+    cases = items("cases", cases, remedy)
+    for case in cases:
+        instance("cases", case, Case, remedy)
+    units = named("units", {} if units is None else units, "it must be a mapping, column -> unit, or None")
     if not cases:
         raise ValueError("a table needs at least one case")
     parameters = list(cases[0].parameters)
@@ -45,7 +51,6 @@ def table(cases: Sequence[Case], units: Mapping[str, str] | None = None) -> xarr
     for name in names:
         if name in (*parameters, "case", "error"):
             raise ValueError(f"value {name!r} has the name of a parameter or of another column; rename it")
-    units = units or {}
     for name in units:
         if name not in (*parameters, *names):
             raise ValueError(

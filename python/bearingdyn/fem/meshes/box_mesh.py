@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.fem.meshes.patches import with_kind
 from bearingdyn.fem.meshes.solid_element import HEX20
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, second_order
+from bearingdyn.magnitude import plausible
 
 SIDES = ("x-", "x+", "y-", "y+", "z-", "z+")
 
@@ -31,6 +32,8 @@ def box_mesh(x: ArrayLike, y: ArrayLike, z: ArrayLike, element: str = "hex20") -
     for name, v in zip("xyz", lines, strict=True):
         if v.ndim != 1 or v.size < 2 or not np.all(np.diff(v) > 0):
             raise ValueError(f"{name} is {v.tolist()}; it must be two grid lines or more, rising, m")
+        for x_k in (v[0], v[-1]):
+            plausible("length", name, x_k)
     shape = tuple(v.size for v in lines)
     p = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
     i = np.arange(len(p)).reshape(shape)

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import named, positive, require, two
 from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.fit_report import FitReport, OutsideBand
@@ -125,9 +125,17 @@ def fit_maxwell(
         require(pin is None, "pin", pin, "a fit to relaxation reaches as far down as its data; leave it out")
         return fit_relaxation(master, n, band, K=K, density=density, fixed=fixed, tolerance=tolerance)
     master = one_curve(master)
+    fixed = named(
+        "fixed", {} if fixed is None else fixed, "it must be a mapping, parameter -> value, or None"
+    )
+    bounds = named(
+        "bounds",
+        {} if bounds is None else bounds,
+        "it must be a mapping, parameter -> (lowest, highest), or None",
+    )
     points = replace(_inside(master, band, K, 1 if n == "auto" else n), pin=_pinned(master, K, pin))
-    held = dict(fixed or {}) | ({} if dashpot else {"eta0": 0.0})
-    limits = {k: v for k, v in (bounds or {}).items() if dashpot or k != "eta0"}
+    held = dict(fixed) | ({} if dashpot else {"eta0": 0.0})
+    limits = {k: v for k, v in bounds.items() if dashpot or k != "eta0"}
     floor = points.floor()
     if n == "auto":
         best, bound = _smallest(points, limits, held, tolerance, floor)
@@ -281,7 +289,7 @@ def _inside(master: MasterCurve, band: tuple[float, float] | None, K: float, n: 
     low, high = float(master.frequency[0]), float(master.frequency[-1])
     if band is None:
         band = (low, high)
-    f_lo, f_hi = float(band[0]), float(band[1])
+    f_lo, f_hi = two("band", band, "it must be a lower and a higher frequency, both positive, Hz")
     if not 0 < f_lo < f_hi < math.inf:
         raise ValueError(f"band is {band!r} Hz; it must be a lower and a higher frequency, both positive")
     keep = (master.frequency >= f_lo) & (master.frequency <= f_hi)

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 import scipy
 
-from bearingdyn.checks import require
+from bearingdyn.checks import require, two
 from bearingdyn.material.fit_report import FitReport
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.relaxation_data import RelaxationData
@@ -19,6 +19,7 @@ from bearingdyn.types import Array
 _MOST = 20  # branches tried by n = "auto"
 _SPREADS = (0.0, 0.5, -0.5)  # decades by which the starts are wider than the times
 _MARGIN = math.log(10.0)  # a relaxation time may lie a decade outside the times
+_BAND = "it must be a lower and a higher frequency, both positive, Hz"
 
 
 def fit_relaxation(
@@ -82,7 +83,7 @@ def _in_shear(data: RelaxationData, band: tuple[float, float] | None, K: float) 
             f"{data.source}: relaxation at {T.size} temperatures, {T[0]:.4g} to {T[-1]:.4g} °C: fit one, "
             f"data.select(T=({T[0] - 1:.4g}, {T[0] + 1:.4g})), or superpose them, master_curve(data)"
         )
-    low, high = (0.0, math.inf) if band is None else (float(band[0]), float(band[1]))
+    low, high = (0.0, math.inf) if band is None else two("band", band, _BAND)
     if not 0 <= low < high:
         raise ValueError(f"band is {band!r} Hz; it must be a lower and a higher frequency, both positive")
     keep = (data.frequency >= low) & (data.frequency <= high)

@@ -106,11 +106,31 @@ def read_dma(
             require(np.ndim(np.asarray(temperature, dtype=object)) == 0, "temperature", temperature, remedy)
             temperature = number("temperature", temperature, "it must be a temperature in °C")
         return _read_one(
-            data, Request(mode, columns or {}, units or {}, temperature, drop_invalid, step), sort
+            data,
+            Request(
+                mode,
+                {} if columns is None else columns,
+                {} if units is None else units,
+                temperature,
+                drop_invalid,
+                step,
+            ),
+            sort,
         )
     given = _temperatures(files, temperature)
     parts = [
-        _read_one(path, Request(mode, columns or {}, units or {}, T, drop_invalid, step), sort)
+        _read_one(
+            path,
+            Request(
+                mode,
+                {} if columns is None else columns,
+                {} if units is None else units,
+                T,
+                drop_invalid,
+                step,
+            ),
+            sort,
+        )
         for path, T in zip(files, given, strict=True)
     ]
     return _together(files, parts)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from bearingdyn.checks import require
+from bearingdyn.checks import instance, items, number, require
 from bearingdyn.material.dma import Mode
 from bearingdyn.material.reading.columns import LABELS, UNITS
 
@@ -47,8 +47,17 @@ class Request:
 
     def __post_init__(self) -> None:
         T = self.temperature
-        known = T is None or -273.15 < T < 1e4
+        known = T is None or -273.15 < number("temperature", T, "it must be a temperature in °C") < 1e4
         require(known, "temperature", T, "it must be a temperature in °C")
+        for name, given in (("columns", self.columns), ("units", self.units)):
+            instance(name, given, Mapping, "it must be a mapping, as {'storage': ...}")
+        if self.step is not None and not isinstance(self.step, str | int):
+            for part in items(
+                "step", self.step, "it must be the name or number of a step, or a list of them"
+            ):
+                instance(
+                    "step", part, (str, int), "it must be the name or number of a step, or a list of them"
+                )
         for quantity, column in self.columns.items():
             titled = isinstance(column, str) or (type(column) is int and column >= 1)
             remedy = "it must be a title, or the number of a column, 1 the first"

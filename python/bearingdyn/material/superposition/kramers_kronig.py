@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.checks import instance
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.superposition.equal_frequency import at_odds, cells_of
 from bearingdyn.types import Array
@@ -65,6 +66,7 @@ def kk_ratio(dma: DMAData) -> Array:
         (n,); NaN where the isotherm has fewer than three frequencies, the moduli are not positive, or G′ does
         not rise.
     """
+    instance("dma", dma, DMAData, "it must be the result of `read_dma`")
     ratio = np.full(dma.frequency.size, np.nan)
     for k in range(int(dma.labels.max()) + 1):
         index = np.flatnonzero((dma.labels == k) & (dma.storage > 0))

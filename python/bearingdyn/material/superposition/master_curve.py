@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import nonnegative, positive, require
+from bearingdyn.checks import instance, nonnegative, number, positive, require, truth
 from bearingdyn.material.dma import DMAData, Mode, check_range
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shear_from_tension import shear_modulus
@@ -189,18 +189,26 @@ def master_curve(
     Paper §3.2; M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701 (WLF).
     """
     known = ("wlf", "arrhenius", "joined", "free")
-    require(law in known, "law", law, "it must be 'wlf', 'arrhenius', 'joined' or 'free'")
+    require(
+        isinstance(law, str) and law in known, "law", law, "it must be 'wlf', 'arrhenius', 'joined' or 'free'"
+    )
     possible = law_from == "shifts" or (law_from == "data" and law != "free")
     require(possible, "law_from", law_from, "it must be 'shifts', or 'data' with a law that has constants")
+    T_ref = number("T_ref", T_ref, "it must be a temperature in °C")
+    clean = truth("clean", clean)
+    if shifts is not None:
+        instance("shifts", shifts, Mapping, "it must be a mapping, temperature -> decades, or None")
     require(-ZERO_CELSIUS < T_ref < 1e4, "T_ref", T_ref, "it must be a temperature in °C")
     if smoothness is not None:
         nonnegative("smoothness", smoothness)
+    instance("dma", dma, (DMAData, RelaxationData), "it must be the result of `read_dma`")
     check_range(dma)
     doubt_runs(dma)
     # converted relaxation is causal by construction
     used, left_out = _cleaned(dma, clean and not isinstance(dma, RelaxationData))
     if vertical is not None:
-        vertical = RhoT(float(T_ref)) if vertical == "rhoT" else vertical
+        vertical = RhoT(float(T_ref)) if isinstance(vertical, str) and vertical == "rhoT" else vertical
+        instance("vertical", vertical, RhoT, "it must be 'rhoT', a RhoT(T_ref), or None")
         remedy = f"its T_ref must be that of the curve, {T_ref:g} °C"
         require(vertical.T_ref == T_ref, "vertical", vertical, remedy)
         factor = vertical.factor(used.temperature)
@@ -275,10 +283,11 @@ def _levels(
     smoothness: float | None,
 ) -> Levels | None:
     """Factors of the runs, as asked for; None to leave moduli as measured."""
-    if levels is None or (levels == "find" and by_hand):
+    if levels is None:
         return None
-    if levels == "find":
-        return find_levels(dma, T_ref, law, smoothness)
+    if isinstance(levels, str):
+        require(levels == "find", "levels", levels, "it must be 'find', {run: factor} or None")
+        return None if by_hand else find_levels(dma, T_ref, law, smoothness)
     require(isinstance(levels, Mapping), "levels", levels, "it must be 'find', {run: factor} or None")
     unknown = sorted(set(levels) - set(dma.runs))
     require(not unknown, "levels", levels, f"there are the runs {list(dma.runs)}, not {unknown}")

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.application import QUANTITIES, RATES, Channel
+from bearingdyn.checks import table
 from bearingdyn.types import Array
 from bearingdyn.writing import write_whole
 
@@ -112,6 +113,7 @@ def _check_abscissa(dim: str, abscissa: Array) -> None:
 
 
 def _functions(data: xarray.Dataset) -> Iterator[_Function]:
+    table("data", data, [], "frequency_response or transient")
     if "response" in data and {"frequency", "output", "input"} <= set(data["response"].dims):
         H = data["response"].transpose("frequency", "output", "input")
         quantity = str(data.attrs.get("quantity"))

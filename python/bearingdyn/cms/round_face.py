@@ -33,6 +33,9 @@ class RoundFace:
         The whole face is glued, as that of a rubber layer.
     beside
         The part may also stand beside its neighbour, as a disc or another shaft end to end.
+    at
+        z of the interface's reference point along the part, m, where what sits on two seats is compared;
+        None: it is not.
     """
 
     kind: Literal["shaft", "bore"]
@@ -41,6 +44,7 @@ class RoundFace:
     room: tuple[float, float] | None = None
     bonded: bool = False
     beside: bool = False
+    at: float | None = None
 
 
 @runtime_checkable
