@@ -115,6 +115,11 @@ PyObject *bd_py_bearing_settle(PyObject *module, PyObject *args);
 PyObject *bd_py_check_scheme(PyObject *module, PyObject *dict);
 extern const char bd_py_bearing_force_doc[], bd_py_bearing_settle_doc[], bd_py_check_scheme_doc[];
 
+/* ---------------------------------------------------------------- radiation.c: sound */
+
+PyObject *bd_py_helmholtz(PyObject *module, PyObject *args);
+extern const char bd_py_helmholtz_doc[];
+
 /* ---------------------------------------------------------------- model.c, march.c, harmonic.c: Model */
 
 extern PyType_Spec bd_py_model_spec;

@@ -14,6 +14,7 @@ SUBPACKAGES = {
     "catalogue": "bearing.catalogue",
     "material": "material",
     "plot": "plot",
+    "sound": "sound",
     "study": "study",
 }
 # public names by what they are about, with the room of each; the stub beside this file says the same

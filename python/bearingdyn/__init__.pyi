@@ -1,6 +1,7 @@
 from bearingdyn import bearing as bearing
 from bearingdyn import material as material
 from bearingdyn import plot as plot
+from bearingdyn import sound as sound
 from bearingdyn import study as study
 from bearingdyn.analysis import (
     Equilibrium,

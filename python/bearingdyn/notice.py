@@ -278,6 +278,16 @@ class FoldedMesh(Notice):
     """
 
 
+class CoarsePanels(Notice):
+    """Notice: triangles of a radiating surface are longer than a sixth of the wavelength.
+
+    When: `sound.solve` or `sound.radiated_power` is given a surface with a longer side of a triangle,
+    or `sound_power` an element size that is too large for its highest frequency.
+
+    Remedy: a finer mesh, or no `element_size`; below the frequency that the text names the mesh will do.
+    """
+
+
 class UnfinishedLine(Notice):
     """Notice: the last number of a text file may have been cut.
 
