@@ -16,6 +16,7 @@ from bearingdyn.cms import (
     Basis,
     FullModel,
     RigidInterface,
+    Skin,
     Superelement,
     Surface,
     Viscoelastic,
@@ -323,7 +324,10 @@ class Solid:
             If moduli cannot be chosen for a material.
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
-        return replace(element, surfaces={name: self._radiation(name) for name in self.radiating})
+        if not self.radiating:
+            return element
+        surfaces = {name: self._radiation(name) for name in self.radiating}
+        return replace(element, surfaces=surfaces, skin=self._skin())
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""
@@ -360,6 +364,16 @@ class Solid:
         samples, rows = self.surface(name)
         W = rows.T @ (samples.weights[:, None] * rows)
         return Surface(samples.area, np.asarray(0.5 * (W + W.T)))
+
+    def _skin(self) -> Skin:
+        boundary = self.mesh.boundary
+        used, index = np.unique(boundary, return_inverse=True)
+        rows = self._basis.Psi[(3 * used[:, None] + np.arange(3)).ravel()]
+        on = {
+            name: np.flatnonzero(np.isin(boundary, self.mesh.surface(name)).all(axis=1))
+            for name in self.radiating
+        }
+        return Skin(self.mesh.points[used], index.reshape(boundary.shape), rows, on)
 
     def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.
