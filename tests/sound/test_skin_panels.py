@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from spheres import SPEED, decibels, power, sphere
 
 import bearingdyn as bd
 from bearingdyn.cms import Skin
 from bearingdyn.sound import TriangleSurface
 from bearingdyn.sound.skin_panels import panelled
+from spheres import SPEED, decibels, power, sphere
 
 
 def sphere_skin(n: int) -> Skin:

@@ -49,7 +49,7 @@ def panelled(skin: Skin, size: float) -> SkinPanels:
     """Panels with sides near `size`, m, for a part's skin.
 
     The corners are fitted to the skin by least squares, so that curved parts keep their volume. A panel moves
-    as the part of the skin nearest to it does on average, but for a small quadratic of the place, by which the
+    as the part of the skin nearest to it does on average, but for a small quadratic of the place; so the
     flux through all panels and its first and second moments become those of the skin: by these, as sources of
     order 0, 1 and 2, small bodies radiate.
 
@@ -170,8 +170,8 @@ def _cells(X: Array, w: Array, cells: int, triangle: bool) -> tuple[Array, Array
     """A rule of the unit triangle or square repeated in each of cells² parts of it."""
     i, j = (g.ravel() for g in np.meshgrid(np.arange(cells), np.arange(cells), indexing="ij"))
     if not triangle:
-        places = np.stack([i, j], axis=1)[:, None] + X[None]
-        return places.reshape(-1, 2) / cells, np.tile(w, cells**2) / cells**2
+        square = np.stack([i, j], axis=1)[:, None] + X[None]
+        return square.reshape(-1, 2) / cells, np.tile(w, cells**2) / cells**2
     up, down = i + j < cells, i + j < cells - 1
     places = [
         (np.stack([i, j], axis=1)[up][:, None] + X[None]).reshape(-1, 2),
@@ -246,4 +246,4 @@ def _fitted(points: Array, faces: Index, samples: _Samples) -> Array:
     held = np.repeat(np.bincount(faces.ravel(), np.repeat(areas / 3.0, 3), minlength=len(points)), 3)
     normal = (A.T @ A + scipy.sparse.diags(STIFF * held)).tocsc()
     moved = scipy.sparse.linalg.spsolve(normal, A.T @ (root * off))
-    return points + moved.reshape(-1, 3)
+    return np.asarray(points + moved.reshape(-1, 3))
