@@ -154,6 +154,9 @@ PUBLIC = {
             "SolverError",
         ),
     },
+    "sound": {
+        "sound": ("sound_power",),
+    },
     "result": {
         "results": (
             "open_result",

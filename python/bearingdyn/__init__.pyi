@@ -135,6 +135,7 @@ from bearingdyn.results import (
     open_result,
     save,
 )
+from bearingdyn.sound import sound_power as sound_power
 
 __version__: str
 
@@ -242,6 +243,7 @@ __all__ = [
     "shaft_angle",
     "sheet_html",
     "sheet_text",
+    "sound_power",
     "specimen_factor",
     "spectrum",
     "state_space",

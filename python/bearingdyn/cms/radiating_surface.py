@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -53,6 +54,8 @@ class Skin:
         (3 b, n): x, y, z of every node from the coordinates of the part's superelement.
     surfaces
         name -> faces of each named surface.
+    f_max
+        Frequency, Hz, up to which the part was reduced.
 
     Raises
     ------
@@ -64,6 +67,7 @@ class Skin:
     faces: Index
     rows: Array
     surfaces: Mapping[str, Index] = field(default_factory=dict)
+    f_max: float = math.inf
 
     __repr__ = short
 

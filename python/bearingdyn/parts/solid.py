@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -373,7 +374,7 @@ class Solid:
             name: np.flatnonzero(np.isin(boundary, self.mesh.surface(name)).all(axis=1))
             for name in self.radiating
         }
-        return Skin(self.mesh.points[used], index.reshape(boundary.shape), rows, on)
+        return Skin(self.mesh.points[used], index.reshape(boundary.shape), rows, on, self.f_max or math.inf)
 
     def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.

@@ -15,6 +15,7 @@ from bearingdyn.sound.field import (
 from bearingdyn.sound.field import (
     pressure_at as pressure_at,
 )
+from bearingdyn.sound.power import sound_power as sound_power
 from bearingdyn.sound.radiation import (
     Radiation as Radiation,
 )

@@ -100,6 +100,7 @@ def solve(
     *,
     density: float = DENSITY,
     sound_speed: float = SOUND_SPEED,
+    coarse: bool = False,
 ) -> Radiation:
     """Solve the sound field outside a surface that moves in given shapes, at one frequency.
 
@@ -113,6 +114,9 @@ def solve(
         Hz.
     density, sound_speed
         Of the medium, kg/m³ and m/s; those of air at 20 °C.
+
+    coarse
+        Whether panels longer than a sixth of the wavelength are meant, and pass without a warning.
 
     Returns
     -------
@@ -138,7 +142,8 @@ def solve(
             f"shapes has shape {B.shape}; it must be ({len(surface.faces)}, n): the normal velocity of each "
             "triangle in m/s, finite"
         )
-    warn_of_coarse_panels(surface, frequency, sound_speed)
+    if not coarse:
+        warn_of_coarse_panels(surface, frequency, sound_speed)
     k = 2.0 * np.pi * frequency / sound_speed
     X, F = _pressure(surface, B, k)
     rate = -2j * np.pi * frequency * density  # g = −iωρ v
