@@ -155,7 +155,10 @@ PUBLIC = {
         ),
     },
     "sound": {
-        "sound": ("sound_power",),
+        "sound": (
+            "sound_power",
+            "write_wav",
+        ),
     },
     "result": {
         "results": (

@@ -136,6 +136,7 @@ from bearingdyn.results import (
     save,
 )
 from bearingdyn.sound import sound_power as sound_power
+from bearingdyn.sound import write_wav as write_wav
 
 __version__: str
 
@@ -254,4 +255,5 @@ __all__ = [
     "transients",
     "unbalance_response",
     "waterfall",
+    "write_wav",
 ]

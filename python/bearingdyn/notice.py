@@ -316,6 +316,15 @@ class UnsureInterpolation(Notice):
     """
 
 
+class ClippedSound(Notice):
+    """Notice: a sound file of 16 bits cannot hold the largest pressures.
+
+    When: `write_wav(bits=16, full_scale=...)` gets a pressure above the full scale.
+
+    Remedy: the full scale that the text names, or `bits=32`.
+    """
+
+
 class UnfinishedLine(Notice):
     """Notice: the last number of a text file may have been cut.
 

@@ -23,6 +23,7 @@ def app() -> bd.Application:
     app = bd.Application()
     app.add("housing", housing.superelement())
     app.ground("housing.feet")
+    app.free("housing.bore")
     return app
 
 
@@ -195,5 +196,6 @@ def test_unknown_surfaces_and_parts_without_a_skin_are_named(app) -> None:
     other = bd.Application()
     other.add("bare", dataclasses.replace(bare, skin=None))
     other.ground("bare.feet")
+    other.free("bare.bore")
     with pytest.raises(ValueError, match="part 'bare' has surfaces but no skin"):
         bd.sound_power(other, [100.0], ["bare.bore.z"], ["bare.outside"])

@@ -1,8 +1,8 @@
 """Radiation resistance over a band of frequencies: solved at a few, between them by polynomials.
 
 Each octave has panels of its own, and Clenshaw and Curtis's points, which nest: 5, 9, 17, 33, 65. R/f² is
-smooth in f, and the polynomial through it converges geometrically: twice the points square its relative error.
-So the departure e of the polynomial through every second point tells the error of that through all: 4 e² at
+smooth in f, and the polynomial through it converges geometrically: twice the points square its error. So the
+departure e of the polynomial through every second point tells the error of that through all: 4 e² at
 most, seen on bodies before one another, whose echoes swing most (2.3e-2 fell to 7.7e-4, .23 to .054).
 """
 
@@ -184,8 +184,8 @@ def solved_octave(
     else:
         if not _unsure(octave) <= SURE:
             warn(
-                f"between {low:.4g} and {high:.4g} Hz the radiation solved at {level} frequencies is known to "
-                f"{_unsure(octave):.2g} dB between them; the result's interpolation_error says where",
+                f"between {low:.4g} and {high:.4g} Hz the radiation solved at {level} frequencies is known "
+                f"to {_unsure(octave):.2g} dB between them; the result's interpolation_error says where",
                 UnsureInterpolation,
             )
     octave = _repaired(octave)
