@@ -29,6 +29,7 @@ def make() -> None:
     architecture.draw(STATIC / "architecture.svg")
     sheet_figure.draw(STATIC / "sheet.svg")
     squeezed_picture(STATIC / "squeezed.png")
+    sound_picture(STATIC / "sound.png")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))
@@ -47,6 +48,30 @@ def squeezed_picture(path: Path) -> None:
     for ax, recess, how, squeeze in ((axes[0], 1.2e-3, "bonded", 0.05), (axes[1], 0.0, "slip", 0.10)):
         ring = bd.Layer(r_inner=0.020, r_outer=0.024, width=0.012, material=rubber, recess=recess)
         bd.plot.squeezed_section(ring.assembled(squeeze=squeeze, inside=how, outside=how), ax=ax)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def sound_picture(path: Path) -> None:
+    """The guide's page on sound: a plate-like housing, its sound power and its equivalent radiated power."""
+    import matplotlib.pyplot as plt
+    import numpy as np
+
+    import bearingdyn as bd
+
+    housing = bd.Housing(0.16, 0.20, 0.03, 0.078, bore_height=0.12, damping=0.01, f_max=3000.0)
+    app = bd.Application()
+    app.add("housing", housing.superelement())
+    app.ground("housing.feet")
+    app.free("housing.bore")
+    f = np.geomspace(100.0, 2000.0, 300)
+    found = bd.sound_power(app, f, ["housing.bore.z"], ["housing.outside"])
+    figure, ax = plt.subplots(figsize=(7, 3.4), layout="constrained")
+    for name, label in (("equivalent_radiated_power", "equivalent radiated power"), ("power", "sound power")):
+        ax.semilogx(f, bd.sound.level(found[name].values[:, 0], "power"), label=label)
+    ax.set_xlabel("frequency, Hz")
+    ax.set_ylabel("level, dB re 1 pW, force 1 N at the bore")
+    ax.legend(frameon=False)
     figure.savefig(path, dpi=110)
     plt.close(figure)
 

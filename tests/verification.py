@@ -23,6 +23,7 @@ from verified import (
     rings,
     shaker,
     solids,
+    sound,
     squeezed,
     structures,
 )
@@ -55,6 +56,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Solids of elements": solids.bonded,
     "Housing in CalculiX": peers.calculix,
     "Reduced parts": reduction.reduction,
+    "Sound of spheres": sound.spheres,
     "Free shaft and ring": structures.free_bodies,
     "Rings under opposed loads": rings.pinched_rings,
     "Flexible ring, stiff and free": rings.stiff_rings,

@@ -14,7 +14,7 @@ from bearingdyn.notice import BeyondModes, CoarsePanels, RepairedResistance, Uns
 from bearingdyn.sound import radiators, resistance
 from bearingdyn.sound.radiation import solve
 
-F = np.linspace(200.0, 1600.0, 40)
+F = np.linspace(400.0, 1600.0, 40)
 
 
 @pytest.fixture(scope="module")
@@ -51,16 +51,16 @@ def direct(app: bd.Application, f: float, size: float, floor: float | None = Non
 
 def test_between_the_frequencies_solved_at_the_power_is_that_of_a_direct_solution(app, found) -> None:
     """Within .05 dB at frequencies drawn at random; the estimate is .02 dB."""
-    for i in np.random.default_rng(5).choice(F.size, 5, replace=False):
+    for i in np.random.default_rng(5).choice(F.size, 4, replace=False):
         one = direct(app, F[i], 0.035)
         assert 10 * math.log10(found.power.values[i, 0] / one) == pytest.approx(0.0, abs=0.05)
     assert found.interpolation_error.values.max() < 0.05
 
 
-def test_a_finer_mesh_tells_the_same(app, found) -> None:
-    """Within .1 dB, the flat panels' share in it."""
-    fine = asked(app, element_size=0.022).power.values
-    assert np.abs(10 * np.log10(fine / found.power.values)).max() < 0.1
+def test_a_finer_mesh_tells_the_same(app) -> None:
+    """The default's eighth of the body against sides of two thirds of it, within .1 dB."""
+    for f in (300.0, 1100.0):
+        assert 10 * math.log10(direct(app, f, 0.025) / direct(app, f, 0.017)) == pytest.approx(0.0, abs=0.1)
 
 
 def test_equivalent_radiated_power_stands_beside_it(app, found) -> None:
@@ -68,8 +68,8 @@ def test_equivalent_radiated_power_stands_beside_it(app, found) -> None:
     assert found.equivalent_radiated_power.values == pytest.approx(erp, rel=1e-12)
     error = 10 * np.log10(erp / found.power.values)
     assert found.equivalent_error.values == pytest.approx(error)
-    # a plate of .2 m is far below a plane at 200 Hz, and near it at 1600
-    assert error[0, 0] > 10.0
+    # a plate of .2 m is far below a plane at 400 Hz, and near it at 1600
+    assert error[0, 0] > 8.0
     assert error[-1, 0] < 6.0
 
 
@@ -81,7 +81,7 @@ def test_what_was_solved_is_kept(app, found, tmp_path: Path, monkeypatch: pytest
     first = asked(app, cache=tmp_path)
     assert first.power.values == pytest.approx(found.power.values, rel=1e-12)
     kept = sorted(tmp_path.iterdir())
-    assert len(kept) == 3  # octaves up from 200 to 1600 Hz
+    assert len(kept) == 2  # octaves up from 400 to 1600 Hz
 
     def never(*_: object, **__: object) -> None:
         raise AssertionError("solved again")

@@ -156,7 +156,7 @@ def mean_squares(samples: ArrayLike, rate: float) -> tuple[Array, Array]:
     power[0] *= 0.5
     if x.size % 2 == 0:
         power[-1] *= 0.5
-    return np.fft.rfftfreq(x.size, 1.0 / rate), power
+    return np.asarray(np.fft.rfftfreq(x.size, 1.0 / rate), dtype=np.float64), power
 
 
 def vibration_severity(velocity: ArrayLike, rate: float) -> float:

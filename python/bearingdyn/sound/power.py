@@ -137,7 +137,9 @@ def sound_power(
         bands = octaves(float(f[f > 0].min()), float(f.max()))
         with told(progress, "octave") as tell:
             for number_of, (low, high) in enumerate(bands):
-                at = np.flatnonzero((f > low) & (f <= high) if number_of else (f >= low) & (f <= high))
+                # the lowest octave keeps its lower end, where nothing else begins
+                above = f >= low if number_of == len(bands) - 1 else f > low
+                at = np.flatnonzero(above & (f <= high))
                 if not at.size:
                     continue
                 octave = solved_octave(

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import existing, number, one_of, positive, require
+from bearingdyn.checks import existing, items, number, one_of, positive, require
 from bearingdyn.notice import ClippedSound, warn
 from bearingdyn.sound.signals import signal
 from bearingdyn.types import Array
@@ -72,9 +72,9 @@ def write_wav(
     require(rate % 1 == 0 and rate < 2**31, "rate", rate, "it must be samples a second, a whole number")
     pause = number("pause", pause, "it must be seconds of zero or more")
     require(pause >= 0, "pause", pause, "it must be seconds of zero or more")
-    several = not isinstance(pressure, np.ndarray) and len(pressure) > 0 and np.ndim(pressure[0]) == 1  # type: ignore[index,arg-type]
-    given = list(pressure) if several else [pressure]  # type: ignore[arg-type]
-    parts = [signal("pressure", one) for one in given]
+    given = items("pressure", pressure, "it must be samples (n,), Pa, or a list of such signals")
+    several = len(given) > 0 and np.ndim(given[0]) == 1
+    parts = [signal("pressure", one) for one in (given if several else [given])]
     silence = np.zeros(round(pause * rate))
     joined = parts[0]
     for one in parts[1:]:
