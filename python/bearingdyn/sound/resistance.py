@@ -86,8 +86,9 @@ class Octave:
     def power(self, f: Array, velocity: Complex) -> tuple[Array, Array]:
         """½ vᴴ R v and its error (f,), dB, of velocities (f, n) at frequencies (f,) of the octave."""
         # one quadratic form a node: v* R_j v / f_j²
-        forms = np.einsum("fa,jab,fb->fj", velocity.conj(), self.resistance, velocity, optimize=True).real
-        forms = 0.5 * forms / self.nodes**2
+        parts = np.vstack([velocity.real, velocity.imag])
+        forms = np.stack([np.einsum("fa,fa->f", parts, parts @ R) for R in self.resistance], axis=1)
+        forms = 0.5 * (forms[: f.size] + forms[f.size :]) / self.nodes**2
         best = f**2 * (forms * self.weights(f)).sum(axis=1)
         rough = f**2 * (forms * self.weights(f, (len(self.nodes) + 1) // 2)).sum(axis=1)
         return best, _difference(best, rough)
@@ -95,7 +96,7 @@ class Octave:
     def shares(self, f: Array, velocity: Complex, blocks: Sequence[slice]) -> Array:
         """What each of the blocks of coordinates gives, ½ Re v_b* (R v)_b, (f, blocks)."""
         w = self.weights(f) * (f[:, None] / self.nodes) ** 2
-        force = np.einsum("fj,jab,fb->fa", w, self.resistance, velocity, optimize=True)
+        force = sum(w[:, j : j + 1] * (velocity @ R) for j, R in enumerate(self.resistance))
         each = 0.5 * (velocity.conj() * force).real
         return np.stack([each[:, block].sum(axis=1) for block in blocks], axis=1)
 
