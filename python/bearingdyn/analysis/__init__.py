@@ -10,6 +10,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, state_of
 from bearingdyn.analysis.frequency_response import frequencies, frequency_response
 from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import linear
+from bearingdyn.analysis.loaded_cage import cage_ratios, with_loaded_cages
 from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.operating_point import (
@@ -27,6 +28,7 @@ from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
+from bearingdyn.analysis.steady import steady_state
 from bearingdyn.analysis.stiffness_table import export_stiffness, ross_table, stiffness_table
 from bearingdyn.analysis.thermal_network import ThermalNetwork
 from bearingdyn.analysis.transient import transient, transients
@@ -44,6 +46,7 @@ __all__ = [
     "ThermalRunaway",
     "ball_channels",
     "bearing_sheet",
+    "cage_ratios",
     "campbell",
     "contact_statistics",
     "dissipation",
@@ -72,6 +75,7 @@ __all__ = [
     "state_of",
     "state_space",
     "static_summary",
+    "steady_state",
     "stiffness_table",
     "surface_of",
     "track_orders",
@@ -79,4 +83,5 @@ __all__ = [
     "transients",
     "unbalance_response",
     "waterfall",
+    "with_loaded_cages",
 ]
