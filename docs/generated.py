@@ -34,6 +34,7 @@ def make() -> None:
     ring_picture(STATIC / "ring.png")
     contact_figure.maps(STATIC / "contact_maps.png")
     contact_figure.damping(STATIC / "contact_damping.svg")
+    sound_picture(STATIC / "sound.png")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))
@@ -68,6 +69,30 @@ def ring_picture(path: Path) -> None:
     ax = bd.plot.ring_shape(bd.FlexibleBearing(bearing, ring), (0, -3000, 0, 0, 0, 0), -0.5 * math.pi)
     ax.figure.savefig(path, dpi=110)
     plt.close(ax.figure)
+
+
+def sound_picture(path: Path) -> None:
+    """The guide's page on sound: a plate-like housing, its sound power and its equivalent radiated power."""
+    import matplotlib.pyplot as plt
+    import numpy as np
+
+    import bearingdyn as bd
+
+    housing = bd.Housing(0.16, 0.20, 0.03, 0.078, bore_height=0.12, damping=0.01, f_max=3000.0)
+    app = bd.Application()
+    app.add("housing", housing.superelement())
+    app.ground("housing.feet")
+    app.free("housing.bore")
+    f = np.geomspace(100.0, 2000.0, 300)
+    found = bd.sound_power(app, f, ["housing.bore.z"], ["housing.outside"])
+    figure, ax = plt.subplots(figsize=(7, 3.4), layout="constrained")
+    for name, label in (("equivalent_radiated_power", "equivalent radiated power"), ("power", "sound power")):
+        ax.semilogx(f, bd.sound.level(found[name].values[:, 0], "power"), label=label)
+    ax.set_xlabel("frequency, Hz")
+    ax.set_ylabel("level, dB re 1 pW, force 1 N at the bore")
+    ax.legend(frameon=False)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
 
 
 def warnings_table() -> str:

@@ -25,6 +25,7 @@ from verified import (
     rings,
     shaker,
     solids,
+    sound,
     squeezed,
     structures,
 )
@@ -58,6 +59,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Solids of elements": solids.bonded,
     "Housing in CalculiX": peers.calculix,
     "Reduced parts": reduction.reduction,
+    "Sound of spheres": sound.spheres,
     "Free shaft and ring": structures.free_bodies,
     "Rings under opposed loads": rings.pinched_rings,
     "Flexible ring, stiff and free": rings.stiff_rings,

@@ -118,6 +118,11 @@ PyObject *bd_py_bearing_settle(PyObject *module, PyObject *args);
 PyObject *bd_py_check_scheme(PyObject *module, PyObject *dict);
 extern const char bd_py_bearing_force_doc[], bd_py_bearing_settle_doc[], bd_py_check_scheme_doc[];
 
+/* ---------------------------------------------------------------- radiation.c: sound */
+
+PyObject *bd_py_helmholtz(PyObject *module, PyObject *args);
+extern const char bd_py_helmholtz_doc[];
+
 /* ---------------------------------------------------------------- along.c */
 
 PyObject *bd_py_bearing_along(PyObject *module, PyObject *args);

@@ -14,6 +14,7 @@ SUBPACKAGES = {
     "catalogue": "bearing.catalogue",
     "material": "material",
     "plot": "plot",
+    "sound": "sound",
     "study": "study",
 }
 # public names by what they are about, with the room of each; the stub beside this file says the same
@@ -157,6 +158,12 @@ PUBLIC = {
             "Interrupted",
             "Scheme",
             "SolverError",
+        ),
+    },
+    "sound": {
+        "sound": (
+            "sound_power",
+            "write_wav",
         ),
     },
     "result": {

@@ -1,6 +1,7 @@
 from bearingdyn import bearing as bearing
 from bearingdyn import material as material
 from bearingdyn import plot as plot
+from bearingdyn import sound as sound
 from bearingdyn import study as study
 from bearingdyn.analysis import (
     Equilibrium,
@@ -140,6 +141,8 @@ from bearingdyn.results import (
     open_result,
     save,
 )
+from bearingdyn.sound import sound_power as sound_power
+from bearingdyn.sound import write_wav as write_wav
 
 __version__: str
 
@@ -251,6 +254,7 @@ __all__ = [
     "shaft_angle",
     "sheet_html",
     "sheet_text",
+    "sound_power",
     "specimen_factor",
     "spectrum",
     "state_space",
@@ -263,4 +267,5 @@ __all__ = [
     "unbalance_response",
     "waterfall",
     "with_loaded_cages",
+    "write_wav",
 ]

@@ -91,4 +91,13 @@ def bearing_settle(
     bearing: dict[str, object], loads: _Array, radius: _Array, angle: float, shaft_angle: float, /
 ) -> tuple[_Array, _Array, _Array]: ...
 def check_scheme(scheme: dict[str, object], /) -> None: ...
+def helmholtz(
+    points: _Array, faces: NDArray[np.int32], k: float, floor: float | None, /
+) -> tuple[
+    NDArray[np.complex128],
+    NDArray[np.complex128],
+    NDArray[np.complex128],
+    NDArray[np.complex128],
+    NDArray[np.complex128],
+]: ...
 def status_text(status: int, /) -> str: ...

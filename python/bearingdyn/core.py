@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from bearingdyn import _core
 from bearingdyn.progress import Progress as Progress
 from bearingdyn.short_repr import short
-from bearingdyn.types import Array, Complex
+from bearingdyn.types import Array, Complex, Index
 
 Model = _core.Model
 
@@ -458,6 +458,32 @@ def harmonic(
     none = np.zeros((np.size(omega), 0), dtype=np.complex128), np.zeros((0, np.size(bearing_K, -1)))
     ball, across = none if balls is None else balls
     return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, ball, across, force, row, progress)
+
+
+def helmholtz(
+    points: Array, faces: Index, wave_number: float, floor: float | None = None
+) -> tuple[Complex, Complex, Complex, Complex, Complex]:
+    """Integral operators of sound outside a surface of triangles (csrc/radiation.h), time as exp(+iωt).
+
+    Parameters
+    ----------
+    points, faces
+        Corners (n, 3), m, and triangles (m, 3), anticlockwise seen from outside.
+    wave_number
+        ω/c, 1/m.
+    floor
+        Height y, m, of a rigid floor; None: free field.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        V (m, m), V1 (n, m), Kt (n, m), K (n, n) and D (n, n), complex.
+
+    References
+    ----------
+    J.-C. Nédélec, Acoustic and Electromagnetic Equations, Springer 2001, section 3.4.
+    """
+    return _core.helmholtz(points, np.asarray(faces, dtype=np.int32), wave_number, floor)
 
 
 def time_of(model: Model, state: Array) -> float:

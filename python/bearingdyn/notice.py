@@ -288,6 +288,53 @@ class FoldedMesh(Notice):
     """
 
 
+class CoarsePanels(Notice):
+    """Notice: triangles of a radiating surface are longer than a sixth of the wavelength.
+
+    When: `sound.solve` or `sound.radiated_power` is given a surface with a longer side of a triangle,
+    or `sound_power` an element size that is too large for its highest frequency.
+
+    Remedy: a finer mesh, or no `element_size`; below the frequency that the text names the mesh will do.
+    """
+
+
+class BeyondModes(Notice):
+    """Notice: sound is asked for above the frequency up to which a part was reduced.
+
+    When: `sound_power` gets a frequency above the `f_max` of a part that radiates.
+
+    Remedy: a higher `f_max` of the part, or lower frequencies; the part's own modes above f_max are lacking.
+    """
+
+
+class RepairedResistance(Notice):
+    """Notice: a radiation resistance had motions of negative power, which were set to zero.
+
+    When: `sound_power` finds an eigenvalue of the resistance below −1e-4 of the largest.
+
+    Remedy: a smaller `element_size`: the panels are too coarse for the part.
+    """
+
+
+class UnsureInterpolation(Notice):
+    """Notice: sound power between the frequencies solved at is less sure than 0.05 dB.
+
+    When: `sound_power` has solved as many frequencies in an octave as it may, and the last of them still
+    disagreed with the rest.
+
+    Remedy: a narrower band, or bodies and floors closer together: their echoes swing over frequency.
+    """
+
+
+class ClippedSound(Notice):
+    """Notice: a sound file of 16 bits cannot hold the largest pressures.
+
+    When: `write_wav(bits=16, full_scale=...)` gets a pressure above the full scale.
+
+    Remedy: the full scale that the text names, or `bits=32`.
+    """
+
+
 class UnfinishedLine(Notice):
     """Notice: the last number of a text file may have been cut.
 

@@ -43,6 +43,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("runfile",),
     ("results",),
     ("analysis",),
+    ("sound",),
     ("plot", "study"),
     ("",),
     ("check", "demo"),

@@ -6,8 +6,10 @@ from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.dissipation import dissipation
 from bearingdyn.analysis.energy_shares import energy_shares
 from bearingdyn.analysis.envelope import envelope_spectrum
-from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
-from bearingdyn.analysis.frequency_response import frequency_response
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, state_of
+from bearingdyn.analysis.frequency_response import frequencies, frequency_response
+from bearingdyn.analysis.inputs_outputs import Input
+from bearingdyn.analysis.linearised import linear
 from bearingdyn.analysis.loaded_cage import cage_ratios, with_loaded_cages
 from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.modes import modes
@@ -19,6 +21,7 @@ from bearingdyn.analysis.operating_point import (
 )
 from bearingdyn.analysis.orbit import orbit
 from bearingdyn.analysis.orders import order_spectrum, track_orders
+from bearingdyn.analysis.part_velocities import part_velocities, surface_of
 from bearingdyn.analysis.radiated_power import radiated_power
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
 from bearingdyn.analysis.shaft_speed import shaft_angle
@@ -35,6 +38,7 @@ from bearingdyn.analysis.waterfall import waterfall
 __all__ = [
     "BearingState",
     "Equilibrium",
+    "Input",
     "MovedSurface",
     "OperatingPoint",
     "StateSpace",
@@ -51,13 +55,16 @@ __all__ = [
     "equilibrium",
     "estimated_network",
     "export_stiffness",
+    "frequencies",
     "frequency_response",
+    "linear",
     "mode_shapes",
     "mode_surfaces",
     "modes",
     "operating_point",
     "orbit",
     "order_spectrum",
+    "part_velocities",
     "radiated_power",
     "ross_table",
     "shaft_angle",
@@ -65,10 +72,12 @@ __all__ = [
     "sheet_text",
     "single_bearing",
     "spectrum",
+    "state_of",
     "state_space",
     "static_summary",
     "steady_state",
     "stiffness_table",
+    "surface_of",
     "track_orders",
     "transient",
     "transients",

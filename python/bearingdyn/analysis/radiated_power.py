@@ -18,11 +18,11 @@ from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.frequency_response import frequencies
 from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import linear
-from bearingdyn.application import Application, Place
-from bearingdyn.checks import meant, name_list, positive
-from bearingdyn.cms import Surface
-from bearingdyn.progress import Progress, told
-from bearingdyn.system import PartTerm, System
+from bearingdyn.analysis.part_velocities import part_velocities, surface_of
+from bearingdyn.application import Application
+from bearingdyn.checks import name_list, positive
+from bearingdyn.progress import Progress
+from bearingdyn.system import System
 
 if TYPE_CHECKING:
     import xarray
@@ -76,27 +76,13 @@ def radiated_power(
     density, sound_speed = positive("density", density), positive("sound_speed", sound_speed)
     state = linear(source)
     state.system.check_speed(speed)
-    found = [_surface(state.system, name) for name in surfaces]
+    found = [surface_of(state.system, name) for name in surfaces]
     given = [Input.of(state.system, name) for name in inputs]
-    force = np.array([i.force for i in given]).reshape(-1, state.system.n)
 
-    parts = {term.name: term for term, _ in found}
-    rows = np.vstack([np.zeros((0, state.system.n)), *(t.place for t in parts.values())])
-    omega = 2 * np.pi * f
-    with told(progress, "frequency") as tell:
-        x = state.solve(omega, force, rows, speed, tell)
-    rate = 1j * omega
-    at = 0
+    parts = list({term.name: term for term, _ in found}.values())
     square = np.zeros((f.size, len(found), len(given)))
-    for term in parts.values():
-        own = x[:, at : at + len(term.place)]
-        at += len(term.place)
-        # per unit force the velocity is iω x; per unit velocity of the ground, whose acceleration is iω, iω
-        # iω x
-        velocity = own * np.stack([rate ** (1 if i.axis is None else 2) for i in given], axis=1)[:, None]
-        for i, one in enumerate(given):
-            if one.axis is not None:
-                velocity[:, :, i] += term.rigid[:, one.axis]
+    moved = part_velocities(state, parts, f, given, speed, progress)
+    for term, velocity in zip(parts, moved, strict=True):
         for k, (owner, surface) in enumerate(found):
             if owner is term:
                 square[:, k] = np.einsum(
@@ -133,13 +119,3 @@ def radiated_power(
         },
         {"frequency": (f, "Hz"), "surface": (list(surfaces), ""), "input": (list(inputs), "")},
     )
-
-
-def _surface(system: System, name: str) -> tuple[PartTerm, Surface]:
-    owner = next((term for term in system.parts if name.startswith(f"{term.name}.")), None)
-    if owner is None:
-        raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")
-    place, known = Place.parse(name), owner.element.surfaces
-    if place.name not in known:
-        raise ValueError(f"part {owner.name!r} has no surface {place.name!r}; {meant(place.name, known)}")
-    return owner, known[place.name]

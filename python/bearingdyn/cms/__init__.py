@@ -13,7 +13,7 @@ from bearingdyn.cms.full_model import FullModel, RigidInterface
 from bearingdyn.cms.modal_damping import modal_damping
 from bearingdyn.cms.part_march import March, march
 from bearingdyn.cms.raceway import Raceway
-from bearingdyn.cms.radiating_surface import Surface
+from bearingdyn.cms.radiating_surface import Skin, Surface
 from bearingdyn.cms.reduction import project, reduce, reduce_free_body
 from bearingdyn.cms.reduction_error import ReductionError, reduction_error
 from bearingdyn.cms.reduction_options import (
@@ -40,6 +40,7 @@ __all__ = [
     "ReductionError",
     "RigidInterface",
     "RoundFace",
+    "Skin",
     "Superelement",
     "Surface",
     "Transfer",

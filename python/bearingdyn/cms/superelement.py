@@ -9,7 +9,7 @@ import numpy as np
 
 from bearingdyn.cms.frozen_matrices import check_symmetry, frozen
 from bearingdyn.cms.raceway import Raceway
-from bearingdyn.cms.radiating_surface import Surface
+from bearingdyn.cms.radiating_surface import Skin, Surface
 from bearingdyn.cms.round_face import RoundFace
 from bearingdyn.cms.viscoelastic import Viscoelastic
 from bearingdyn.types import Array, Complex, Index
@@ -46,6 +46,8 @@ class Superelement:
     faces
         name -> the round faces at an interface or raceway, with which an application compares the
         neighbours; what is left out is taken to fit.
+    skin
+        The whole boundary, which sound power needs; None: unknown.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class Superelement:
     raceways: Mapping[str, Raceway] = field(default_factory=dict)
     surfaces: Mapping[str, Surface] = field(default_factory=dict)
     faces: Mapping[str, tuple[RoundFace, ...]] = field(default_factory=dict)
+    skin: Skin | None = None
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) else 0
@@ -110,6 +113,9 @@ class Superelement:
         for name, surface in self.surfaces.items():
             if surface.W.shape != (n, n):
                 raise ValueError(f"surfaces[{name!r}].W has shape {surface.W.shape}; it must be ({n}, {n})")
+
+        if self.skin is not None and self.skin.rows.shape[1] != n:
+            raise ValueError(f"skin.rows has {self.skin.rows.shape[1]} columns, not {n}")
 
         object.__setattr__(self, "viscoelastic", tuple(self.viscoelastic))
         for i, part in enumerate(self.viscoelastic):

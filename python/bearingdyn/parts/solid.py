@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,6 +18,7 @@ from bearingdyn.cms import (
     FullModel,
     RigidInterface,
     RoundFace,
+    Skin,
     Superelement,
     Surface,
     Viscoelastic,
@@ -324,8 +326,11 @@ class Solid:
             If moduli cannot be chosen for a material.
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
+        element = replace(element, faces=self.round_faces())
+        if not self.radiating:
+            return element
         surfaces = {name: self._radiation(name) for name in self.radiating}
-        return replace(element, surfaces=surfaces, faces=self.round_faces())
+        return replace(element, surfaces=surfaces, skin=self._skin())
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""
@@ -362,6 +367,16 @@ class Solid:
         samples, rows = self.surface(name)
         W = rows.T @ (samples.weights[:, None] * rows)
         return Surface(samples.area, np.asarray(0.5 * (W + W.T)))
+
+    def _skin(self) -> Skin:
+        boundary = self.mesh.boundary
+        used, index = np.unique(boundary, return_inverse=True)
+        rows = self._basis.Psi[(3 * used[:, None] + np.arange(3)).ravel()]
+        on = {
+            name: np.flatnonzero(np.isin(boundary, self.mesh.surface(name)).all(axis=1))
+            for name in self.radiating
+        }
+        return Skin(self.mesh.points[used], index.reshape(boundary.shape), rows, on, self.f_max or math.inf)
 
     def stiffness(self, omega: float = 0.0, after: float | None = None) -> Complex:
         """Quasi-static complex stiffness (6 i, 6 i) of the i interfaces at G*(ω), N/m, N, N m; ω in rad/s.

@@ -9,7 +9,7 @@ from bearingdyn.fem.meshes.quadrilateral_element import lagrange
 from bearingdyn.fem.meshes.quadrilaterals import quadrilaterals
 from bearingdyn.fem.meshes.revolution_mesh import SAME, Rectangle, RevolutionMesh, revolution_mesh
 from bearingdyn.fem.meshes.ring_mesh import ring_mesh
-from bearingdyn.fem.meshes.solid_element import by_size, face_shapes
+from bearingdyn.fem.meshes.solid_element import by_size, face_points, face_shapes
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, SurfaceSamples
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "by_size",
     "crowded",
     "disc_section",
+    "face_points",
     "face_shapes",
     "lagrange",
     "o_ring_mesh",

@@ -1,0 +1,83 @@
+"""How fast the coordinates of parts move under harmonic inputs: what radiates from their surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bearingdyn.analysis.inputs_outputs import Input
+from bearingdyn.analysis.linearised import Linear
+from bearingdyn.application import Place
+from bearingdyn.checks import meant
+from bearingdyn.cms import Surface
+from bearingdyn.progress import Progress, told
+from bearingdyn.system import PartTerm, System
+from bearingdyn.types import Array, Complex
+
+
+def part_velocities(
+    state: Linear,
+    parts: Sequence[PartTerm],
+    frequency: Array,
+    inputs: Sequence[Input],
+    speed: float = 0.0,
+    progress: Progress | bool | None = None,
+) -> list[Complex]:
+    """Velocities of the coordinates of parts per unit of each input.
+
+    Parameters
+    ----------
+    state
+        The linearised system.
+    parts
+        Whose coordinates.
+    frequency
+        (f,), Hz.
+    inputs
+        Forces, or velocities of the ground.
+    speed
+        Of the shaft, rad/s.
+    progress
+        As in `frequency_response`.
+
+    Returns
+    -------
+    list of numpy.ndarray
+        (f, n, i) complex of each part of n coordinates.
+    """
+    n = state.system.n
+    force = np.array([i.force for i in inputs]).reshape(-1, n)
+    rows = np.vstack([np.zeros((0, n)), *(t.place for t in parts)])
+    omega = 2 * np.pi * frequency
+    with told(progress, "frequency") as tell:
+        x = state.solve(omega, force, rows, speed, tell)
+    rate = 1j * omega
+    # per unit force the velocity is iω x; per unit velocity of the ground, whose acceleration is iω, iω iω x
+    factor = np.stack([rate ** (1 if i.axis is None else 2) for i in inputs], axis=1)[:, None]
+    moved, at = [], 0
+    for term in parts:
+        velocity = x[:, at : at + len(term.place)] * factor
+        at += len(term.place)
+        for i, one in enumerate(inputs):
+            if one.axis is not None:
+                velocity[:, :, i] += term.rigid[:, one.axis]
+        moved.append(velocity)
+    return moved
+
+
+def surface_of(system: System, name: str) -> tuple[PartTerm, Surface]:
+    """A radiating surface by its name, and the part it is of.
+
+    Raises
+    ------
+    ValueError
+        For a part or a surface that there is not.
+    """
+    owner = next((term for term in system.parts if name.startswith(f"{term.name}.")), None)
+    if owner is None:
+        raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")
+    place, known = Place.parse(name), owner.element.surfaces
+    if place.name not in known:
+        raise ValueError(f"part {owner.name!r} has no surface {place.name!r}; {meant(place.name, known)}")
+    return owner, known[place.name]

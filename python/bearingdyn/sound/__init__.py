@@ -1,0 +1,49 @@
+"""Noise, as it is heard: sound radiated by surfaces, its levels, and signals to listen to."""
+
+from bearingdyn.sound.bands import band_filter, band_powers, bands, filtered_bands
+from bearingdyn.sound.field import box_positions, far_field, far_power, hemisphere_positions, pressure_at
+from bearingdyn.sound.hearing import loudness, pressure_signal, weighted_signal
+from bearingdyn.sound.levels import (
+    band_levels,
+    crest_factor,
+    kurtosis,
+    level,
+    mean_squares,
+    total,
+    vibration_severity,
+)
+from bearingdyn.sound.power import sound_power
+from bearingdyn.sound.radiation import Radiation, radiated_power, solve
+from bearingdyn.sound.triangle_surface import TriangleSurface
+from bearingdyn.sound.wav import read_wav, write_wav
+from bearingdyn.sound.weighting import weighting
+
+__all__ = [
+    "Radiation",
+    "TriangleSurface",
+    "band_filter",
+    "band_levels",
+    "band_powers",
+    "bands",
+    "box_positions",
+    "crest_factor",
+    "far_field",
+    "far_power",
+    "filtered_bands",
+    "hemisphere_positions",
+    "kurtosis",
+    "level",
+    "loudness",
+    "mean_squares",
+    "pressure_at",
+    "pressure_signal",
+    "radiated_power",
+    "read_wav",
+    "solve",
+    "sound_power",
+    "total",
+    "vibration_severity",
+    "weighted_signal",
+    "weighting",
+    "write_wav",
+]

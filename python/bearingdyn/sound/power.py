@@ -1,0 +1,269 @@
+"""Sound power of the parts of a machine under harmonic inputs, and its sound at microphones."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bearingdyn.analysis import (
+    Equilibrium,
+    Input,
+    frequencies,
+    linear,
+    part_velocities,
+    state_of,
+    surface_of,
+)
+from bearingdyn.application import Application, arm
+from bearingdyn.checks import name_list, number, positive, real, require
+from bearingdyn.notice import BeyondModes, CoarsePanels, warn
+from bearingdyn.progress import Progress, told
+from bearingdyn.sound.radiation import DENSITY, PANELS, SOUND_SPEED
+from bearingdyn.sound.radiators import Radiators
+from bearingdyn.sound.resistance import heard, octaves, solved_octave
+from bearingdyn.system import PartTerm, System
+from bearingdyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def sound_power(
+    source: Equilibrium | Application | System,
+    frequency: ArrayLike,
+    inputs: Sequence[str],
+    surfaces: Sequence[str],
+    *,
+    speed: float = 0.0,
+    floor: float | None = None,
+    microphones: ArrayLike | None = None,
+    density: float = DENSITY,
+    sound_speed: float = SOUND_SPEED,
+    element_size: float | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    progress: Progress | bool | None = None,
+) -> xarray.Dataset:
+    """Sound power of parts under unit harmonic forces at `inputs`, and the sound at microphones.
+
+    The parts that own the `surfaces` radiate together, each with its whole boundary: a body that moves as one
+    must not pulsate. Their radiation is solved at a few frequencies of each octave and interpolated; `cache`
+    keeps it, so that another speed, bearing or layer costs only the response.
+
+    Parameters
+    ----------
+    source, frequency, inputs, speed
+        As in `radiated_power`.
+    surfaces
+        Surfaces of parts, by part and name ("housing.outside").
+    floor
+        Height y of a rigid floor, m, from the first interface of the first part; None: free field.
+    microphones
+        Places (p, 3), m, from the same point, at which the sound pressure is wanted.
+    density, sound_speed
+        Of the medium, kg/m³ and m/s; those of air at 20 °C.
+    element_size
+        Side of the radiating panels, m; None: a quarter of the shortest wavelength of each octave, and an
+        eighth of the smallest body.
+    cache
+        A folder for what was solved, by the hash of the panels' source; None: nothing is kept.
+    progress
+        As in `frequency_response`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (frequency, input): power, W per N²; equivalent_radiated_power of the surfaces, which a plane
+        would radiate, and its error in dB; efficiency, the power over ½ ρ c ∫ |v|² dA; interpolation_error,
+        dB. Over (frequency, part, input): part_power, what each part gives; it may be negative. With
+        microphones: pressure (frequency, microphone, input), complex, zero-to-peak, Pa/N. Panels and their
+        sides by octave in attrs.
+
+    Raises
+    ------
+    ValueError
+        For an unknown surface or channel, a part whose boundary is not known, a floor above a part, a
+        microphone too near, values that are not positive, and as `frequency_response`.
+
+    Warns
+    -----
+    CoarsePanels
+        For an `element_size` above a sixth of the shortest wavelength.
+    BeyondModes
+        For a frequency above the f_max of a part that radiates.
+    RepairedResistance, UnsureInterpolation
+        As their text says.
+
+    References
+    ----------
+    A. J. Burton, G. F. Miller, Proc. R. Soc. Lond. A 323 (1971) 201.
+    """
+    f = frequencies(frequency)
+    inputs, surfaces = name_list("inputs", inputs), name_list("surfaces", surfaces, "surfaces")
+    density, sound_speed = positive("density", density), positive("sound_speed", sound_speed)
+    require(len(surfaces) > 0, "surfaces", surfaces, "it must name one surface or more")
+    if element_size is not None:
+        element_size = positive("element_size", element_size, "it must be a positive length in m")
+    places = _microphones(microphones)
+    state = linear(source)
+    state.system.check_speed(speed)
+    found = [surface_of(state.system, name) for name in surfaces]
+    parts = list({term.name: term for term, _ in found}.values())
+    given = [Input.of(state.system, name) for name in inputs]
+    radiators = _radiators(state.system, parts, floor)
+    _check(radiators, parts, f, element_size, sound_speed)
+
+    moved = part_velocities(state, parts, f, given, speed, progress)
+    velocity = np.concatenate(moved, axis=1)
+    plane = np.zeros((f.size, len(given)))
+    for term, surface in found:
+        v = moved[parts.index(term)]
+        plane += (
+            0.5
+            * density
+            * sound_speed
+            * np.einsum("fai,ab,fbi->fi", v.conj(), surface.W, v, optimize=True).real
+        )
+
+    power, error = np.zeros(plane.shape), np.zeros(plane.shape)
+    part_power = np.zeros((f.size, len(parts), len(given)))
+    pressure = np.zeros((f.size, len(places), len(given)), dtype=np.complex128)
+    told_of: list[str] = []
+    if f.max() > 0.0:
+        bands = octaves(float(f[f > 0].min()), float(f.max()))
+        with told(progress, "octave") as tell:
+            for number_of, (low, high) in enumerate(bands):
+                # the lowest octave keeps its lower end, where nothing else begins
+                above = f >= low if number_of == len(bands) - 1 else f > low
+                at = np.flatnonzero(above & (f <= high))
+                if not at.size:
+                    continue
+                octave = solved_octave(
+                    radiators, low, high, density=density, sound_speed=sound_speed, microphones=places,
+                    element_size=element_size, cache=None if cache is None else Path(cache),
+                )  # fmt: skip
+                told_of.append(
+                    f"{low:.5g}-{high:.5g} Hz: {octave.panels} panels of {1e3 * octave.size:.3g} mm "
+                    f"(wavelength/{sound_speed / high / octave.size:.1f}), {len(octave.nodes)} frequencies"
+                )
+                H = heard(octave, radiators, f[at], places, sound_speed) if len(places) else None
+                for i in range(len(given)):
+                    v = velocity[at, :, i]
+                    power[at, i], error[at, i] = octave.power(f[at], v)
+                    part_power[at, :, i] = octave.shares(f[at], v, radiators.blocks)
+                    if H is not None:
+                        pressure[at, :, i] = np.einsum("fpn,fn->fp", H, v)
+                if tell is not None:
+                    tell(number_of + 1, len(bands))
+
+    from bearingdyn.results import dataset, inputs_of
+
+    over = ("frequency", "input")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        overstated = np.where(power > 0, 10.0 * np.log10(plane / power), np.nan)
+        efficiency = np.where(plane > 0, power / plane, np.nan)
+    variables = {
+        "power": (over, power, "W/N²", "sound power, zero-to-peak input of one"),
+        "equivalent_radiated_power": (over, plane, "W/N²", "what the surfaces would radiate as a plane"),
+        "equivalent_error": (over, overstated, "dB", "by which the equivalent radiated power is too high"),
+        "efficiency": (over, efficiency, "", "sound power over the equivalent radiated power"),
+        "interpolation_error": (over, error, "dB", "estimated, of the interpolation over frequency"),
+        "part_power": (("frequency", "part", "input"), part_power, "W/N²", "what each part gives"),
+    }
+    coords = {
+        "frequency": (f, "Hz"),
+        "input": (list(inputs), ""),
+        "part": ([term.name for term in parts], ""),
+    }
+    if len(places):
+        variables["pressure"] = (
+            ("frequency", "microphone", "input"), pressure, "Pa/N", "sound pressure, complex, zero-to-peak"
+        )  # fmt: skip
+        variables["microphone_place"] = (
+            ("microphone", "axis"),
+            places,
+            "m",
+            "from the first part's interface",
+        )
+        coords["axis"] = (["x", "y", "z"], "")
+    return dataset(
+        variables,
+        {
+            "analysis": "sound power",
+            "speed": speed,
+            "density": density,
+            "sound_speed": sound_speed,
+            "surfaces": ", ".join(surfaces),
+            "floor": "free field" if floor is None else f"rigid at y = {floor} m",
+            "panels": "; ".join(told_of),
+            **state_of(source),
+            **inputs_of(state.system.inputs),
+        },
+        coords,
+    )
+
+
+def _microphones(given: ArrayLike | None) -> Array:
+    if given is None:
+        return np.zeros((0, 3))
+    remedy = "it must be places (p, 3) in m"
+    try:
+        places = real(given)
+    except (TypeError, ValueError):
+        raise ValueError(f"microphones is {given!r}; {remedy}") from None
+    good = places.ndim == 2 and places.shape[1] == 3 and bool(np.isfinite(places).all())
+    require(good, "microphones", given, remedy)
+    return places
+
+
+def _radiators(system: System, parts: Sequence[PartTerm], floor: float | None) -> Radiators:
+    skins, places = [], []
+    for term in parts:
+        skin = term.element.skin
+        if skin is None:
+            raise ValueError(
+                f"part {term.name!r} has surfaces but no skin; make it a Housing, or a Solid with radiating="
+            )
+        at = system.positions.get(f"{term.name}.{next(iter(term.element.interfaces), None)}")
+        if at is None or np.isnan(term.rigid).any():
+            raise ValueError(f"part {term.name!r} has no known place; join it to the first part")
+        # the mean of the points, from the first interface and in the part's own frame
+        mean = skin.rows.reshape(-1, 3, skin.rows.shape[1]).mean(axis=0)
+        skins.append(skin)
+        places.append(at + arm(mean, term.rigid) - skin.points.mean(axis=0))
+    if floor is not None:
+        floor = number("floor", floor, "it must be a height y in m, or None")
+        for term, skin, place in zip(parts, skins, places, strict=True):
+            low = float((skin.points + place)[:, 1].min())
+            extent = float(np.ptp(skin.points, axis=0).max())
+            require(
+                low >= floor - 1e-6 * extent,
+                "floor",
+                floor,
+                f"part {term.name!r} reaches down to y = {low:.6g} m; put the floor at or below that",
+            )
+    return Radiators(skins, np.array(places), floor)
+
+
+def _check(
+    radiators: Radiators, parts: Sequence[PartTerm], f: Array, size: float | None, sound_speed: float
+) -> None:
+    """Words of warning before the work."""
+    highest = float(f.max())
+    for term, skin in zip(parts, radiators.skins, strict=True):
+        if highest > skin.f_max:
+            warn(
+                f"sound is asked for up to {highest:.5g} Hz, and part {term.name!r} was reduced up to "
+                f"f_max = {skin.f_max:.5g} Hz; give it a higher f_max",
+                BeyondModes,
+            )
+    if size is not None and highest > 0 and not size <= sound_speed / highest / PANELS:
+        warn(
+            f"element_size is {1e3 * size:.4g} mm, and a sixth of the wavelength at {highest:.5g} Hz is "
+            f"{1e3 * sound_speed / highest / PANELS:.4g} mm; make it smaller, or leave it out",
+            CoarsePanels,
+        )

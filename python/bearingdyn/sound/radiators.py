@@ -1,0 +1,94 @@
+"""Bodies that radiate together: their skins, where they stand, and their panels for a band of frequencies."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import scipy.linalg
+
+from bearingdyn.cms import Skin
+from bearingdyn.short_repr import short
+from bearingdyn.sound.skin_panels import SkinPanels, panelled
+from bearingdyn.sound.triangle_surface import TriangleSurface
+from bearingdyn.types import Array, Index
+
+PER_WAVELENGTH = 4.0  # sides of the program's panels; a sphere's power is then within .01 dB
+PER_BODY = 8.0  # sides along the longest extent of a body, at least
+
+
+@dataclass(frozen=True, eq=False)
+class Radiators:
+    """Bodies that radiate together.
+
+    Parameters
+    ----------
+    skins
+        Of the bodies.
+    places
+        (bodies, 3), m: what to add to the points of each skin.
+    floor
+        Height y of a rigid floor, m; None: free field.
+    """
+
+    skins: Sequence[Skin]
+    places: Array
+    floor: float | None = None
+
+    __repr__ = short
+
+    @property
+    def coordinates(self) -> int:
+        """Coordinates of all bodies together."""
+        return sum(skin.rows.shape[1] for skin in self.skins)
+
+    @property
+    def blocks(self) -> list[slice]:
+        """Coordinates of each body."""
+        ends = np.cumsum([0, *(skin.rows.shape[1] for skin in self.skins)])
+        return [slice(int(a), int(b)) for a, b in pairwise(ends)]
+
+    def size(self, wavelength: float) -> float:
+        """Wanted side of the panels, m, at a wavelength, m."""
+        least = min(float(np.ptp(skin.points, axis=0).max()) for skin in self.skins)
+        return min(wavelength / PER_WAVELENGTH, least / PER_BODY)
+
+    def surface(self, size: float) -> tuple[TriangleSurface, Array]:
+        """One surface of all bodies, and how their coordinates move its triangles, (m, n)."""
+        made: dict[str, SkinPanels] = {}
+        points, faces, rows, count = [], [], [], 0
+        for skin, place in zip(self.skins, self.places, strict=True):
+            key = digest(skin.points, skin.faces, skin.rows)
+            if key not in made:
+                made[key] = panelled(skin, size)
+            body = made[key]
+            points.append(body.points + place)
+            faces.append(body.faces + count)
+            rows.append(body.rows)
+            count += len(body.points)
+        p, f = np.vstack(points), np.vstack(faces)
+        B = np.asarray(scipy.linalg.block_diag(*rows))
+        if self.floor is not None:
+            # feet that stand on the floor, to the errors of the fit
+            near = np.abs(p[:, 1] - self.floor) < 1e-6 * float(np.ptp(p, axis=0).max())
+            p[near, 1] = self.floor
+            B = B[~near[f].all(axis=1)]
+        return TriangleSurface(p, f, self.floor), B
+
+    def fingerprint(self) -> str:
+        """Hash of everything that the radiation of these bodies depends on."""
+        parts = [a for skin in self.skins for a in (skin.points, skin.faces, skin.rows)]
+        floor = np.array([np.nan if self.floor is None else self.floor])
+        return digest(*parts, np.asarray(self.places), floor)
+
+
+def digest(*arrays: Array | Index) -> str:
+    """Hash of arrays, their shapes with them."""
+    found = hashlib.sha256()
+    for a in arrays:
+        found.update(f"{a.dtype.kind}{a.shape}".encode())
+        found.update(np.ascontiguousarray(a).tobytes())
+    return found.hexdigest()

@@ -1,0 +1,201 @@
+"""Sound power of parts: interpolated over frequency, kept on disk, beside the equivalent radiated power."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bearingdyn as bd
+from bearingdyn.notice import BeyondModes, CoarsePanels, RepairedResistance, UnsureInterpolation
+from bearingdyn.sound import radiators, resistance
+from bearingdyn.sound.radiation import solve
+
+F = np.linspace(400.0, 1600.0, 40)
+
+
+@pytest.fixture(scope="module")
+def app() -> bd.Application:
+    housing = bd.Housing(0.16, 0.20, 0.03, 0.078, bore_height=0.12, damping=0.01, f_max=3000.0)
+    app = bd.Application()
+    app.add("housing", housing.superelement())
+    app.ground("housing.feet")
+    app.free("housing.bore")
+    return app
+
+
+def asked(app: bd.Application, **more: object):
+    return bd.sound_power(app, F, ["housing.bore.z"], ["housing.outside"], **({"element_size": 0.035} | more))
+
+
+@pytest.fixture(scope="module")
+def found(app: bd.Application):
+    return asked(app)
+
+
+def direct(app: bd.Application, f: float, size: float, floor: float | None = None) -> float:
+    """Solved at the frequency itself, W/N²."""
+    from bearingdyn.analysis import Input, linear, part_velocities
+
+    state = linear(app)
+    term = state.system.parts[0]
+    given = [Input.of(state.system, "housing.bore.z")]
+    (v,) = part_velocities(state, [term], np.array([f]), given)
+    bodies = radiators.Radiators([term.element.skin], np.zeros((1, 3)), floor)
+    surface, rows = bodies.surface(size)
+    return solve(surface, rows, f, coarse=True).power(v[0, :, 0])
+
+
+def test_between_the_frequencies_solved_at_the_power_is_that_of_a_direct_solution(app, found) -> None:
+    """Within .05 dB at frequencies drawn at random; the estimate is .02 dB."""
+    for i in np.random.default_rng(5).choice(F.size, 4, replace=False):
+        one = direct(app, F[i], 0.035)
+        assert 10 * math.log10(found.power.values[i, 0] / one) == pytest.approx(0.0, abs=0.05)
+    assert found.interpolation_error.values.max() < 0.05
+
+
+def test_a_finer_mesh_tells_the_same(app) -> None:
+    """Sides of 20 mm against 15 mm, within .1 dB."""
+    for f in (300.0, 1100.0):
+        assert 10 * math.log10(direct(app, f, 0.020) / direct(app, f, 0.015)) == pytest.approx(0.0, abs=0.1)
+
+
+def test_equivalent_radiated_power_stands_beside_it(app, found) -> None:
+    erp = bd.radiated_power(app, F, ["housing.bore.z"], ["housing.outside"]).power.values[:, 0]
+    assert found.equivalent_radiated_power.values == pytest.approx(erp, rel=1e-12)
+    error = 10 * np.log10(erp / found.power.values)
+    assert found.equivalent_error.values == pytest.approx(error)
+    # a plate of .2 m is far below a plane at 400 Hz, and near it at 1600
+    assert error[0, 0] > 8.0
+    assert error[-1, 0] < 6.0
+
+
+def test_parts_add_up(found) -> None:
+    assert found.part_power.values.sum(axis=1) == pytest.approx(found.power.values, rel=1e-9)
+
+
+def test_what_was_solved_is_kept(app, found, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = asked(app, cache=tmp_path)
+    assert first.power.values == pytest.approx(found.power.values, rel=1e-12)
+    kept = sorted(tmp_path.iterdir())
+    assert len(kept) == 2  # octaves up from 400 to 1600 Hz
+
+    def never(*_: object, **__: object) -> None:
+        raise AssertionError("solved again")
+
+    monkeypatch.setattr(resistance, "solve", never)
+    assert asked(app, cache=tmp_path).power.values.tolist() == first.power.values.tolist()
+    with pytest.raises(AssertionError, match="solved again"):
+        asked(app, cache=tmp_path, density=1.1)
+    kept[0].write_bytes(b"cut")
+    with pytest.raises(AssertionError, match="solved again"):
+        asked(app, cache=tmp_path)
+
+
+def test_pressure_at_microphones_is_that_of_the_power_far_away(app) -> None:
+    """|p|²/2ρc over a sphere of 4 m around it."""
+    z, w = np.polynomial.legendre.leggauss(8)
+    phi = np.arange(16) * np.pi / 8
+    r = np.sqrt(1 - z**2)
+    u = np.stack([np.outer(r, np.cos(phi)), np.outer(r, np.sin(phi)), np.repeat(z[:, None], 16, 1)], axis=-1)
+    heard = bd.sound_power(
+        app, [500.0, 700.0, 1000.0], ["housing.bore.z"], ["housing.outside"], element_size=0.035,
+        microphones=4.0 * u.reshape(-1, 3),
+    )  # fmt: skip
+    p = heard.pressure.values[:, :, 0].reshape(3, 8, 16)
+    power = 16.0 * np.einsum("z,fza->f", w, np.abs(p) ** 2) * np.pi / 8 / (2 * 1.204 * 343.2)
+    assert 10 * np.log10(power / heard.power.values[:, 0]) == pytest.approx(np.zeros(3), abs=0.1)
+
+
+def test_on_a_floor_a_housing_stands_on_its_feet(app) -> None:
+    """The base lies on the floor and is left out; interpolated and direct agree."""
+    on = bd.sound_power(
+        app, [300.0, 350.0, 400.0], ["housing.bore.z"], ["housing.outside"], element_size=0.035, floor=-0.12
+    )
+    assert 10 * math.log10(on.power.values[1, 0] / direct(app, 350.0, 0.035, -0.12)) == pytest.approx(
+        0.0, abs=0.05
+    )
+
+
+def test_warnings_come_before_the_work(app, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    ask = (["housing.bore.z"], ["housing.outside"])
+    monkeypatch.setattr("bearingdyn.sound.power.solved_octave", stop)
+    with pytest.warns(BeyondModes, match="f_max = 3000 Hz"), pytest.raises(KeyboardInterrupt):
+        bd.sound_power(app, [4000.0], *ask)
+    with pytest.warns(CoarsePanels, match="element_size is 50 mm"), pytest.raises(KeyboardInterrupt):
+        bd.sound_power(app, [2000.0], *ask, element_size=0.05)
+
+
+def test_what_is_repaired_or_unsure_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    nodes = np.linspace(100.0, 200.0, 5)
+    R = np.array([np.diag([1.0, -0.1])] * 5)
+    octave = resistance.Octave(100.0, 200.0, nodes, R, np.zeros((5, 0, 2), complex), 0.01, 100)
+    with pytest.warns(RepairedResistance, match=r"1\.0e-0?1|motions of negative power"):
+        fixed = resistance._repaired(octave)
+    assert np.linalg.eigvalsh(fixed.resistance[0])[0] >= -1e-15
+
+    class Swinging:
+        frequency = 0.0
+
+    def swings(surface: object, rows: object, f: float, **_: object):
+        one = Swinging()
+        one.resistance = f**2 * np.eye(2) * (2 + math.sin(f))
+        one.shapes = np.zeros((4, 2))
+        return one
+
+    class Bodies:
+        def surface(self, size: float):
+            return type("S", (), {"faces": np.zeros((4, 3))})(), None
+
+        def fingerprint(self) -> str:
+            return "0"
+
+    monkeypatch.setattr(resistance, "solve", swings)
+    with pytest.warns(UnsureInterpolation, match="between 500 and 1000 Hz"):
+        resistance.solved_octave(
+            Bodies(),
+            500.0,
+            1000.0,
+            density=1.2,
+            sound_speed=343.0,
+            microphones=np.zeros((0, 3)),
+            element_size=1.0,
+        )
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"floor": 0.0}, "part 'housing' reaches down to y = -0.12"),
+        ({"floor": math.nan}, "floor is nan"),
+        ({"microphones": [1.0, 2.0]}, "microphones is .* places"),
+        ({"microphones": [[0.0, 0.1, 0.02]]}, "at least a triangle's length"),
+        ({"element_size": math.nan}, "element_size is nan; it must be a positive length"),
+        ({"density": 0.0}, "density is 0.0; it must be positive"),
+    ],
+)
+def test_bad_input_is_named(app, change, text) -> None:
+    with pytest.raises(ValueError, match=text):
+        bd.sound_power(
+            app, [100.0], ["housing.bore.z"], ["housing.outside"], **({"element_size": 0.04} | change)
+        )
+
+
+def test_unknown_surfaces_and_parts_without_a_skin_are_named(app) -> None:
+    with pytest.raises(ValueError, match="has no surface 'inside'"):
+        bd.sound_power(app, [100.0], ["housing.bore.z"], ["housing.inside"])
+    with pytest.raises(ValueError, match="it must name one surface or more"):
+        bd.sound_power(app, [100.0], ["housing.bore.z"], [])
+    bare = bd.Housing(0.1, 0.1, 0.03, 0.04, f_max=0.0).superelement()
+    other = bd.Application()
+    other.add("bare", dataclasses.replace(bare, skin=None))
+    other.ground("bare.feet")
+    other.free("bare.bore")
+    with pytest.raises(ValueError, match="part 'bare' has surfaces but no skin"):
+        bd.sound_power(other, [100.0], ["bare.bore.z"], ["bare.outside"])
