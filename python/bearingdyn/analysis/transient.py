@@ -212,7 +212,7 @@ def transient(
     if tail is not None:
         result["tail"] = (("tap", "channel"), tail, {"long_name": "last steps, from which a filter goes on"})
     if approaches is not None:
-        swings = approaches.swings([channel for channel, _ in found])
+        swings = approaches.swings(record)
         meaning = {"units": "", "long_name": "peak to peak of each stable motion; units in `unit`"}
         result["stable_motion"] = (("motion", "channel"), swings, meaning)
         result.attrs["stable_motions"] = len(swings)

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bearingdyn.analysis.core_channels import CoreChannel
+from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.steady.balance import Found, newton
 from bearingdyn.analysis.steady.branches import Branch, Speeds, Task, done, sweeps
@@ -47,8 +47,9 @@ class Approaches:
             "steady motions are followed over speed where there is one; leave it out",
         )
 
-    def swings(self, channels: Sequence[CoreChannel]) -> Array:
+    def swings(self, record: Sequence[str]) -> Array:
         """Peak to peak (motion, channel) of every stable motion found, the smallest first."""
+        channels = [channel_of(self.problem.system, name)[0] for name in record]
         low, high = sorted((FROM * self.speed, TO * self.speed))
         step, tolerance = (high - low) / POINTS, 1e-6 * (high - low)
         task = Task(Speeds(self.problem), (), low, high, step, HARMONICS, PER, MOST, tolerance)
