@@ -65,6 +65,13 @@ static int refresh(const bd_model *model, bd_work *work)
                                work->C);
         for (size_t k = 0; k < n; k++)
             for (size_t l = 0; l < n; l++) {
+                if (work->exact) {
+                    for (size_t c = 0; c < m; c++)
+                        work->J[(at + k) * m + c] +=
+                            work->K[k * stride + l] * work->W[c * m + at + l] +
+                            work->C[k * stride + l] * work->W_rate[c * m + at + l];
+                    continue;
+                }
                 double tangent =
                     work->in_x * work->K[k * stride + l] + work->in_v * work->C[k * stride + l];
                 for (size_t c = 0; c < m; c++)

@@ -117,6 +117,7 @@ PUBLIC = {
             "ThermalRunaway",
             "ball_channels",
             "bearing_sheet",
+            "cage_ratios",
             "campbell",
             "contact_statistics",
             "dissipation",
@@ -149,6 +150,7 @@ PUBLIC = {
             "transients",
             "unbalance_response",
             "waterfall",
+            "with_loaded_cages",
         ),
         "core": (
             "Interrupted",

@@ -10,6 +10,7 @@ from bearingdyn.analysis import (
     ThermalRunaway,
     ball_channels,
     bearing_sheet,
+    cage_ratios,
     campbell,
     contact_statistics,
     dissipation,
@@ -42,6 +43,7 @@ from bearingdyn.analysis import (
     transients,
     unbalance_response,
     waterfall,
+    with_loaded_cages,
 )
 from bearingdyn.application import (
     Application,
@@ -208,6 +210,7 @@ __all__ = [
     "bearing_sheet",
     "block_with_bore",
     "box_mesh",
+    "cage_ratios",
     "campbell",
     "contact_statistics",
     "damping_sample",
@@ -257,4 +260,5 @@ __all__ = [
     "transients",
     "unbalance_response",
     "waterfall",
+    "with_loaded_cages",
 ]

@@ -47,6 +47,7 @@ class Model:
         scheme: dict[str, object],
         start: bool,
         progress: Callable[[int, int], object] | None,
+        modes: dict[str, _Array] | None = None,
     ) -> tuple[_Array, _Array, dict[str, Any]]: ...
     def harmonic(
         self,
@@ -55,6 +56,8 @@ class Model:
         modulus: NDArray[np.complex128],
         bearing_K: _Array,
         bearing_C: _Array,
+        ball: NDArray[np.complex128],
+        across: _Array,
         force: _Array,
         row: _Array,
         progress: Callable[[int, int], object] | None,

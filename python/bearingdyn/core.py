@@ -371,6 +371,7 @@ def march(
     *,
     start: bool = False,
     progress: Progress | None = None,
+    modes: dict[str, Array] | None = None,
 ) -> tuple[Array, Array, Report]:
     """March a state in the core, and say how far it came, whatever the status.
 
@@ -386,6 +387,8 @@ def march(
         Whether the acceleration is first made to satisfy the equation of motion.
     progress
         Told of the steps done and of all there are, every 0.05 s.
+    modes
+        For exact steps, the linear part's own (`analysis.exact_step`); None for Newmark's.
 
     Returns
     -------
@@ -393,7 +396,13 @@ def march(
         The record (rows, channels), the new state, and the report.
     """
     record, new_state, report = model.march(
-        state=state, steps=steps, decimate=decimate, scheme=stepping.packed(), start=start, progress=progress
+        state=state,
+        steps=steps,
+        decimate=decimate,
+        scheme=stepping.packed(),
+        start=start,
+        progress=progress,
+        modes=modes,
     )
     return record, new_state, Report(**report)
 
@@ -408,6 +417,7 @@ def harmonic(
     row: Array,
     speed: float = 0.0,
     progress: Progress | None = None,
+    balls: tuple[Complex, Array] | None = None,
 ) -> Complex:
     """Complex response (frequencies, outputs, inputs) of the core's model to unit forces.
 
@@ -427,6 +437,9 @@ def harmonic(
         Of the shaft, rad/s, for the gyroscopic and circulatory forces.
     progress
         Told of the frequencies done and of all there are.
+    balls
+        What balls add to that by frequency: stiffness (f, balls), N/m, and the v (balls, coefficients) of
+        each, whose v vᵀ it multiplies.
 
     Returns
     -------
@@ -442,7 +455,9 @@ def harmonic(
     ----------
     Paper, eq (20).
     """
-    return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress)
+    none = np.zeros((np.size(omega), 0), dtype=np.complex128), np.zeros((0, np.size(bearing_K, -1)))
+    ball, across = none if balls is None else balls
+    return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, ball, across, force, row, progress)
 
 
 def time_of(model: Model, state: Array) -> float:

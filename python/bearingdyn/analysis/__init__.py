@@ -8,6 +8,7 @@ from bearingdyn.analysis.energy_shares import energy_shares
 from bearingdyn.analysis.envelope import envelope_spectrum
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.frequency_response import frequency_response
+from bearingdyn.analysis.loaded_cage import cage_ratios, with_loaded_cages
 from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.operating_point import (
@@ -41,6 +42,7 @@ __all__ = [
     "ThermalRunaway",
     "ball_channels",
     "bearing_sheet",
+    "cage_ratios",
     "campbell",
     "contact_statistics",
     "dissipation",
@@ -74,4 +76,5 @@ __all__ = [
     "transients",
     "unbalance_response",
     "waterfall",
+    "with_loaded_cages",
 ]
