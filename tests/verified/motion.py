@@ -99,15 +99,14 @@ def steady_motions() -> list[Row]:
     record = ["rotor.centre.x", "rotor.centre.y"]
     asked = {"record": record, "several": False, "progress": False}
     data = speed_map(rotor, speeds=(3000 * RPM, 8000 * RPM), doublings=0, points=150, **asked)
-    rpm, event, branch = data["speed"].values / RPM, data["event"].values, data["branch"].values
-    upper = branch == branch[np.argmax(rpm)]
-    fold = rpm[(event == "fold") & ~upper].max()
-    flip = rpm[(event == "flip") & upper].max()
+    rpm, event = data["speed"].values / RPM, data["event"].values
+    # the first branch is the coast-down's: it meets its flip, then the fold where it ends
+    fold, flip = rpm[event == "fold"].max(), rpm[event == "flip"][0]
     places = [
         (f"JIS 6306 rotor, {name} (rpm)", want, got)
         for name, want, got in (("fold of a run-up", 5229.2, fold), ("flip of a coast-down", 4602.6, flip))
     ]
-    end = [("JIS 6306 rotor, lower end of the upper branch (rpm)", 3075.0, rpm[upper].min())]
+    end = [("JIS 6306 rotor, lower end of the upper branch (rpm)", 3075.0, rpm[event == "fold"][0])]
     across, along, multipliers = [], [], []
     found = None
     table = {6000: (0.3684, 0.5659, 0.9839), 5000: (10.0257, 0.1521, 0.9807), 4700: (12.998, 0.1208, 0.9795)}

@@ -9,7 +9,7 @@ import numpy as np
 
 from bearingdyn.checks import require
 from bearingdyn.plot.frame import RPM, colour, engineering, finish, new_axes, style
-from bearingdyn.types import Array
+from bearingdyn.types import Array, Index
 
 if TYPE_CHECKING:
     import xarray
@@ -138,7 +138,7 @@ def _chosen(data: xarray.Dataset, channel: str | None) -> tuple[str, Array, str]
     return channel, data["parameter"].values, "parameter"
 
 
-def _pieces(own: Array, stable: Array) -> list[Array]:
+def _pieces(own: Index, stable: Index) -> list[Index]:
     """Runs of points of one stability along a branch, each begun with the last point of the one before."""
     cuts = np.flatnonzero(np.diff(stable[own])) + 1
     return [own[max(a - 1, 0) : b] for a, b in pairwise([0, *cuts.tolist(), len(own)])]
