@@ -78,6 +78,7 @@ bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/memory.py --json
 	$(PY) benchmarks/study.py --json
 	$(PY) benchmarks/sound.py --json
+	$(PY) benchmarks/steady.py --json
 
 # Other programs beside this one; each that is not installed is named and skipped.
 peers: $(VENV)/package $(VENV)/test

@@ -35,6 +35,7 @@ def make() -> None:
     contact_figure.maps(STATIC / "contact_maps.png")
     contact_figure.damping(STATIC / "contact_damping.svg")
     sound_picture(STATIC / "sound.png")
+    steady_picture(STATIC / "steady.png")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))
@@ -93,6 +94,29 @@ def sound_picture(path: Path) -> None:
     ax.legend(frameon=False)
     figure.savefig(path, dpi=110)
     plt.close(figure)
+
+
+def steady_picture(path: Path) -> None:
+    """The rotor of the guide's page on steady motions: its branches over speed."""
+    import matplotlib.pyplot as plt
+    import numpy as np
+
+    import bearingdyn as bd
+
+    app = bd.Application()
+    app.add("rotor", bd.RigidBody(mass=20.0, inertia=(0.1, 0.1, 0.1)))
+    app.ground("rotor.centre", stiffness=(0, 0, 1e7, 1e5, 1e5, 1e5), damping=(200, 200, 1e4, 50, 50, 50))
+    race = {"Z": 8, "Dw": 11.9e-3, "Dpw": 52e-3, "fi": 0.52, "fo": 0.52, "cage_ratio": 40.1 / 104.0}
+    jis_6306 = bd.BallBearing(**race, clearance=40e-6, kappa=13.34e9)
+    app.bearing("ball", jis_6306, inner="rotor.centre", outer="ground")
+    app.load("rotor.centre", (196.0, 0, 0, 0, 0, 0))
+    speeds = (4000 * np.pi / 30, 6500 * np.pi / 30)
+    found = bd.speed_map(
+        app, speeds=speeds, record=["rotor.centre.x"], several=False, doublings=0, progress=False
+    )
+    ax = bd.plot.speed_map(found)
+    ax.figure.savefig(path, dpi=110)
+    plt.close(ax.figure)
 
 
 def warnings_table() -> str:

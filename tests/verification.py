@@ -51,6 +51,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Paired bearings": bearings.pairs,
     "Press fits": bearings.fits,
     "Varying compliance": motion.varying_compliance,
+    "Steady motions": motion.steady_motions,
     "Bonded rings": structures.bonded_rings,
     "Squeezed rings": squeezed.squeezed_rings,
     "Squeezed pads and O-rings": squeezed.squeezed_pads,

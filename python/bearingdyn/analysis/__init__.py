@@ -28,7 +28,7 @@ from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
-from bearingdyn.analysis.steady import steady_state
+from bearingdyn.analysis.steady import parameter_map, speed_map, steady_state
 from bearingdyn.analysis.stiffness_table import export_stiffness, ross_table, stiffness_table
 from bearingdyn.analysis.thermal_network import ThermalNetwork
 from bearingdyn.analysis.transient import transient, transients
@@ -64,6 +64,7 @@ __all__ = [
     "operating_point",
     "orbit",
     "order_spectrum",
+    "parameter_map",
     "part_velocities",
     "radiated_power",
     "ross_table",
@@ -72,6 +73,7 @@ __all__ = [
     "sheet_text",
     "single_bearing",
     "spectrum",
+    "speed_map",
     "state_of",
     "state_space",
     "static_summary",

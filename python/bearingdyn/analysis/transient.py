@@ -17,13 +17,15 @@ from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.step_size import step_error_made
 from bearingdyn.application import Application
-from bearingdyn.checks import instance, items, name_list, named, whole
+from bearingdyn.checks import instance, items, name_list, named, number, whole
 from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import System
 
 if TYPE_CHECKING:
     import xarray
+
+    from bearingdyn.analysis.steady import Approaches
 
 
 def transient(
@@ -41,6 +43,7 @@ def transient(
     stream: str | os.PathLike[str] | None = None,
     audit: bool = False,
     check_step: bool = False,
+    check_unique: bool = False,
     scheme: core.Scheme | None = None,
     memory: float | None = None,
     method: str = "newmark",
@@ -98,6 +101,12 @@ def transient(
         estimate what dt leaves: attribute `step_error`, one number per channel, relative to its own rms about
         its mean, and `step_error_made`, which says how. Phases of free swings that part within the stretch
         count; what had built up before it does not.
+    check_unique
+        Whether, at constant speed, other steady motions are looked for: `stable_motion` (motion, channel)
+        then holds the peak to peak of each stable one that a run-up from 0.75 or a coast-down from 1.6 times
+        the speed leads to (`speed_map` says more), and attribute `stable_motions` their number. Two or more:
+        which of them a march ends on depends on its start. For machines with one base frequency alone:
+        perfect bearings without unbalance, or one harmonic load.
     scheme
         β, γ, tolerance, iterations and instruction set.
     memory
@@ -126,7 +135,7 @@ def transient(
     ValueError
         Before any long work: for dt ≤ 0, negative steps, a record that the memory cannot hold, an unknown
         channel, a part that would turn although its damping is known at rest only, the state of another
-        application.
+        application, `check_unique` of a run-up or of several base frequencies.
     SolverError
         When Newton's iteration diverges or the response is no longer finite; its `partial` is the Dataset up
         to there.
@@ -183,6 +192,7 @@ def transient(
         memory=memory,
         method=method,
     )
+    approaches = _approaches(source, speed) if check_unique else None
     check_room(march.steps // march.decimate, record)
     found = [channel_of(march.modal, name) for name in record]
     model = march.model([channel for channel, _ in found])
@@ -209,7 +219,20 @@ def transient(
     )
     if tail is not None:
         result["tail"] = (("tap", "channel"), tail, {"long_name": "last steps, from which a filter goes on"})
+    if approaches is not None:
+        swings = approaches.swings(record)
+        meaning = {"units": "", "long_name": "peak to peak of each stable motion; units in `unit`"}
+        result["stable_motion"] = (("motion", "channel"), swings, meaning)
+        result.attrs["stable_motions"] = len(swings)
     return march.ended(result, report)
+
+
+def _approaches(source: Equilibrium | Application | System, speed: object) -> Approaches:
+    """What looks for steady motions; ValueError for a run-up."""
+    from bearingdyn.analysis.steady import Approaches
+
+    constant = number("check_unique with speed", speed, "it must be one finite speed, rad/s: no run-up")
+    return Approaches(source, constant)
 
 
 def transients(

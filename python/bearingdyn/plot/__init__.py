@@ -23,6 +23,7 @@ from bearingdyn.plot.orbit import orbit
 from bearingdyn.plot.orders import order_spectrum, orders
 from bearingdyn.plot.ring_shape import ring_shape
 from bearingdyn.plot.spectrum import spectrum
+from bearingdyn.plot.speed_map import speed_map, speed_waterfall
 from bearingdyn.plot.squeezed_section import squeezed_section
 from bearingdyn.plot.time_traces import time
 from bearingdyn.plot.trade_off import trade_off
@@ -54,6 +55,8 @@ __all__ = [
     "shifts",
     "spectrum",
     "spectrum_of",
+    "speed_map",
+    "speed_waterfall",
     "squeezed_section",
     "time",
     "trade_off",

@@ -2,5 +2,6 @@
 
 from bearingdyn.analysis.steady.speed_map import parameter_map, speed_map
 from bearingdyn.analysis.steady.steady_state import steady_state
+from bearingdyn.analysis.steady.uniqueness import Approaches
 
-__all__ = ["parameter_map", "speed_map", "steady_state"]
+__all__ = ["Approaches", "parameter_map", "speed_map", "steady_state"]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +32,7 @@ from bearingdyn.analysis.steady.motion import MOTIONS
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, require, vector, whole
+from bearingdyn.notice import OutsideBand
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System
 from bearingdyn.types import Array
@@ -115,7 +118,8 @@ def speed_map(
     problem.system.check_speed(high)
     family = Speeds(problem)
     task = _task(family, record, low, high, harmonics, points, 1e-6)
-    branches = _branches(task, doublings, several, store, executor, progress)
+    with _band_told_once(task):
+        branches = _branches(task, doublings, several, store, executor, progress)
     return _dataset(task, branches, "speed", "rad/s", {**state_of(problem.source)})
 
 
@@ -161,7 +165,8 @@ def parameter_map(
     require(speed != 0.0, "speed", speed, "at rest nothing passes; give the speed of the shaft in rad/s")
     family = Made(make, speed)
     task = _task(family, record, low, high, harmonics, points, MADE_SLOPE)
-    branches = _branches(task, doublings, several, store, executor, progress)
+    with _band_told_once(task):
+        branches = _branches(task, doublings, several, store, executor, progress)
     return _dataset(task, branches, "parameter", "", {"speed": speed})
 
 
@@ -201,6 +206,22 @@ def _task(
         LOCATED * (high - low),
         slope,
     )
+
+
+@contextmanager
+def _band_told_once(task: Task) -> Iterator[None]:
+    """Say once, for the whole map, where laws of layers are asked outside of their band."""
+    ends = []
+    for parameter in (task.low, task.high):
+        problem, speed = task.family.at(parameter)
+        base = np.abs(problem.bases.frequencies(speed))
+        ends += [float(base.min()), task.harmonics * float(base.max())]
+    laws = {id(t.material): t.material for t in problem.system.layers}
+    for law in laws.values():
+        law.complex_modulus(np.array([min(ends), max(ends)]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideBand)
+        yield
 
 
 def _branches(
@@ -311,11 +332,13 @@ def _dataset(
     rows = [(k, b.passages, m) for k, b in enumerate(branches) for m in b.marks]
     most = max((b.passages for b in branches), default=1)
     count = task.harmonics * most + 1
+    passing = np.zeros(len(rows))
     amplitude = np.zeros((len(rows), count, len(channels)), dtype=np.complex128)
     swing, rms = np.full((2, len(rows), len(channels)), np.nan)
     for i, (_, passages, mark) in enumerate(rows):
         lines = task.lines(passages)
         own, speed = task.family.at(mark.point.parameter)
+        passing[i] = abs(float(own.bases.frequencies(speed)[0])) / (2 * np.pi)
         omega = lines.index[:, 0] * float(own.bases.frequencies(speed)[0]) / passages
         moved = mark.moved * (1j * omega[:, None]) ** rate
         signal = lines.signals(moved) if np.isfinite(moved).all() else np.full((1, len(channels)), np.nan)
@@ -361,6 +384,7 @@ def _dataset(
                 "",
                 "what is located there",
             ),
+            "passage_frequency": ("point", passing, "Hz", "of the balls, or of the load that drives"),
             "residual": ("point", each(lambda m: m.point.residual), "1", "of the balance, relative"),
             "peak_to_peak": (("point", "channel"), swing, "", "swing of each channel; units in `unit`"),
             "rms": (("point", "channel"), rms, "", "about the mean; units in `unit`"),

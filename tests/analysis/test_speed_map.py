@@ -1,0 +1,207 @@
+"""Maps of steady motions: against the reference page, a file of their own, processes and failed points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import xarray
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+
+import rotors
+from bearingdyn import plot
+from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_state, transient
+from bearingdyn.analysis.steady import branches as tracing
+from bearingdyn.application import Application
+
+RPM = math.pi / 30
+RECORD = ["rotor.centre.x", "rotor.centre.y"]
+QUICK = {"several": False, "doublings": 0, "harmonics": 12, "points": 30, "progress": False}
+
+
+def made(low: float, high: float, **given: object) -> xarray.Dataset:
+    """A map of the JIS 6306 rotor between two speeds, rpm."""
+    eq = equilibrium(rotors.held_jis_rotor())
+    return speed_map(eq, speeds=(low * RPM, high * RPM), record=RECORD, **{**QUICK, **given})
+
+
+@pytest.fixture(scope="module")
+def hysteresis() -> xarray.Dataset:
+    return made(4550, 5300)
+
+
+def events(data: xarray.Dataset, name: str) -> np.ndarray:
+    """Speeds, rpm, of the events of a name, falling."""
+    return np.sort(data["speed"].values[data["event"].values == name] / RPM)[::-1]
+
+
+def swing(data: xarray.Dataset, rpm: float, keep: np.ndarray) -> float:
+    """x peak to peak of chosen points at a speed, µm, straight between them."""
+    order = np.argsort(data["speed"].values[keep])
+    at, size = data["speed"].values[keep][order] / RPM, data["peak_to_peak"].values[keep, 0][order]
+    return float(1e6 * np.interp(rpm, at, size))
+
+
+def test_folds_and_flips_lie_where_the_reference_page_has_them(hysteresis: xarray.Dataset) -> None:
+    """§4.4; 12, 24 and 48 harmonics agree within .1 rpm there."""
+    assert events(hysteresis, "fold") == pytest.approx([5229.2], abs=0.3)
+    upper = hysteresis["branch"].values == 0
+    flip = events(hysteresis.isel(point=upper), "flip")
+    assert flip == pytest.approx([4602.6], abs=0.3)
+    at = (hysteresis["event"].values == "flip") & upper
+    # asked for to 2e-4; 13.974 µm is given
+    assert 1e6 * hysteresis["peak_to_peak"].values[at, 0] == pytest.approx([13.974], abs=3e-3)
+
+
+def test_two_motions_are_stable_between_them(hysteresis: xarray.Dataset) -> None:
+    upper = hysteresis["branch"].values == 0
+    rpm, stable = hysteresis["speed"].values / RPM, hysteresis["stable"].values == 1
+    assert stable[upper & (rpm > 4603)].all()
+    assert not stable[upper & (rpm < 4602)].any()
+    # a run-up loses its motion at the fold; the branch goes back from there, unstable
+    lower = np.flatnonzero(~upper)
+    fold = lower[np.argmax(rpm[lower])]
+    assert stable[lower[lower < fold]].all()
+    assert not stable[lower[lower > fold]].any()
+    # 1.008 µm after a run-up, §3.6; straight between points of the branch
+    assert swing(hysteresis, 5000.0, lower[lower < fold]) == pytest.approx(1.008, rel=0.02)
+
+
+def test_periods_double_at_a_flip_to_what_marches_find() -> None:
+    """§3.6, period two: x peak to peak 8.05, 6.70 and 4.79 µm, from marches."""
+    data = made(10400, 11250, doublings=1, points=20, harmonics=16)
+    twice = data["passages"].values == 2
+    for rpm, size in ((10500, 8.05), (10750, 6.70), (11000, 4.79)):
+        # three digits are given; straight between points of the branch
+        assert swing(data, rpm, twice) == pytest.approx(size, rel=0.01)
+    # a point at the flip itself has a multiplier of 1
+    beyond = data["speed"].values / RPM < events(data, "flip")[0] - 1.0
+    assert (data["stable"].values[twice & beyond] == 1).all()
+    # what it comes from is unstable for as long
+    assert (data["stable"].values[~twice & beyond] == 0).all()
+
+
+@pytest.mark.slow
+def test_the_upper_branch_ends_where_the_reference_page_says() -> None:
+    data = made(3000, 5400, points=60, harmonics=24)
+    # the first branch is the coast-down's, and its first fold is where it ends: 3075 ± 2 rpm, 39.9 µm
+    end = np.flatnonzero(data["event"].values == "fold")[0]
+    assert float(data["speed"].values[end]) / RPM == pytest.approx(3075.0, abs=3.0)
+    assert 1e6 * float(data["peak_to_peak"].values[end, 0]) == pytest.approx(39.9, rel=0.01)
+
+
+def test_a_store_gives_the_same_map_again_without_work(tmp_path, monkeypatch, hysteresis) -> None:
+    first = made(5250, 5300, points=3, store=tmp_path)
+    assert list(tmp_path.iterdir())
+    monkeypatch.setattr(tracing, "newton", None)
+    again = made(5250, 5300, points=3, store=tmp_path)
+    assert first.attrs.pop("made_at") <= again.attrs.pop("made_at")
+    xarray.testing.assert_identical(first, again)
+    with pytest.raises(TypeError):  # another range is another map
+        made(5251, 5300, points=3, store=tmp_path)
+
+
+@pytest.mark.slow
+def test_processes_find_the_same_map(hysteresis: xarray.Dataset) -> None:
+    with ProcessPoolExecutor(2) as pool:
+        spread = made(4550, 5300, executor=pool)
+    for name in ("fold", "flip"):
+        for rpm in events(hysteresis, name):
+            assert np.abs(events(spread, name) - rpm).min() < 0.01
+
+
+def test_a_map_goes_on_past_a_failed_point_and_marks_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    follow = tracing.follow
+
+    def stumbling(*given: object) -> Iterator[object]:
+        for count, point in enumerate(follow(*given)):
+            if count == 2:
+                return
+            yield point
+
+    monkeypatch.setattr(tracing, "follow", stumbling)
+    data = made(7000, 8000, points=10)
+    assert data.attrs["failed"] > 1
+    assert (data["event"].values == "failed").sum() == data.attrs["failed"]
+    # beyond the first failed point there are converged ones, down to the end of the range
+    assert float(data["speed"].min()) / RPM < 7050
+
+
+def test_a_map_over_clearance_ends_where_the_speed_alone_has_its_motion() -> None:
+    make = rotors.held_jis_rotor
+    asked = {**QUICK, "points": 4}
+    data = parameter_map(make, values=(16e-6, 20e-6), speed=8000 * RPM, record=RECORD, **asked)
+    last = int(np.argmax(data["parameter"].values))
+    assert data["parameter"].values[last] == 20e-6
+    alone = steady_state(make(), speed=8000 * RPM, record=RECORD, harmonics=12, stability=False)
+    # a map takes 16 samples a harmonic, one motion 20; the largest line is 1.5e-7 m
+    np.testing.assert_allclose(
+        data["amplitude"].values[last], alone["amplitude"].values, rtol=1e-5, atol=1e-12
+    )
+
+
+def test_a_map_without_bearings_follows_the_load() -> None:
+    """One harmonic load: a linear machine, whose map is its frequency response, the same at every speed."""
+    app = rotors.friswell()
+    app.load("rotor.left", (0, 1.0, 0, 0, 0, 0), frequency=20.0)
+    data = speed_map(
+        app, speeds=(10.0, 20.0), record=["rotor.right.y"], harmonics=2, points=2, doublings=0, progress=False
+    )
+    assert (data["stable"].values == -1).all()
+    assert data["passage_frequency"].values == pytest.approx(20.0)
+
+
+def test_a_march_can_be_asked_whether_its_motion_is_the_only_one() -> None:
+    """§3.6 and §4.4: 1.008 µm after a run-up, 10.0257 µm after a coast-down, at 5000 rpm."""
+    eq = equilibrium(rotors.held_jis_rotor())
+    asked = {"dt": 1e-5, "steps": 10, "record": RECORD[:1], "check_unique": True}
+    two = transient(eq, speed=5000 * RPM, **asked)
+    # four digits are given
+    assert 1e6 * two["stable_motion"].values[:, 0] == pytest.approx([1.008, 10.0257], rel=5e-4)
+    assert two.attrs["stable_motions"] == 2
+    with pytest.raises(ValueError, match="check_unique with speed"):
+        transient(eq, speed=([0.0, 1.0], [100.0, 200.0]), **asked)
+    unbalanced = rotors.held_jis_rotor()
+    unbalanced.unbalance("rotor.centre", 1e-6)
+    with pytest.raises(ValueError, match="check_unique for the base frequencies"):
+        transient(unbalanced, speed=500.0, **asked)
+
+
+def test_bad_input_is_named_before_work() -> None:
+    eq = equilibrium(rotors.held_jis_rotor())
+    for speeds, message in (
+        ((0.0, 100.0), "the lowest must be positive"),
+        ((200.0, 100.0), "the first must be below the second"),
+        ((math.nan, 100.0), "speeds"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            speed_map(eq, speeds=speeds, record=RECORD)
+    with pytest.raises(ValueError, match="a map records motions"):
+        speed_map(eq, speeds=(400.0, 500.0), record=["ball.loaded"])
+    with pytest.raises(ValueError, match="speed is 0"):
+        parameter_map(rotors.held_jis_rotor, values=(1e-5, 2e-5), speed=0.0, record=RECORD)
+    unbalanced: Application = rotors.held_jis_rotor()
+    unbalanced.unbalance("rotor.centre", 1e-6)
+    with pytest.raises(ValueError, match="a map follows motions of one"):
+        speed_map(unbalanced, speeds=(400.0, 500.0), record=RECORD)
+
+
+def test_a_figure_shows_branches_stability_and_events(hysteresis: xarray.Dataset) -> None:
+    ax = plot.speed_map(hysteresis, "rotor.centre.x")
+    drawn = {line.get_label(): line for line in ax.get_lines() if not line.get_label().startswith("_")}
+    assert {"stable", "unstable", "fold", "flip"} <= drawn.keys()
+    assert drawn["fold"].get_xdata() == pytest.approx([5229.2], abs=0.3)
+    assert drawn["unstable"].get_linestyle() == "--"
+    with pytest.raises(ValueError, match="channel is 'rotor'"):
+        plot.speed_map(hysteresis, "rotor")
+    lines = plot.speed_waterfall(hysteresis, "rotor.centre.y").collections[0].get_offsets()
+    # the passage is 3.0846 times the shaft (§3.6), and nothing lies below it
+    assert (lines[:, 1] / (lines[:, 0] / 60)).min() == pytest.approx(3.0846, abs=1e-4)
+    plt.close("all")
