@@ -141,6 +141,7 @@ PUBLIC = {
             "spectrum",
             "state_space",
             "static_summary",
+            "steady_state",
             "stiffness_table",
             "track_orders",
             "transient",

@@ -25,6 +25,7 @@ from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
+from bearingdyn.analysis.steady import steady_state
 from bearingdyn.analysis.stiffness_table import export_stiffness, ross_table, stiffness_table
 from bearingdyn.analysis.thermal_network import ThermalNetwork
 from bearingdyn.analysis.transient import transient, transients
@@ -66,6 +67,7 @@ __all__ = [
     "spectrum",
     "state_space",
     "static_summary",
+    "steady_state",
     "stiffness_table",
     "track_orders",
     "transient",

@@ -19,6 +19,7 @@ from bearingdyn.bearing.contact_damping import (
 from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure
 from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
+from bearingdyn.bearing.film_answer import AnswerUnderLoads, FilmAnswer
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.hertz import PointContact, contact_modulus, resultant_deflection_coefficient
@@ -64,6 +65,7 @@ __all__ = [
     "OPEN_SIDE_REMEDY",
     "RIGID",
     "STATIC_PRESSURE",
+    "AnswerUnderLoads",
     "BallBearing",
     "Balls",
     "BearingKernel",
@@ -71,6 +73,7 @@ __all__ = [
     "ConstantDamping",
     "Damping",
     "Film",
+    "FilmAnswer",
     "FilmDamping",
     "Frequencies",
     "Friction",
