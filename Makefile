@@ -73,6 +73,7 @@ coverage: $(BUILD)/coverage/build.ninja $(VENV)/package $(VENV)/test $(VENV)/cov
 
 bench: $(VENV)/package $(VENV)/test
 	$(PY) benchmarks/transient.py --json
+	$(PY) benchmarks/exact.py --json
 	$(PY) benchmarks/harmonic.py --json
 	$(PY) benchmarks/bearing.py --json
 	$(PY) benchmarks/memory.py --json
