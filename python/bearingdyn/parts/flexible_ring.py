@@ -122,6 +122,7 @@ class FlexibleRing:
         for name in ("r_outer", "width"):
             plausible("length", name, getattr(self, name))
         self._take_bearing()
+        assert self.arm is not None
         if not self.arm < self.r_outer:
             raise ValueError(
                 f"arm is {self.arm} m; it must lie inside the ring, below r_outer = {self.r_outer} m: it is "
