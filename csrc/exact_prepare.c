@@ -8,18 +8,6 @@
 #include "kernels.h"
 #include "loads.h"
 
-void bd_exact_free(bd_exact *exact)
-{
-    if (!exact)
-        return;
-    free(exact->memory);
-    free(exact->groups);
-    free(exact->touched);
-    free(exact->seen);
-    free(exact->varying);
-    free(exact);
-}
-
 /* The groups' sections; false where they do not fit the arrays given. */
 static bool take_groups(const bd_model *model, const bd_exact_data *data, bd_exact *exact)
 {

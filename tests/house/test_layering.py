@@ -32,8 +32,8 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 # A room may import the rooms of earlier rows, and nothing beside or after it. "" is bearingdyn/__init__.py.
 ORDER: tuple[tuple[str, ...], ...] = (
     ("progress", "short_repr", "types"),
-    ("checks", "core", "fingerprint", "notice", "writing"),
-    ("magnitude",),
+    ("checks", "core", "fingerprint", "notice"),
+    ("magnitude", "writing"),
     ("material",),
     ("bearing", "fem"),
     ("cms",),
@@ -385,7 +385,7 @@ ALLOCATORS = frozenset("malloc calloc realloc aligned_alloc posix_memalign strdu
 
 # Memory is taken when something is created or set up, and by one bearing asked by itself; never in a step.
 MAY_ALLOCATE = re.compile(
-    r"bd_(\w+_(create|free)|prepare|prepare_softened|start|work_choose|profile_take|bearing_single)$"
+    r"bd_(\w+_(create|free)|prepare|prepare_softened|exact_prepare|start|work_choose|profile_take|bearing_single)$"
 )
 
 WRITABLE = re.compile(r"\.(data|bss|tdata|tbss)(?!\.rel\.ro)|COMMON")
