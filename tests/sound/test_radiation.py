@@ -229,6 +229,13 @@ def test_bad_input_is_named(change: dict[str, object], text: str) -> None:
         bd.sound.radiated_power(**given)
 
 
+def test_complex_shapes_are_named() -> None:
+    """Z is bilinear in the shapes; what is complex are their amplitudes."""
+    points, faces = sphere(2)
+    with pytest.raises(ValueError, match=r"shapes has shape \(32, 1\).* real and finite"):
+        bd.sound.solve(TriangleSurface(points, faces), np.full((32, 1), 1j), 20.0)
+
+
 def test_a_point_too_near_is_named() -> None:
     found = solved(2, 0.2)
     with pytest.raises(ValueError, match="at least a triangle's length"):

@@ -68,7 +68,7 @@ def sound_power(
         Of the medium, kg/m³ and m/s; those of air at 20 °C.
     element_size
         Side of the radiating panels, m; None: a quarter of the shortest wavelength of each octave, and an
-        eighth of the smallest body.
+        tenth of the smallest body.
     cache
         A folder for what was solved, by the hash of the panels' source; None: nothing is kept.
     progress

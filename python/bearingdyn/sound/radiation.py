@@ -62,7 +62,7 @@ class Radiation:
     """
 
     surface: TriangleSurface
-    shapes: Array | Complex
+    shapes: Array
     frequency: float
     density: float
     sound_speed: float
@@ -109,7 +109,7 @@ def solve(
     surface
         Closed, or open on its floor alone.
     shapes
-        Outward normal velocity (triangles, n) of each shape, m/s, real or complex.
+        Outward normal velocity (triangles, n) of each shape, m/s, real; amplitudes may be complex.
     frequency
         Hz.
     density, sound_speed
@@ -137,10 +137,10 @@ def solve(
     frequency, density = positive("frequency", frequency), positive("density", density)
     sound_speed = positive("sound_speed", sound_speed)
     B = np.asarray(shapes)
-    if B.ndim != 2 or len(B) != len(surface.faces) or B.dtype.kind not in "iufc" or not np.isfinite(B).all():
+    if B.ndim != 2 or len(B) != len(surface.faces) or B.dtype.kind not in "iuf" or not np.isfinite(B).all():
         raise ValueError(
             f"shapes has shape {B.shape}; it must be ({len(surface.faces)}, n): the normal velocity of each "
-            "triangle in m/s, finite"
+            "triangle in m/s, real and finite"
         )
     if not coarse:
         warn_of_coarse_panels(surface, frequency, sound_speed)
@@ -162,7 +162,7 @@ def warn_of_coarse_panels(surface: TriangleSurface, frequency: float, sound_spee
         )
 
 
-def _pressure(surface: TriangleSurface, B: Array | Complex, k: float) -> tuple[Complex, Complex]:
+def _pressure(surface: TriangleSurface, B: Array, k: float) -> tuple[Complex, Complex]:
     """p of unit slopes B at the corners, (points, n), and the form F, (n, n)."""
     V, V1, Kt, K, D = helmholtz(surface.points, surface.faces, k, surface.floor)
     P0, P1 = _masses(surface)

@@ -17,7 +17,7 @@ from bearingdyn.sound.triangle_surface import TriangleSurface
 from bearingdyn.types import Array, Index
 
 PER_WAVELENGTH = 4.0  # sides of the program's panels; a sphere's power is then within .01 dB
-PER_BODY = 8.0  # sides along the longest extent of a body, at least
+PER_BODY = 10.0  # sides along the longest extent of a body, at least
 
 
 @dataclass(frozen=True, eq=False)
