@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bearing.h"
+#include "elastic_force.h"
 #include "kernels.h"
 
 /* As in bearingdyn/bearing/energy_minimum.py, which is the specification. */
@@ -72,8 +73,9 @@ static double press(bd_settle *s, const double *z, double *held)
     s->kernels->force(&s->bearing, &s->work, z, s->rate, 0.0, s->g);
     for (int j = 0; j < data->n_balls; j++) {
         const double F = s->work.force[j];
-        /* the integral of kappa s^1.5 is (2/5) F s */
-        energy += 0.4 * F * (s->work.delta[j] + data->contact.h0);
+        double own;
+        bd_elastic_force(&data->contact, s->work.delta[j] + data->contact.h0, &own);
+        energy += own;
         *held += F;
     }
     return energy;
