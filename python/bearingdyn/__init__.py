@@ -15,6 +15,7 @@ SUBPACKAGES = {
     "material": "material",
     "plot": "plot",
     "study": "study",
+    "units": "units",
 }
 # public names by what they are about, with the room of each; the stub beside this file says the same
 PUBLIC = {

@@ -2,6 +2,7 @@ from bearingdyn import bearing as bearing
 from bearingdyn import material as material
 from bearingdyn import plot as plot
 from bearingdyn import study as study
+from bearingdyn import units as units
 from bearingdyn.analysis import (
     Equilibrium,
     OperatingPoint,

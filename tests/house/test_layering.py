@@ -33,7 +33,7 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 ORDER: tuple[tuple[str, ...], ...] = (
     ("progress", "short_repr", "types"),
     ("checks", "core", "fingerprint", "notice", "writing"),
-    ("magnitude",),
+    ("magnitude", "units"),
     ("material",),
     ("bearing", "fem"),
     ("cms",),
@@ -51,7 +51,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
 ROW = {room: row for row, rooms in enumerate(ORDER) for room in rooms}
 
 # Drawing is the end of the line: only these may reach it, and only inside a function.
-MAY_DRAW = {"", "cli", "demo", "study"}
+MAY_DRAW = {"", "analysis", "application", "bearing", "cli", "demo", "material", "study"}
 
 # Third-party packages a module may load when it is imported; the rest is imported inside functions.
 LOADED_AT_IMPORT = {"numpy", "scipy"}

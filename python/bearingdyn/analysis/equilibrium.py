@@ -26,6 +26,7 @@ from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
 from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
 from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 PARTED = 1e-9
 """Load, N, below which a ball is not pressed: what a search leaves where nothing pushes, and no weight is."""
@@ -135,6 +136,7 @@ class Equilibrium:
         )
 
 
+@takes(angle="rad", after="s")
 def equilibrium(
     app: Application | System,
     angle: float = 0.0,

@@ -10,9 +10,10 @@ import scipy
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import Application
-from bearingdyn.checks import number, truth, whole
+from bearingdyn.checks import number, one_speed, truth, whole
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -22,13 +23,15 @@ if TYPE_CHECKING:
 REAL = 1e-9
 
 
+@takes(speed="rad/s")
 def modes(
     source: Equilibrium | Application | System,
     count: int | None = None,
     *,
-    speed: float = 0.0,
+    speed: float | None = None,
     damped: bool = False,
     modulus: str = "relaxed",
+    rpm: float | None = None,
 ) -> xarray.Dataset:
     """Natural modes about an equilibrium, or of an application without bearings.
 
@@ -39,12 +42,14 @@ def modes(
     count
         How many modes, the lowest first; None for all.
     speed
-        rad/s of the shaft, for gyroscopic forces and, in damped modes, damping that turns.
+        rad/s of the shaft, for gyroscopic forces and, in damped modes, damping that turns; 0 by default.
     damped
         False: only masses, stiffnesses and gyroscopic forces act. True: C, G, K, N and every Maxwell branch
         act, each branch as a state, so that the eigenvalues solve the frequency-dependent problem exactly.
     modulus
         Of the layers in undamped modes, "relaxed" or "instantaneous".
+    rpm
+        The speed in revolutions a minute, instead of `speed`.
 
     Returns
     -------
@@ -74,7 +79,7 @@ def modes(
     """
     if count is not None:
         count = whole("count", count, 0)
-    damped, speed = truth("damped", damped), number("speed", speed, "it must be a speed in rad/s")
+    damped, speed = truth("damped", damped), number("speed", one_speed(speed, rpm, 0.0))
     system = source.linearised() if isinstance(source, Equilibrium) else linear(source).system
     system.check_speed(speed)
     if damped:

@@ -17,19 +17,21 @@ from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.step_size import STEP_ERROR_MADE, step_error
 from bearingdyn.application import Application
-from bearingdyn.checks import instance, items, name_list, named, whole
+from bearingdyn.checks import instance, items, name_list, named, one_speed, whole
 from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import System
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
 
 
+@takes(speed=("s", "rad/s"), dt="s", memory="s")
 def transient(
     source: Equilibrium | Application | System,
     *,
-    speed: float | tuple[ArrayLike, ArrayLike],
+    speed: float | tuple[ArrayLike, ArrayLike] | None = None,
     dt: float,
     steps: int,
     record: Sequence[str],
@@ -44,6 +46,7 @@ def transient(
     scheme: core.Scheme | None = None,
     memory: float | None = None,
     progress: Progress | bool | None = None,
+    rpm: float | tuple[ArrayLike, ArrayLike] | None = None,
 ) -> xarray.Dataset:
     """Find a transient: march an application from its equilibrium, at constant speed or through a run-up.
 
@@ -107,6 +110,8 @@ def transient(
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
+    rpm
+        The speed in revolutions a minute, instead of `speed`: one number, or (times in s, rpm).
 
     Returns
     -------
@@ -165,7 +170,7 @@ def transient(
         raise ValueError("resume and initial both set the state at the start; give one of them")
     march = March.of(
         source,
-        speed=speed,
+        speed=one_speed(speed, rpm),
         dt=dt,
         steps=steps,
         settle=settle,

@@ -20,6 +20,7 @@ from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
 from bearingdyn.notice import warn
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 _ROUNDING = 1.001  # of the edges of a band
 
@@ -37,6 +38,7 @@ def _branches(name: str, values: ArrayLike) -> Array:
     return array
 
 
+@takes(G0="Pa", G="Pa", tau="s", eta0="Pa s", K="Pa", density="kg/m³", temperature="°C", band="Hz")
 @dataclass(frozen=True, init=False, eq=False)
 class Maxwell(Retunable, Softening):
     """The generalised Maxwell model, viscoelastic in shear, elastic in volume.

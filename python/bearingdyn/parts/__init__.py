@@ -12,6 +12,7 @@ from bearingdyn.parts.node_set import NodeSet, at_radius
 from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
 from bearingdyn.parts.prestress import Prestress
+from bearingdyn.parts.profile import HasProfile, Profile, cut
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
@@ -32,6 +33,7 @@ __all__ = [
     "FlexibleBearing",
     "FlexibleRing",
     "Groove",
+    "HasProfile",
     "HasRoundFaces",
     "Housing",
     "Imported",
@@ -44,6 +46,7 @@ __all__ = [
     "Outlined",
     "Patch",
     "Prestress",
+    "Profile",
     "Region",
     "Revolved",
     "RevolvedModes",
@@ -59,6 +62,7 @@ __all__ = [
     "ViscoelasticSolid",
     "Where",
     "at_radius",
+    "cut",
     "damping_sample",
     "quadrilaterals",
     "specimen_factor",

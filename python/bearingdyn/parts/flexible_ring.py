@@ -17,12 +17,15 @@ from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder, Face, Groove, Line, Where
 from bearingdyn.parts.round_face import RoundFace
+from bearingdyn.units import takes
 
 
+@takes(r_inner="m", r_outer="m", width="m", arm="m", groove="m", groove_radius="m", f_max="Hz")
 @dataclass(frozen=True)
 class FlexibleRing:
     """A flexible outer ring, not turning, whose "raceway" carries the balls of one bearing.
@@ -172,6 +175,10 @@ class FlexibleRing:
         bottom = np.sqrt(radius**2 - z**2) - math.sqrt(radius**2 - track**2)
         share = (self.r_outer - mesh.r) / (self.r_outer - self.r_inner)
         return replace(mesh, r=mesh.r + np.maximum(share, 0.0) * bottom)
+
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it; see Revolved.profile."""
+        return self.body.profile()
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""

@@ -9,6 +9,7 @@ from bearingdyn.plot.ball_loads import ball_loads
 from bearingdyn.plot.bearing_spectrum import bearing_spectrum
 from bearingdyn.plot.bearing_stiffness import bearing_stiffness
 from bearingdyn.plot.campbell import campbell
+from bearingdyn.plot.drawing import draw, scene
 from bearingdyn.plot.film import film
 from bearingdyn.plot.frequency_response import frequency_response
 from bearingdyn.plot.isotherms import isotherms, master, shifts
@@ -33,6 +34,7 @@ __all__ = [
     "campbell",
     "causality",
     "cole_cole",
+    "draw",
     "film",
     "frequency_response",
     "isotherms",
@@ -45,6 +47,7 @@ __all__ = [
     "orbit",
     "order_spectrum",
     "orders",
+    "scene",
     "shifts",
     "spectrum",
     "spectrum_of",
