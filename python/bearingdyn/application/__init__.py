@@ -16,6 +16,7 @@ from bearingdyn.application.loads import (
 from bearingdyn.application.part import Part
 from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.application.plan import Plan
+from bearingdyn.application.summary import loose_motions
 
 __all__ = [
     "COMPONENTS",
@@ -41,4 +42,5 @@ __all__ = [
     "Support",
     "Unbalance",
     "arm",
+    "loose_motions",
 ]

@@ -19,6 +19,7 @@ from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, Pair
 from bearingdyn.checks import require
 from bearingdyn.magnitude import plausible
+from bearingdyn.pictures import picture
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 
@@ -63,6 +64,9 @@ class Application:
         """The summary, or that there is nothing yet."""
         return self.summary() if self.plan.parts else "<Application without parts>"
 
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
+
     def summary(self) -> str:
         """What is connected to what, masses, loads, and which motions nothing holds: read it first."""
         return summary(self.plan)
@@ -87,9 +91,8 @@ class Application:
         ValueError
             For an application without parts.
         """
-        from bearingdyn.plot import draw
-
-        return draw(self, ax, table=table)
+        axes: Axes = picture("draw", self, ax, table=table)
+        return axes
 
     def scene(self) -> Any:
         """The machine in three dimensions, a pyvista.MultiBlock; see `bd.plot.scene`.
@@ -101,9 +104,7 @@ class Application:
         ValueError
             Where no part has a surface.
         """
-        from bearingdyn.plot import scene
-
-        return scene(self)
+        return picture("scene", self)
 
     def names(self) -> list[str]:
         """All interfaces and points, "part.name"."""

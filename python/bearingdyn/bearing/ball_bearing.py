@@ -33,6 +33,7 @@ from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
 from bearingdyn.checks import nonnegative, number, one_speed, positive, require, vector, whole
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.pictures import picture
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 
@@ -162,6 +163,9 @@ class BallBearing:
     boundary: tuple[float, float, float] | None
     lubrication: OilSupply | None
     overrides: Overrides
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __repr__(self) -> str:
         """One line: the geometry, and what is not usual."""

@@ -19,6 +19,7 @@ from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
 from bearingdyn.notice import warn
+from bearingdyn.pictures import picture
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 
@@ -108,6 +109,9 @@ class Maxwell(Retunable, Softening):
     fit: FitReport | None = field(repr=False)
     low_end: LowEnd | None = field(repr=False)
     payne: Payne | None = field(repr=False)
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __repr__(self) -> str:
         """One line: moduli, times, and where it is good."""

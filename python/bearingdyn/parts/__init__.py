@@ -12,7 +12,7 @@ from bearingdyn.parts.node_set import NodeSet, at_radius
 from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
 from bearingdyn.parts.prestress import Prestress
-from bearingdyn.parts.profile import HasProfile, Profile, cut
+from bearingdyn.parts.profile import HasProfile, Matter, Profile, cut
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
@@ -39,6 +39,7 @@ __all__ = [
     "Imported",
     "Layer",
     "Line",
+    "Matter",
     "MeshNodes",
     "NodeSet",
     "ORing",

@@ -20,6 +20,7 @@ from bearingdyn.plot.mode_geometry import mode_geometry, mode_scene
 from bearingdyn.plot.mode_shape import mode_shape
 from bearingdyn.plot.orbit import orbit
 from bearingdyn.plot.orders import order_spectrum, orders
+from bearingdyn.plot.page import as_html
 from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.squeezed_section import squeezed_section
 from bearingdyn.plot.time_traces import time
@@ -28,6 +29,7 @@ from bearingdyn.plot.unbalance_response import unbalance_response
 from bearingdyn.plot.waterfall import waterfall
 
 __all__ = [
+    "as_html",
     "ball_loads",
     "bearing_spectrum",
     "bearing_stiffness",

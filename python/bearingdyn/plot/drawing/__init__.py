@@ -1,4 +1,4 @@
-"""The drawing of a machine before anything is solved: section, bearings, supports, loads, names, parts list."""
+"""The drawing of a machine before anything is solved: section, bearings, supports, loads, names, parts."""
 
 from bearingdyn.plot.drawing.scene import scene
 from bearingdyn.plot.drawing.sheet import draw

@@ -72,7 +72,9 @@ def draw_load(ax: Axes, machine: Machine, load: Load, size: float, count: int) -
     place = at[[2, 1]]
     reach = machine.reach(float(place[0]), load.where.part) or (place[1], place[1])
     if isinstance(load, Unbalance):
-        _unbalance(ax, place, reach, size, load)
+        z = machine.corners()[:, 0]
+        left = place[0] > z.min() + 0.7 * (z.max() - z.min())
+        _unbalance(ax, place, reach, size, load, left)
         return []
     if isinstance(load, DirectedLoad):
         tell = course(load)
@@ -85,9 +87,10 @@ def draw_load(ax: Axes, machine: Machine, load: Load, size: float, count: int) -
             _along(ax, place, float(F[2]), size, value(abs(F[2]), "N") + tell, double)
         if F[0]:
             _through(ax, place, float(F[0]), size, value(abs(F[0]), "N") + tell)
-        for axis, moment in zip("xyz", M.tolist(), strict=True):
-            if moment:
-                _moment(ax, place, axis, moment, size, value(moment, "N m") + tell)
+        if M.any():
+            given = zip("xyz", M.tolist(), strict=True)
+            lines = [f"{value(moment, 'N m')}{tell} about {axis}" for axis, moment in given if moment]
+            _moment(ax, place, float(M[0]), size, lines)
     return []
 
 
@@ -114,7 +117,7 @@ def _along(ax: Axes, place: Array, force: float, size: float, told: str, double:
     )  # fmt: skip
 
 
-def _pointed(ax: Axes, start: tuple[float, ...], end: tuple[float, ...], double: bool) -> None:
+def _pointed(ax: Axes, start: Any, end: Any, double: bool) -> None:
     look = {"arrowstyle": "<|-|>" if double else "-|>", "color": RED, "linewidth": 1.6, "mutation_scale": 11}
     ax.annotate("", end, start, arrowprops={**look, "shrinkA": 0, "shrinkB": 0}, zorder=11)
 
@@ -138,30 +141,30 @@ def _through(ax: Axes, place: Array, force: float, size: float, told: str) -> No
     )  # fmt: skip
 
 
-def _moment(ax: Axes, place: Array, axis: str, moment: float, size: float, told: str) -> None:
-    """A moment: an arc about x, which is seen as one, and a note about the others."""
-    sense = 1.0 if moment > 0 else -1.0
-    # about x, pointing away from us, positive turns y towards z: clockwise in the picture
-    angles = np.radians(np.linspace(200, -20, 40))[:: int(sense)]
-    arc = place + 0.5 * size * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-    ax.plot(*arc.T, color=RED, linewidth=1.4, zorder=11)
-    _pointed(ax, tuple(arc[-3]), tuple(arc[-1]), False)
+def _moment(ax: Axes, place: Array, about_x: float, size: float, told: list[str]) -> None:
+    """Moments in words; that about x is an arc: x points away from us, so it turns clockwise, y towards z."""
+    if about_x:
+        angles = np.radians(np.linspace(200, -20, 40))[:: 1 if about_x > 0 else -1]
+        arc = place + 0.5 * size * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        ax.plot(*arc.T, color=RED, linewidth=1.4, zorder=11)
+        _pointed(ax, tuple(arc[-3]), tuple(arc[-1]), False)
     ax.annotate(
-        f"{told} about {axis}", tuple(place + (0, 0.5 * size)), xytext=(0, 3), textcoords="offset points",
-        color=RED, fontsize=8.5, ha="center", zorder=12, bbox=HALO,
+        "\n".join(told), tuple(place + (0, 0.5 * size)), xytext=(0, 4), textcoords="offset points",
+        color=RED, fontsize=8.5, ha="center", va="bottom", zorder=12, bbox=HALO,
     )  # fmt: skip
 
 
-def _unbalance(ax: Axes, place: Array, reach: tuple[float, float], size: float, load: Unbalance) -> None:
-    """A mass off the axis with the arrow of its turning."""
+def _unbalance(
+    ax: Axes, place: Array, reach: tuple[float, float], size: float, load: Unbalance, left: bool
+) -> None:
+    """A mass off the axis, its words to the left of it or to the right."""
     from matplotlib.patches import Circle
 
-    y = reach[0] + 0.75 * (place[1] - reach[0]) * 0.0
-    centre = (float(place[0]), float(y))
+    centre = (float(place[0]), float(reach[0] + 0.1 * (place[1] - reach[0])))
     ax.add_patch(Circle(centre, 0.09 * size, facecolor=RED, edgecolor="white", linewidth=0.6, zorder=11))
-    grams = f"{load.moment * 1e6:.4g} g mm"
-    told = f"unbalance {grams}" + (f", {math.degrees(load.phase):.4g}° from x" if load.phase else "")
+    told = f"unbalance {load.moment * 1e6:.4g} g mm"
+    told += f", {math.degrees(load.phase):.4g}° from x" if load.phase else ""
     ax.annotate(
-        told, centre, xytext=(7, -9), textcoords="offset points", color=RED, fontsize=8.5, va="top",
-        zorder=12, bbox=HALO,
+        told, centre, xytext=(-8 if left else 8, 0), textcoords="offset points", color=RED, fontsize=8.5,
+        va="center", ha="right" if left else "left", zorder=12, bbox=HALO,
     )  # fmt: skip

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearingdyn.application import Place, Plan, arm
-from bearingdyn.parts import HasProfile, Outline, Outlined, Profile, cut
-from bearingdyn.parts.profile import Matter
+from bearingdyn.parts import HasProfile, Matter, Outline, Outlined, Profile, cut
 from bearingdyn.types import Array
 
 

@@ -59,7 +59,9 @@ def scene(app: Application) -> Any:
             continue
         b = joint.bearing
         balls = [
-            pyvista.Sphere(0.5 * b.Dw, tuple(at + _around(0.5 * b.Dpw, b.angle0 + 2 * np.pi * k / b.Z)))
+            pyvista.Sphere(
+                radius=0.5 * b.Dw, center=at + _around(0.5 * b.Dpw, b.angle0 + 2 * np.pi * k / b.Z)
+            )
             for k in range(b.Z)
         ]
         blocks.append(pyvista.merge(balls), name)

@@ -1,4 +1,4 @@
-"""The sheet: a machine's section along its shaft, to scale, with balloons, loads, dimensions and parts list."""
+"""The sheet: a machine's section along its shaft, to scale, with loads, names, dimensions and parts list."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn.application import GROUND, Application, Place
+from bearingdyn.application import GROUND, Application, DirectedLoad, Place
 from bearingdyn.checks import instance
 from bearingdyn.plot.drawing.bearing_section import draw_bearing, fine
 from bearingdyn.plot.drawing.loads import draw_load
@@ -25,7 +25,7 @@ LOOK: dict[str, dict[str, Any]] = {
     "shaft": {"facecolor": "#e9eef2", "hatch": "", "zorder": 4.0},
     "metal": {"facecolor": "#f4f1ea", "hatch": "////", "zorder": 2.0},
     "rubber": {"facecolor": "#f2b632", "hatch": "xxxx", "zorder": 3.0},
-    "body": {"facecolor": "#e9eef2", "hatch": "", "zorder": 3.5},
+    "body": {"facecolor": "#e9eef255", "hatch": "", "zorder": 1.0, "linestyle": "--"},
 }
 WIDTH = 10.0  # inches of the sheet
 TEXT = 8.0  # points
@@ -80,18 +80,22 @@ def draw(app: Application, ax: Axes | None = None, *, table: bool = True) -> Axe
             linestyle=(0, (14, 3, 2, 3)), zorder=7,
         )  # fmt: skip
         bottom = min(low[1], reach)
-        notes = _loads(ax, shown, 34 * scale)
-        if table:
-            _balloons(ax, shown, list(rows), high[1], scale)
+        notes, tips = _loads(ax, shown, 34 * scale)
+        summit = max(float(high[1]), tips - 18 * scale)
+        if table or own:
+            _balloons(ax, shown, list(rows), summit, scale)
+        _axes_glyph(ax, float(low[0]) - 30 * scale, summit + 26 * scale, scale)
         under = _places(ax, shown, bottom - 10 * scale, scale)
         foot = _dimensions(ax, shown, under, scale)
-        top = high[1] + (62 if table else 44) * scale
+        top = summit + (62 if table or own else 44) * scale
         ax.set_xlim(low[0] - 40 * scale, high[0] + 40 * scale)
         ax.set_ylim(foot - 10 * scale, top)
         if own and table:
-            _resize(ax, foot - 10 * scale, top, span[0] + 80 * scale, len(rows) + len(notes))
+            _resize(ax, foot - 10 * scale, top, LINE * (len(rows) + len(notes) + 3.4))
             _table(ax, rows.values(), notes + _lost(shown))
-        elif notes:
+        elif own:
+            _resize(ax, foot - 10 * scale, top, 0.1)
+        if notes and not (own and table):
             ax.text(0.0, 1.0, "\n".join(notes), transform=ax.transAxes, fontsize=TEXT, va="top", color="0.2")
     return ax
 
@@ -126,19 +130,19 @@ def _scale(ax: Axes, span: Array) -> float:
     """Millimetres on the machine that one point on paper stands for."""
     width = float(ax.bbox.width) / float(ax.figure.dpi) * 72.0
     height = float(ax.bbox.height) / float(ax.figure.dpi) * 72.0
-    if ax.figure.get_size_inches()[0] == WIDTH:
+    figure: Any = ax.figure
+    if figure.get_size_inches()[0] == WIDTH:
         # the height of a sheet of our own follows; a tall machine is drawn narrower
         return float(max(span[0] / (width - 80.0), span[1] / 430.0))
     return float(max(span[0] / max(width - 80.0, 50.0), span[1] / max(height - 130.0, 50.0)))
 
 
-def _resize(ax: Axes, foot: float, top: float, across: float, lines: int) -> None:
-    """Give the sheet the height that section and list need."""
+def _resize(ax: Axes, foot: float, top: float, below: float) -> None:
+    """Give the sheet the height that the section needs, and the list below it, inches."""
     figure: Any = ax.figure
     low, high = ax.get_xlim()
     wide = 0.96 * WIDTH
     tall = min(wide * (top - foot) / (high - low), 7.6)
-    below = LINE * (lines + 3.4)
     total = tall + below + 0.15
     figure.set_size_inches(WIDTH, total)
     ax.set_position((0.02, below / total, 0.96, tall / total))
@@ -318,13 +322,31 @@ def _between(ax: Axes, shown: Machine, a: Place, b: Place, at: Array, scale: flo
     spring(ax, np.array([z, high]), np.array([z, low]), size)
 
 
-def _loads(ax: Axes, shown: Machine, size: float) -> list[str]:
+def _loads(ax: Axes, shown: Machine, size: float) -> tuple[list[str], float]:
+    """Notes on loads without a place, and how far up the arrows reach, mm."""
     notes: list[str] = []
+    tips = -float("inf")
     count: dict[Place, int] = {}
     for load in shown.plan.loads:
         notes += draw_load(ax, shown, load, size, count.get(load.where, 0))
         count[load.where] = count.get(load.where, 0) + 1
-    return notes
+        at = shown.places.get(str(load.where))
+        if at is not None and isinstance(load, DirectedLoad) and load.vector[1] < 0:
+            reach = shown.reach(float(at[2]), load.where.part)
+            tips = max(tips, (reach[1] if reach else float(at[1])) + 1.5 * size)
+    return notes, tips
+
+
+def _axes_glyph(ax: Axes, z: float, y: float, scale: float) -> None:
+    """Which way z and y point; x points away from the reader."""
+    look = {"arrowstyle": "-|>", "color": "0.3", "linewidth": 0.8, "mutation_scale": 7}
+    for name, way in (("z", (22, 0)), ("y", (0, 22))):
+        end = (z + way[0] * scale, y + way[1] * scale)
+        ax.annotate("", end, (z, y), arrowprops={**look, "shrinkA": 0, "shrinkB": 0})
+        ax.annotate(
+            name, end, xytext=(way[0] / 7, way[1] / 7), textcoords="offset points", fontsize=TEXT,
+            color="0.3", ha="center" if way[1] else "left", va="center" if way[0] else "bottom",
+        )  # fmt: skip
 
 
 # ------------------------------------------------------------------------------------------------ words
@@ -374,12 +396,14 @@ def _balloons(ax: Axes, shown: Machine, names: list[str], top: float, scale: flo
         z, r = targets[name]
         ax.plot([across, z], [y - 7 * scale, r], color="0.25", linewidth=0.5, zorder=9)
         ax.plot([z], [r], marker="o", markersize=2.4, color="0.1", zorder=9.5)
-        ax.text(
-            across, y, str(names.index(name) + 1), ha="center", va="center", fontsize=TEXT, zorder=10,
-            bbox={"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": "0.1", "linewidth": 0.8},
+        ax.plot(
+            [across], [y], marker="o", markersize=14, markerfacecolor="white", markeredgecolor="0.1",
+            markeredgewidth=0.8, zorder=10,
         )  # fmt: skip
-        joint = shown.plan.bearings.get(name)
-        if joint is not None and (named := designation(joint.bearing).partition(" ")[0]):
+        number = str(names.index(name) + 1)
+        ax.text(across, y, number, ha="center", va="center", fontsize=TEXT, zorder=10.5)
+        hung = shown.plan.bearings.get(name)
+        if hung is not None and (named := designation(hung.bearing)[0]):
             ax.text(across, y + 9.5 * scale, named, ha="center", va="bottom", fontsize=TEXT, weight="bold")
 
 
@@ -436,8 +460,9 @@ def _dimensions(ax: Axes, shown: Machine, top: float, scale: float) -> float:
         _dimension(ax, a, b, y, scale)
     if len(stations) > 1:
         y -= 15 * scale
-    turning = [q.corners[:, 0] for p in shown.parts for q in p.profiles if q.matter == "shaft"]
-    ends = np.concatenate(turning or [shown.corners()[:, 0]])
+    known = [(q.matter, q.corners[:, 0]) for p in shown.parts for q in p.profiles if q.matter != "body"]
+    turning = [z for matter, z in known if matter == "shaft"]
+    ends = np.concatenate(turning or [z for _, z in known] or [np.zeros(1)])
     if float(np.ptp(ends)) > 0:
         _dimension(ax, float(ends.min()), float(ends.max()), y, scale)
     return y - 6 * scale

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,20 +14,18 @@ from bearingdyn.parts import FlexibleRing, Housing, Layer, RigidBody, Ring, Shaf
 Row = tuple[str, str, str]
 
 
-def designation(bearing: BallBearing) -> str:
-    """The designation of a bearing of the catalogue, "" where none has this geometry."""
-    for name, entry in catalogue.CATALOGUE.items():
-        if bearing.boundary == (entry.bore, entry.outside, entry.width) and (
-            (bearing.Z, bearing.Dw, bearing.Dpw, bearing.contact_angle)
-            == (entry.Z, entry.Dw, entry.Dpw, entry.contact_angle)
-        ):
-            return name
-    if bearing.boundary is not None:
-        for name, entry in catalogue.CATALOGUE.items():
-            same = bearing.boundary == (entry.bore, entry.outside, entry.width)
-            if same and (bearing.contact_angle is None) == (entry.contact_angle is None):
-                return f"{name} ({bearing.Z} balls of {1e3 * bearing.Dw:.4g})"
-    return ""
+def designation(bearing: BallBearing) -> tuple[str, bool]:
+    """The designation of the catalogue's bearing in this envelope, "" where there is none; and whether the
+    balls are the catalogue's too."""
+    angular = bearing.contact_angle is not None
+    same = {
+        name: (entry.Z, entry.Dw, entry.Dpw, entry.contact_angle)
+        == (bearing.Z, bearing.Dw, bearing.Dpw, bearing.contact_angle)
+        for name, entry in catalogue.CATALOGUE.items()
+        if bearing.boundary == (entry.bore, entry.outside, entry.width)
+        and angular == (entry.contact_angle is not None)
+    }
+    return max(same.items(), key=lambda item: item[1], default=("", False))
 
 
 def material_words(material: Any) -> str:
@@ -45,7 +44,8 @@ def part_words(source: Any) -> str:
     mm = 1e3
     if isinstance(source, Shaft):
         widest = max(s.d_outer for s in source.sections)
-        return f"shaft, {mm * source.length:.4g} long, up to Ø{mm * widest:.4g}, {material_words(source.material)}"
+        size = f"{mm * source.length:.4g} long, up to Ø{mm * widest:.4g}"
+        return f"shaft, {size}, {material_words(source.material)}"
     if isinstance(source, Layer | Ring):
         kind = "layer" if isinstance(source, Layer) else "ring"
         size = f"Ø{2 * mm * source.r_inner:.4g}/{2 * mm * source.r_outer:.4g} × {mm * source.width:.4g}"
@@ -59,7 +59,7 @@ def part_words(source: Any) -> str:
     if isinstance(source, RigidBody):
         kind = "rigid body, turning" if source.rotating else "rigid body"
         if source.measures is None:
-            return kind
+            return f"{kind}, drawn as the box of its mass and inertia"
         a, b, width = (mm * x for x in source.measures)
         return f"{kind}, Ø{2 * a:.4g}/{2 * b:.4g} × {width:.4g}"
     return type(source).__name__
@@ -67,16 +67,15 @@ def part_words(source: Any) -> str:
 
 def bearing_words(bearing: BallBearing) -> str:
     """What a bearing is: balls, and clearance or contact angle."""
-    import math
-
     play = (
         f"clearance {1e6 * bearing.clearance:.3g} µm"
         if bearing.clearance is not None
         else f"contact angle {math.degrees(bearing.contact_angle or 0.0):.3g}°"
     )
-    named = designation(bearing)
+    named, exact = designation(bearing)
     balls = f"{bearing.Z} balls Ø{1e3 * bearing.Dw:.4g} on Ø{1e3 * bearing.Dpw:.4g}"
-    return f"ball bearing {named}, {balls}, {play}" if named else f"ball bearing, {balls}, {play}"
+    own = "" if not named else f" {named}" if exact else f" in the envelope of {named}"
+    return f"ball bearing{own}, {balls}, {play}"
 
 
 def parts_list(plan: Plan) -> Mapping[str, Row]:
