@@ -42,7 +42,7 @@ demo: $(VENV)/package
 test: ctest pytest
 
 pytest: $(VENV)/package $(VENV)/test
-	$(PY) -m pytest -m "not slow"
+	$(PY) -m pytest
 
 ctest: $(BUILD)/ctest/build.ninja
 	meson compile -C $(BUILD)/ctest
@@ -56,7 +56,7 @@ asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 	meson install -C $(BUILD)/asan --quiet
 	LD_PRELOAD="$(SANITIZERS)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 \
 	  PYTHONMALLOC=malloc PYTHONPATH=$(BUILD)/asan/site \
-	  $(PY) -m pytest --capture=sys -m "not slow"
+	  $(PY) -m pytest --capture=sys
 
 # Lines of Python and of C that the C tests and the quick Python tests run through, the least covered files first.
 # The Python tests use a copy of the package whose extension counts lines.
@@ -66,7 +66,7 @@ coverage: $(BUILD)/coverage/build.ninja $(VENV)/package $(VENV)/test $(VENV)/cov
 	meson test -C $(BUILD)/coverage --print-errorlogs
 	meson install -C $(BUILD)/coverage --quiet
 	PYTHONPATH=$(BUILD)/coverage/site COVERAGE_FILE=$(BUILD)/coverage/python.data \
-	  $(PY) -m coverage run --source=bearingdyn -m pytest -m "not slow"
+	  $(PY) -m coverage run --source=bearingdyn -m pytest
 	cd $(BUILD)/coverage/site && \
 	  COVERAGE_FILE=../python.data $(CURDIR)/$(PY) -m coverage report --sort=cover --skip-covered
 	$(PY) -m gcovr --root . --filter csrc/ --sort=uncovered-percent --print-summary $(BUILD)/coverage

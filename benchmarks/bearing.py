@@ -18,12 +18,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 FLAGS = ["-std=c11", "-D_POSIX_C_SOURCE=200809L", "-O3", "-ffp-contract=off", "-fno-math-errno"]
-HOT = ("balls", "ehl", "step")
+HOT = ("balls", "ehl", "receptance", "step")
 SETS: list[tuple[str, str, list[str]]] = [("base", "2", [])]
 if platform.machine().lower() in ("x86_64", "amd64"):
     FLAGS.append("-DBD_HAVE_X86_SETS")
     SETS += [("avx2", "4", ["-mavx2"]), ("avx512", "8", ["-mavx512f"])]
-COLD = ("bearing", "imperfection", "kernels", "maxwell")
+COLD = ("bearing", "grazing", "imperfection", "kernels", "maxwell")
 
 
 def build(compiler: str, folder: Path) -> Path:

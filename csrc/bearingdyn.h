@@ -500,6 +500,7 @@ typedef struct bd_harmonic_data {
     const double *bearing_K, *bearing_C; /* (coefs x coefs) row-major, linearised bearings */
     const double *force;                 /* (n_in x n) */
     const double *row;                   /* (n_out x n) */
+    bd_isa isa; /* of the kernels; the best where this machine lacks it. All give the same bits */
 } bd_harmonic_data;
 
 typedef struct bd_harmonic_work bd_harmonic_work;
@@ -508,9 +509,10 @@ void bd_harmonic_work_free(bd_harmonic_work *work);
 
 /* Response at frequencies first .. first + count - 1.
  * Returned: response (n_omega x n_out x n_in) complex interleaved, those rows written
- * Notes:    each block of the structure is solved by itself and the blocks are joined through the few
- *           bearing coefficients; where a block by itself is singular or nearly so (one that floats, at low
- *           frequency), all is solved as one.
+ * Notes:    each block of the structure is solved by itself, several frequencies at once, and the blocks are joined
+ *           through the few bearing coefficients; where a block by itself is singular or nearly so (one that
+ *           floats, at low frequency), all is solved as one. A frequency's response is the same, to the bit,
+ *           whatever others are asked for beside it.
  * Reference: paper eq (20), with G' (omega) in its deviatoric part. */
 bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const bd_lapack *lapack,
                       bd_harmonic_work *work, int first, int count, double *response);

@@ -1,6 +1,6 @@
 /* kernels.h - inside the core: the hot loops, once per instruction set.
  *
- * ehl.c, balls.c and step.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
+ * ehl.c, balls.c, step.c and receptance.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
  * functions carry the name as a suffix, and each set ends in one table of pointers. Nothing else of
  * the core depends on the instruction set. */
 #ifndef BD_KERNELS_H
@@ -14,7 +14,10 @@
 #define BD_NAMED(name) BD_JOIN(name, BD_ISA)
 #endif
 
+typedef struct bd_receptance bd_receptance;
+
 typedef struct bd_kernels {
+    int width; /* doubles per register */
     /* balls.c: basis functions at the first ball's azimuth psi (rad) */
     void (*turn)(const bd_bearing *bearing, bd_bearing_work *work, double psi);
     /* balls.c: forces at coefficients z, z_rate (padded): g = sum F v; ball quantities stay in work */
@@ -39,6 +42,9 @@ typedef struct bd_kernels {
     /* step.c: completes the acceleration and makes the trial state the state.
      * Returned: 0, or nonzero where it would not be finite; the state is then as it was */
     int (*commit)(const bd_model *model, bd_work *work, bd_state *state);
+    /* receptance.c: what rows and columns of a block see of each other at `width` frequencies */
+    void (*receptance)(const bd_receptance *block, const double *omega, const double *moduli,
+                       double *memory, double *response, double *growth);
 } bd_kernels;
 
 /* The kernels of an instruction set, or NULL where this build or machine lacks it. */

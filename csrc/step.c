@@ -2,6 +2,7 @@
 #include "balls.h"
 #include "dense.h"
 #include "maxwell.h"
+#include "receptance.h"
 #include "work.h"
 
 /* Predictors, trial branch stresses and the acceleration without the bearings. */
@@ -243,6 +244,7 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
 
 extern const bd_kernels BD_NAMED(bd_kernels);
 const bd_kernels BD_NAMED(bd_kernels) = {
+    .width = BD_WIDTH,
     .turn = BD_NAMED(bd_bearing_turn),
     .force = BD_NAMED(bd_bearing_force),
     .keep_peaks = BD_NAMED(bd_bearing_keep_peaks),
@@ -253,4 +255,5 @@ const bd_kernels BD_NAMED(bd_kernels) = {
     .displace = displace,
     .correct = correct,
     .commit = commit,
+    .receptance = BD_NAMED(bd_receptance_solve),
 };

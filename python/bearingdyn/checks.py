@@ -120,7 +120,7 @@ def truth(field: str, value: object) -> bool:
 
 
 def table(field: str, value: object, holding: Sequence[str], maker: str) -> None:
-    """Check an xarray.Dataset that has these variables, the result of `maker`; ValueError for all else."""
+    """Check an argument that must be a Dataset with these variables, the result of `maker`."""
     good = hasattr(value, "data_vars") and all(name in value for name in holding)  # type: ignore[operator]
     told = value if not hasattr(value, "data_vars") else f"a Dataset of {sorted(map(str, value))}"  # type: ignore[call-overload]
     require(good, field, told, f"it must be the result of `{maker}`, with {', '.join(holding)}")

@@ -247,3 +247,23 @@ def test_assembled_and_given_system_agree():
     ask = ([7.0], ["body.centre.y"], ["body.centre.y"])
     a, b = frequency_response(app, *ask), frequency_response(assemble(app), *ask)
     assert np.array_equal(a.response.values, b.response.values)
+
+
+@pytest.mark.parametrize("speed", [0.0, 500.0])
+def test_many_frequencies_are_the_dense_solve_to_1e_12(state: Equilibrium, speed: float):
+    """Blocks are eliminated several frequencies at a time, in a fixed order of pivots: no digit is lost.
+
+    At 0.1 Hz the shaft floats, ω²m against bearings of 1e8 N/m, and to join it free costs nine digits.
+    """
+    f = np.geomspace(0.1, 1e4, 301)
+    got = frequency_response(state, f, INPUTS, OUTPUTS, speed=speed)["response"].values
+    system, K, C = state.system, state.bearing_K, state.bearing_C
+    exact = np.array([dense(system, K, C, x, INPUTS, OUTPUTS, speed) for x in f])
+    assert (np.abs(got - exact).max(axis=(1, 2)) / np.abs(exact).max(axis=(1, 2))).max() < 1e-12
+
+
+def test_a_frequency_answers_alike_alone_and_among_others(state: Equilibrium):
+    f = np.geomspace(10.0, 5e3, 11)
+    together = frequency_response(state, f, INPUTS, OUTPUTS)["response"].values
+    alone = [frequency_response(state, [x], INPUTS, OUTPUTS)["response"].values[0] for x in f]
+    np.testing.assert_array_equal(together, alone)

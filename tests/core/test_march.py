@@ -193,8 +193,8 @@ def test_harmonic_is_the_twins(name: str) -> None:
     expected = twin.harmonic(system, omega, modulus, Kb, Cb, forces, rows, 500.0)
     assert got.shape == (len(omega), 2, 3)
     scale = np.abs(expected).max(axis=(1, 2), keepdims=True)
-    # bearings of some 1e8 N/m against blocks of 1e4 N/m: four digits cancel in joining the blocks
-    assert (np.abs(got - expected) / scale).max() < 1e-10
+    # blocks are held by their bearings' stiffness where they are joined: only their condition costs digits
+    assert (np.abs(got - expected) / scale).max() < 1e-12
 
 
 def test_harmonic_of_a_block_that_floats_is_the_twins() -> None:
@@ -217,5 +217,5 @@ def test_harmonic_of_a_block_that_floats_is_the_twins() -> None:
     got = core.harmonic(model, omega, modulus, Kb, Cb, forces, rows)
     expected = twin.harmonic(system, omega, modulus, Kb, Cb, forces, rows, 0.0)
     scale = np.abs(expected).max(axis=(1, 2), keepdims=True)
-    # joined only while at most 6 digits of 16 cancel; one or two more for the condition of the parts
-    assert (np.abs(got - expected) / scale).max() < 1e-8
+    # springs of the bearings' size hold it where blocks are joined; at resonance the twin, too, loses some
+    assert (np.abs(got - expected) / scale).max() < 1e-11

@@ -248,7 +248,7 @@ def bearing_sheet(
 def single_bearing(
     bearing: BallBearing, *, radial: float = 0.0, axial: float = 0.0, name: str = "bearing"
 ) -> Equilibrium:
-    """Equilibrium of one bearing whose outer ring stands, its inner ring loaded down and along, held upright.
+    """Equilibrium for the sheet of one bearing: its outer ring stands, its inner ring is loaded and upright.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ STEP_ERROR_MADE = (
 
 
 def warn_if_coarse(system: System, speed: float, dt: float) -> None:
-    """Warn of everything whose period is short for the step size: dt is more than SHARE of it."""
+    """Warn of a step size that is too coarse: dt is more than SHARE of the period of something."""
     coarse = [r for r in rhythms(system, speed) if not dt <= SHARE * r.period]
     if not coarse:
         return

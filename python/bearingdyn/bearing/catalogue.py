@@ -278,7 +278,7 @@ def _listed(designation: str | int, read: Designation, balls: int | None) -> Ent
 
 
 def series_of(bearing: BallBearing) -> str | None:
-    """Series of a bearing by its boundary dimensions, such as "62" or "619"; None where none has them.
+    """Series in the catalogue that has these boundary dimensions, such as "62" or "619", or None.
 
     Parameters
     ----------

@@ -230,7 +230,7 @@ def lubricated(
 
 
 def in_series(inner: ehl.LubricatedContact, outer: ehl.LubricatedContact) -> float:
-    """Damping of two contacts under one force at low frequency, N s/m: c = k²(c_i/k_i² + c_o/k_o²)."""
+    """Damping of one ball by two lubricated contacts, N s/m, at low frequency: k²(c_i/k_i² + c_o/k_o²)."""
     k = 1 / (1 / inner.k0 + 1 / outer.k0)
     return k**2 * (inner.c0 / inner.k0**2 + outer.c0 / outer.k0**2)
 

@@ -11,7 +11,7 @@ from bearingdyn.magnitude import plausible
 
 @dataclass(frozen=True)
 class OilSupply:
-    """The oil of a running bearing: with it as `lubrication`, an equilibrium finds film and damping itself.
+    """Oil supplied to a running bearing: as its `lubrication`, film and damping follow from the equilibrium.
 
     Parameters
     ----------

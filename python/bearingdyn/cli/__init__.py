@@ -14,9 +14,9 @@ from collections.abc import Sequence
 from typing import Literal
 
 from bearingdyn.cli.bearing import run_bearing
+from bearingdyn.cli.check_demo_version import run_check, run_demo, run_version
 from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, LAW, T_REF, run_fit
 from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
-from bearingdyn.cli.own import run_check, run_demo, run_version
 from bearingdyn.cli.show import run_show
 from bearingdyn.results import versions
 

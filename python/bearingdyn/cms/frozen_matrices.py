@@ -16,7 +16,7 @@ SYMMETRY = 1e-9
 
 
 def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """A frozen, read-only copy of an array. Raises ValueError for another shape or a non-finite entry."""
+    """A part's matrix or vector frozen, a read-only copy; ValueError for a wrong shape or entry."""
     array = np.array(value, dtype=np.float64)
     if array.shape != shape:
         raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")

@@ -71,7 +71,7 @@ def pivots(A: Any) -> Array:
 
 
 def order_of(A: Any) -> Index:
-    """Order of elimination for the factors of many matrices of one pattern, found once; see Factors.
+    """The order in which `Factors` of many matrices of one pattern eliminate, found once.
 
     Parameters
     ----------

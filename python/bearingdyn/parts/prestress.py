@@ -43,7 +43,7 @@ UNSTABLE = (
 
 
 def check_law(law: object) -> Hyperelastic:
-    """The law, neo-Hookean for None; ValueError for anything that has no derivatives."""
+    """Check the law of a prestress: neo-Hookean for None; ValueError for what has no derivatives."""
     if law is None:
         return NEO_HOOKE
     require(

@@ -60,7 +60,7 @@ _AZIMUTHS = 16  # of a quarter turn: ln γ averages to 1e-4 over them
 
 @dataclass(frozen=True, eq=False)
 class RevolvedModes:
-    """Undamped modes of a revolved body, of one Fourier order.
+    """Undamped modes of a `Revolved` part, of one Fourier order.
 
     Parameters
     ----------

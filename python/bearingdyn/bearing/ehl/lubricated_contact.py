@@ -203,7 +203,7 @@ def solve(
 def look_up(
     contact: PointContact, lubricant: Lubricant, F: float, us: float, temperature: float
 ) -> LubricatedContact:
-    """Film of a lubricated contact in SI units under a load by the table, in microseconds.
+    """A lubricated contact in SI units under a load, looked up in the table in microseconds.
 
     Parameters
     ----------

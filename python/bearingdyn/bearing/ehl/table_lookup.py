@@ -149,7 +149,7 @@ def lookup(M: float, L: float, D: float) -> Lookup:
 
 
 def in_table(L: float, D: float) -> bool:
-    """Whether the table holds loads for L and D."""
+    """Whether a lookup in the table can serve L and D."""
     _, (L_low, L_high), (D_low, D_high) = _pieces().ends
     return (
         L_low - _SLACK <= L <= L_high + _SLACK and D > 0 and D_low - _SLACK <= math.log(D) <= D_high + _SLACK

@@ -21,7 +21,7 @@ _LOADED = (52.0, 100.0, 192.0, 370.0, 709.0, 1360.0, HIGHEST)
 
 
 def loads(ratio: float) -> tuple[float, ...]:
-    """The M of the solutions for one D, increasing."""
+    """Where the table has its solutions for one D: M, increasing."""
     low = lowest(math.log(ratio))
     turn = [float(f"{math.exp(low + x * (math.log(HIGHEST) - low)):.4g}") for x in _TURN]
     return (*turn, *(M for M in _LOADED if M > 1.2 * turn[-1]))

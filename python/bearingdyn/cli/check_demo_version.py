@@ -15,7 +15,7 @@ from bearingdyn.cli.outcome import FAILED, GOOD
 
 
 def run_check(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The command that is a check: a row for each case; the code says whether all hold."""
+    """The command `bearingdyn check`: a row for each case; the code says whether all hold."""
     from bearingdyn.check import check
 
     found = check(lambda done, total: _tell(f"check {done} of {total}"))
