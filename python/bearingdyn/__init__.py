@@ -12,6 +12,7 @@ from importlib import import_module
 SUBPACKAGES = {
     "bearing": "bearing",
     "catalogue": "bearing.catalogue",
+    "examples": "examples",
     "material": "material",
     "plot": "plot",
     "study": "study",
@@ -153,6 +154,9 @@ PUBLIC = {
             "Scheme",
             "SolverError",
         ),
+    },
+    "model": {
+        "model": ("Analysis", "Model", "read_model", "write_model"),
     },
     "result": {
         "results": (

@@ -1,4 +1,4 @@
-"""The way back: an object that is asked for its picture reaches the end of the line, by name, when it is asked.
+"""The way back: an object asked for its picture reaches the end of the line, by name, when it is asked.
 
 Data moves from the rooms to `plot` and never back; this one door is what a method such as `Application.draw`
 needs, and no room imports `plot` for it.
