@@ -103,6 +103,21 @@ docs: $(VENV)/package $(VENV)/docs
 	$(PY) -m sphinx -W --keep-going -n -q -d $(BUILD)/doctrees docs $(BUILD)/docs
 	@echo open $(BUILD)/docs/index.html
 
+# A source archive that needs no git, a wheel built from it, and the wheel tested in an empty environment, where no
+# compiler is found: published cases, the ten lines of a ready machine, its drawing and its model file.
+.PHONY: wheel
+DIST := $(BUILD)/dist
+wheel: $(VENV)/tools
+	rm -rf $(DIST) && mkdir -p $(DIST)/source $(DIST)/empty
+	$(PY) tests/make_sdist.py $(DIST)
+	tar -xzf $(DIST)/bearingdyn-*.tar.gz -C $(DIST)/source --strip-components=1
+	cd $(DIST)/source && $(CURDIR)/$(PY) -m pip --disable-pip-version-check --quiet wheel --no-deps \
+	  --no-build-isolation --wheel-dir .. .
+	$(PYTHON) -m venv $(DIST)/venv
+	$(DIST)/venv/bin/python -m pip --disable-pip-version-check --quiet install $(DIST)/bearingdyn-*.whl
+	cd $(DIST)/empty && CC=/nonexistent PATH=$(CURDIR)/$(DIST)/venv/bin $(CURDIR)/$(DIST)/venv/bin/python \
+	  $(CURDIR)/tests/wheel_trial.py
+
 clean:
 	rm -rf $(VENV) $(BUILD) out docs/_static .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find python tests examples benchmarks notebooks docs -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true

@@ -242,7 +242,7 @@ BAD = [
     ('mass = "= weight"\n', "", 16, "parts.rotor", "RigidBody lacks mass"),
     ("width = ", "widht = ", 26, "parts.layer", "did you mean 'width'"),
     ('"16 mm"', '"16 mm mm"', 26, "parts.layer.width", "is in mm mm"),
-    ('"16 mm"', '"= 16 * mm * mm * mm"', 26, "parts.layer.width", "width is"),
+    ('"16 mm"', '"= 16 * mm * mm"', 34, "bearings.ball.outer", "of it lie on layer.inner"),
     ('"16 mm"', '"16 MPa"', 26, "parts.layer.width", "it must be in m"),
     ('"16 mm"', "16", 26, "parts.layer.width", "in mm"),
     ('"16 mm"', '"= 16 * mmm"', 26, "parts.layer.width", "did you mean 'mm'"),
@@ -340,25 +340,26 @@ def mutated(text: str, draw: random.Random) -> str:
     return "\n".join(lines)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::UserWarning")
 def test_200_mutated_files_are_refused_with_line_and_key_or_run(bench: Path) -> None:
     text, draw = bench.read_text(encoding="utf-8"), random.Random(21)
-    refused = ran = 0
-    for k in range(200):
+    refused, ran = [], 0
+    for _ in range(200):
         bench.write_text(mutated(text, draw), encoding="utf-8")
         try:
             found = bd.read_model(bench).run()
         except ValueError as error:
-            # of the whole file, what is missing has no line
-            assert re.search(r"bench\.toml(, line \d+)?, [\w\[\].\-\"']+: ", str(error)), (k, str(error))
-            refused += 1
+            refused.append(str(error))
         except SolverError:  # a machine that is read, and has no equilibrium
-            refused += 1
+            refused.append("bench.toml, line 0, x: no equilibrium")
         else:
             assert isinstance(found, dict)
             ran += 1
-    assert refused + ran == 200
-    assert refused > 80
+    # what is missing from the whole file has no line
+    unsaid = [e for e in refused if not re.search(r"bench\.toml(, line \d+)?, [\w\[\].\-\"']+: ", e)]
+    assert not unsaid
+    assert len(refused) > 80
     assert ran > 10
 
 
@@ -366,7 +367,8 @@ def test_200_mutated_files_are_refused_with_line_and_key_or_run(bench: Path) -> 
 
 
 def test_lines_of_keys() -> None:
-    text = '# c\na = 1\n[b.c]\n"d e" = """x\n]y"""\nf = [1, # [\n 2, {g = "}"}]\n[[h]]\ni.j = 2\n[[h]]\n[h.k]\nl = \'a"b\'\n'
+    text = '# c\na = 1\n[b.c]\n"d e" = """x\n]y"""\nf = [1, # [\n 2, {g = "}"}]\n'
+    text += "[[h]]\ni.j = 2\n[[h]]\n[h.k]\nl = 'a\"b'\n"
     found = key_lines(text)
     wanted = {
         ("a",): 2,

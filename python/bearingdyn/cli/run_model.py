@@ -22,12 +22,12 @@ def run_model(arguments: argparse.Namespace) -> tuple[str, int]:
     if found:
         save(found, out)
     rows = {
-        name: {"analysis": str(data.attrs.get("analysis", "")), "sizes": dict(data.sizes)}
+        name: {"analysis": str(data.attrs.get("analysis", "")), "sizes": _sizes(data)}
         for name, data in found.items()
     }
     if arguments.json:
         return json.dumps({"file": str(out) if found else None, "results": rows}, indent=1), GOOD
-    lines = [f"{name:<24} {row['analysis']}: {_sizes(row['sizes'])}" for name, row in rows.items()]
+    lines = [f"{name:<24} {row['analysis']}: {row['sizes']}" for name, row in rows.items()]
     if not found:
         return "the model asks for no analysis; add [[analyses]] with a type", GOOD
     return "\n".join([*lines, "", f"written to {out}"]), GOOD
@@ -67,5 +67,6 @@ def _parameters(given: list[str]) -> dict[str, Any]:
     return found
 
 
-def _sizes(sizes: dict[str, int]) -> str:
-    return ", ".join(f"{count} {name}" for name, count in sizes.items())
+def _sizes(data: Any) -> str:
+    """How large a Dataset is, in words."""
+    return ", ".join(f"{count} {name}" for name, count in data.sizes.items())

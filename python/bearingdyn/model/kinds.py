@@ -38,13 +38,13 @@ def kinds() -> dict[str, type]:
 
 
 @lru_cache(maxsize=200)
-def _signature(kind: type) -> dict[str, inspect.Parameter]:
+def _signature(kind: Any) -> dict[str, inspect.Parameter]:
     known = inspect.signature(kind).parameters
     return {name: p for name, p in known.items() if name not in ("self", "overrides")}
 
 
 @lru_cache(maxsize=200)
-def _nested(kind: type) -> dict[str, str]:
+def _nested(kind: Any) -> dict[str, str]:
     """The one noun that a field can hold, where its annotation names one: its `type` may be left out."""
     names = kinds()
     scope = {**vars(sys.modules[kind.__module__]), **{n: k for n, k in names.items()}}
@@ -95,6 +95,7 @@ class Shelf:
             require(
                 isinstance(table, dict), dotted_last(key), table, "it must be a table, such as {type = …}"
             )
+        with at(self.origin, (*key, "type")):
             name = table.get("type", expected)
             require(
                 name is not None, "type", None, f"it must say what this is: {', '.join(only) or 'a noun'}"
@@ -106,8 +107,9 @@ class Shelf:
         with at(self.origin, key):
             wanted = _signature(kind)
             for field in table:
-                if field != "type" and field not in wanted:
-                    raise ValueError(f"{field} is no field of {name}; {meant(field, wanted)}")
+                with at(self.origin, (*key, field)):
+                    if field != "type" and field not in wanted:
+                        raise ValueError(f"{field} is no field of {name}; {meant(field, wanted)}")
             for field, parameter in wanted.items():
                 plain = parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL)
                 if plain and parameter.default is parameter.empty and field not in table:
@@ -224,5 +226,5 @@ def _same(value: Any, default: Any) -> bool:
     if value is default:
         return True
     if isinstance(value, Mapping):
-        return not value and (default == {} or isinstance(default, dataclasses._HAS_DEFAULT_FACTORY_CLASS))  # type: ignore[attr-defined]
+        return not value
     return type(value) is type(default) and not isinstance(value, np.ndarray) and bool(value == default)

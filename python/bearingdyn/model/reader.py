@@ -79,7 +79,7 @@ def read_model(path: str | os.PathLike[str], **parameters: float | str) -> Model
     _loads(shelf, app, held)
     state = _state(shelf, held)
     asked = _analyses(shelf, held)
-    with at(origin, ("parts",), (f"{name}." for name in app.plan.parts)):
+    with at(origin, ("parts",), app.plan.parts):
         app.plan.check_joints()
     title = held.get("title", "")
     with at(origin, ("title",)):

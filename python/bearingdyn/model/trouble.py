@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
 
 from bearingdyn.model.key_lines import Key
 
@@ -35,7 +37,7 @@ def dotted(key: Key) -> str:
 
 
 @contextmanager
-def at(origin: Origin, key: Key, fields: Iterable[str] = ()) -> Iterator[None]:
+def at(origin: Origin, key: Key, fields: Mapping[str, Any] = MappingProxyType({})) -> Iterator[None]:
     """What goes wrong within is told with its file, line and key.
 
     Parameters
@@ -45,7 +47,7 @@ def at(origin: Origin, key: Key, fields: Iterable[str] = ()) -> Iterator[None]:
     key
         Of the table that is being read.
     fields
-        Its fields: where a message names one, its line is told.
+        Its fields and their values: where a message names one, its line is told.
     """
     try:
         yield
@@ -53,10 +55,9 @@ def at(origin: Origin, key: Key, fields: Iterable[str] = ()) -> Iterator[None]:
         raise
     except (ValueError, TypeError, ArithmeticError, OSError, AttributeError, LookupError) as error:
         text = str(error) or type(error).__name__
-        named = [
-            (m.start(), name.rstrip("."))
-            for name in fields
-            if (m := re.search(rf"\b{re.escape(name.rstrip('.'))}\b", text))
+        named = [(text.find(repr(v)), k) for k, v in fields.items() if isinstance(v, str) and repr(v) in text]
+        named = named or [
+            (m.start(), name) for name in fields if (m := re.search(rf"\b{re.escape(name)}\b", text))
         ]
         place = (*key, min(named)[1]) if named else key
         raise Located(f"{origin.told(place)}: {text}") from error

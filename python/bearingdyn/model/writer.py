@@ -98,7 +98,7 @@ def model_text(model: Model) -> str:
         blocks.append(_section(("temperatures",), plan.temperatures))
     balls: dict[int, str] = {}
     for name, joint in plan.bearings.items():
-        ends = {"inner": str(joint.inner), "outer": str(joint.outer)}
+        ends: dict[str, Any] = {"inner": str(joint.inner), "outer": str(joint.outer)}
         ends |= {"offset": joint.offset} if joint.offset else {}
         if id(joint.bearing) in balls:
             own: dict[str, Any] = {"like": balls[id(joint.bearing)]}
