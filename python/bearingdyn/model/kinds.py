@@ -199,16 +199,17 @@ def table_of(
             f"{field} is a {name}, which no text can hold; it must be made of what it was made of, such as a "
             f"bd.Housing instead of its superelement"
         )
-    nested = _nested(type(value))
+    kind: Any = type(value)
+    nested = _nested(kind)
     table: dict[str, Any] = {} if name == expected else {"type": name}
-    held = {p: getattr(value, p) for p in _signature(type(value)) if p not in ("kappa", "cage_ratio", "arm")}
+    held = {p: getattr(value, p) for p in _signature(kind) if p not in ("kappa", "cage_ratio", "arm")}
     overrides = getattr(value, "overrides", None)
     if overrides is not None:
         held |= overrides._asdict()
     else:
-        own = {"kappa", "cage_ratio", "arm"} & _signature(type(value)).keys()
+        own = {"kappa", "cage_ratio", "arm"} & _signature(kind).keys()
         held |= {p: getattr(value, p) for p in own}
-    for key, parameter in _signature(type(value)).items():
+    for key, parameter in _signature(kind).items():
         one = held[key]
         if (name, key) in LEFT_OUT or one is None or _same(one, parameter.default):
             continue
