@@ -18,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 FLAGS = ["-std=c11", "-D_POSIX_C_SOURCE=200809L", "-O3", "-ffp-contract=off", "-fno-math-errno"]
-HOT = ("balls", "ehl", "receptance", "step")
+HOT = ("balls", "ehl", "exact", "receptance", "step")
 SETS: list[tuple[str, str, list[str]]] = [("base", "2", [])]
 if platform.machine().lower() in ("x86_64", "amd64"):
     FLAGS.append("-DBD_HAVE_X86_SETS")

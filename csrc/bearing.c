@@ -117,8 +117,11 @@ bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const 
     memcpy(padded_z, z, n * sizeof *z);
     memcpy(padded_rate, z_rate, n * sizeof *z_rate);
     kernels->turn(&bearing, &work, angle);
-    if (!bd_bearing_perfect(&bearing))
-        bd_bearing_imperfect(&bearing, &work, angle, cage_speed, shaft);
+    if (!bd_bearing_perfect(&bearing)) {
+        const bd_bodies stand = bd_bearing_bodies(data, angle, shaft.angle);
+        const bd_bodies turn = bd_bearing_bodies(data, cage_speed, shaft.speed);
+        bd_bearing_imperfect(&bearing, &work, &stand, &turn);
+    }
     kernels->force(&bearing, &work, padded_z, padded_rate, cage_speed, padded_g);
     kernels->tangent(&bearing, &work, cage_speed, (int)coefs, padded_K, padded_C);
 

@@ -49,8 +49,11 @@ bool bd_bearing_perfect(const bd_bearing *bearing);
  * was worked out. */
 bool bd_bearing_runs_off(const bd_bearing *bearing, const bd_bearing_work *work);
 
-/* Shifts of all balls at the first ball's azimuth psi and the shaft's turn. */
-void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, double psi,
-                          double cage_speed, bd_turn turn);
+/* A bearing's bodies where the shaft has turned so far and the first ball stands at psi; of speeds likewise. */
+bd_bodies bd_bearing_bodies(const bd_bearing_data *data, double psi, double turned);
+
+/* Shifts of all balls where the bodies stand so and turn so fast. */
+void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, const bd_bodies *angle,
+                          const bd_bodies *speed);
 
 #endif

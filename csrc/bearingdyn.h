@@ -190,6 +190,12 @@ typedef struct bd_bearing_data {
     double open_sine; /* sine of the contact angle on the open side from which a ball runs off */
 } bd_bearing_data;
 
+/* Of the bodies of a bearing their angles, rad, or speeds, rad/s: the azimuth of the first ball, the rings, and the spin
+ * of a ball about its own axis. */
+typedef struct bd_bodies {
+    double cage, inner, outer, spin;
+} bd_bodies;
+
 typedef struct bd_bearing bd_bearing;           /* as kept in a model */
 typedef struct bd_bearing_work bd_bearing_work; /* scratch of one bearing */
 
@@ -292,6 +298,7 @@ int bd_model_channels(const bd_model *model);
 int bd_model_bearings(const bd_model *model);
 int bd_model_coefs(const bd_model *model);
 int bd_model_layers(const bd_model *model);
+int bd_model_loads(const bd_model *model);
 int bd_model_softening(const bd_model *model); /* how many layers soften */
 int bd_model_size(const bd_model *model);
 
@@ -406,6 +413,7 @@ typedef struct bd_state {
     double *g_before;  /* (2 coefs_padded) those of the two steps before it */
     double *inverse;   /* (coefs_padded^2) Newton's frozen inverse */
     bd_energy *energy;
+    double *q; /* behind the rest, of an exact march only: the numbers of its modes */
 } bd_state;
 
 bd_state bd_state_view(const bd_model *model, double *flat);
@@ -446,6 +454,38 @@ double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double
 bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                    bd_work *work, double *flat);
 
+/* The exact step of the linear part at a constant speed (exact.c): each group of coupled coordinates in modes of its
+ * own, all prepared for one step size. Sections are padded to whole lanes: of each group the real modes, the real parts
+ * of pairs, their imaginary parts, and displacements that nothing holds, which are integrals of their velocity. Of a
+ * row's product with a pair twice the real part counts, which the rows hold already. */
+typedef struct bd_exact_data {
+    int n_groups;
+    long long n, n_loose, n_stresses; /* numbers of all groups; of loose rows; stresses, unpadded */
+    const double *table;              /* (n_groups x 3) sizes of the sections: real, pairs, loose */
+    const double
+        *weights; /* (6 x n) of the modes; forces at -1, 0, 1 on a parabola, 0, 1 on a line */
+    const double *loose; /* (6 x n_loose) the same of loose displacements, per mode a row of them */
+    const double *P, *Z; /* (n_coefs x n), (n x 2 n_coefs): bearing forces in, z and z_rate out */
+    const double *
+        load; /* (2 n_loads x n): over a step, per factor at its start; of a table, start and end */
+    const double *X, *V, *A, *S; /* (n x n coordinates) x, v, a without forces; (n x n_stresses) */
+    const double
+        *W; /* (4 x n_coefs^2) minus z and z_rate per force at the end: on a line, on a parabola */
+} bd_exact_data;
+
+typedef struct bd_exact bd_exact;
+
+/* Doubles of a state that is marched so. */
+size_t bd_exact_size(const bd_model *model, const bd_exact_data *data);
+
+/* In place of bd_prepare: bd_march then takes exact steps. The mass matrix must be the identity.
+ * Returned: BD_OK; BD_BAD_SHAPE where arrays do not fit; BD_BAD_VALUE where the speed varies or a layer softens */
+bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
+                           const bd_exact_data *data, bd_work *work);
+
+/* After the last bd_march of exact steps: x, v, a and the stresses of the state from its modes. */
+void bd_exact_end(const bd_model *model, const bd_work *work, double *flat);
+
 /* Largest load of one ball of a bearing, N, at the end of any step marched with this work. */
 double bd_peak_load(const bd_model *model, const bd_work *work, int bearing);
 
@@ -465,6 +505,37 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
 bd_status bd_bearing_single(const bd_bearing_data *data, const double *z, const double *z_rate,
                             double angle, double cage_speed, bd_turn shaft, double *g, double *K,
                             double *C, double *loads);
+
+/* ---------------------------------------------------------------- a given motion (along.c) */
+
+/* One bearing through many samples of a motion that is known, as the balance of harmonics needs it. */
+typedef struct bd_along_data {
+    int n;                    /* samples */
+    const double *z, *z_rate; /* (n x n_coefs) */
+    const bd_bodies
+        *angle; /* (n) of each body by itself: the bodies need not stand as in one march */
+    bd_bodies speed;
+    double
+        window; /* s between samples, over which a force that jumps as a film closes is spread; 0: not */
+} bd_along_data;
+
+/* What comes of it; K and C may both be NULL. */
+typedef struct bd_along {
+    double *g;     /* (n x n_coefs) */
+    double *K, *C; /* (n x n_coefs x n_coefs) dg/dz, dg/dzdot */
+    double *loads; /* (n x n_balls) */
+    /* (n) W: power that contacts turn into heat, that presses the balls in all, and that turning feeds in */
+    double *heat, *pressing, *turning;
+} bd_along;
+
+/* Doubles of scratch that bd_bearing_along needs. */
+size_t bd_bearing_along_size(const bd_bearing_data *data);
+
+/* Given:    a checked bearing; scratch, zeroed
+ * Returned: BD_OK, or BD_NOT_FINITE where a force overflows
+ * Notes:    the kernels of the march, so that both find the same motion */
+bd_status bd_bearing_along(const bd_bearing_data *data, const bd_along_data *motion,
+                           double *scratch, bd_along *found);
 
 /* ---------------------------------------------------------------- one bearing at rest (settle.c) */
 
@@ -498,8 +569,11 @@ typedef struct bd_harmonic_data {
     const double *omega;   /* (n_omega) rad/s */
     const double *modulus; /* (n_omega x n_layers) complex G*, re and im interleaved */
     const double *bearing_K, *bearing_C; /* (coefs x coefs) row-major, linearised bearings */
-    const double *force;                 /* (n_in x n) */
-    const double *row;                   /* (n_out x n) */
+    int n_balls;          /* that answer by frequency besides: sum of ball v v^T is added */
+    const double *ball;   /* (n_omega x n_balls) complex, N/m */
+    const double *across; /* (n_balls x coefs) v */
+    const double *force;  /* (n_in x n) */
+    const double *row;    /* (n_out x n) */
     bd_isa isa; /* of the kernels; the best where this machine lacks it. All give the same bits */
 } bd_harmonic_data;
 

@@ -143,6 +143,8 @@ bd_fault bd_scheme_fault(const bd_scheme *scheme)
         return (bd_fault){"times", "one or more finite times, each later than the one before"};
     if (!all_finite(speed->value, (size_t)speed->n))
         return (bd_fault){"speeds", "finite"};
+    if (!isfinite(speed->time[0] * speed->value[0]))
+        return (bd_fault){"times", "a first time to which the shaft's angle is a finite number"};
     if (!bd_isa_available(scheme->isa))
         return (bd_fault){"isa",
                           "an instruction set that this machine and build have; \"best\" is"};

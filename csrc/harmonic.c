@@ -2,7 +2,7 @@
  *
  * D(omega) = K + speed N - omega^2 M + i omega (C + speed G) + sum_l 2 G*_l(omega) L_l L_l^T is block-diagonal; the
  * linearised bearings join the blocks through a few coefficients y = B x alone:
- *     (D + B^T Z B) x = F,   Z = K_b + i omega C_b.
+ *     (D + B^T Z B) x = F,   Z = K_b + i omega C_b + balls.
  * Each block b is held by springs S at the coefficients that it sees, D' = D + B_b^T S B_b, and joined to the others
  * by what they lack, h_b = Z sum_c y_c - S y_b, with y_b = B_b x:
  *     x = X_F - sum_b X_b h_b,   (I + P Y) h = P Y_F,   X_F = D'^-1 F,  X_b = D'^-1 B_b^T,
@@ -252,6 +252,19 @@ static bd_status write_response(const bd_model *model, const bd_harmonic_data *d
     return BD_OK;
 }
 
+/* Adds the balls that answer by frequency, sum of ball v v^T, to Z (m x m). */
+static void add_balls(const bd_harmonic_data *data, int index, size_t m, complex_t *Z)
+{
+    for (size_t b = 0; b < (size_t)data->n_balls; b++) {
+        const double *ball = data->ball + 2 * ((size_t)index * (size_t)data->n_balls + b);
+        const double *v = data->across + b * m;
+        for (size_t kl = 0; kl < m * m; kl++) {
+            const double both = v[kl / m] * v[kl % m];
+            Z[kl] += complex_of(ball[0] * both, ball[1] * both);
+        }
+    }
+}
+
 bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const bd_lapack *lapack,
                       bd_harmonic_work *work, int first, int count, double *response)
 {
@@ -276,6 +289,7 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
             const complex_t *RX = work->RX + (size_t)lane * n_out * all;
             for (size_t kl = 0; kl < m * m; kl++)
                 work->Z[kl] = complex_of(work->Kb[kl], work->omega[lane] * work->Cb[kl]);
+            add_balls(data, from + lane, m, work->Z);
             if (whole[lane] || join_blocks(model, data, lapack, work, (size_t)lane)) {
                 if (solve_whole(model, data, lapack, work, from + lane))
                     return BD_SINGULAR_DYNAMIC;

@@ -58,17 +58,21 @@ static void add_pit(const bd_bearing *bearing, const bd_pit *pit, double radius,
     *shift_rate -= slope * radius * rate;
 }
 
-void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, double psi,
-                          double cage_speed, bd_turn turn)
+bd_bodies bd_bearing_bodies(const bd_bearing_data *data, double psi, double turned)
+{
+    return (bd_bodies){psi, data->inner_ratio * turned, data->outer_ratio * turned,
+                       data->spin_ratio * turned};
+}
+
+void bd_bearing_imperfect(const bd_bearing *bearing, bd_bearing_work *work, const bd_bodies *angle,
+                          const bd_bodies *speed)
 {
     const bd_bearing_data *data = &bearing->data;
-    const double spin = data->spin_ratio * turn.angle, spin_rate = data->spin_ratio * turn.speed;
-    const double inner = data->inner_ratio * turn.angle, outer = data->outer_ratio * turn.angle;
-    const double inner_speed = data->inner_ratio * turn.speed,
-                 outer_speed = data->outer_ratio * turn.speed;
+    const double psi = angle->cage, inner = angle->inner, outer = angle->outer;
+    const double spin = angle->spin, spin_rate = speed->spin;
     /* the first ball's azimuth on each race, and how fast the race runs past it */
-    const double on_inner = psi - inner, inner_rate = cage_speed - inner_speed;
-    const double on_outer = psi - outer, outer_rate = cage_speed - outer_speed;
+    const double on_inner = psi - inner, inner_rate = speed->cage - speed->inner;
+    const double on_outer = psi - outer, outer_rate = speed->cage - speed->outer;
     double **cleared[] = {&work->shift_X,      &work->shift_Y,      &work->shift,
                           &work->shift_X_rate, &work->shift_Y_rate, &work->shift_rate};
 

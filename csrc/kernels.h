@@ -1,6 +1,6 @@
 /* kernels.h - inside the core: the hot loops, once per instruction set.
  *
- * ehl.c, balls.c, step.c and receptance.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
+ * ehl.c, balls.c, step.c, exact.c and receptance.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
  * functions carry the name as a suffix, and each set ends in one table of pointers. Nothing else of
  * the core depends on the instruction set. */
 #ifndef BD_KERNELS_H
@@ -45,6 +45,11 @@ typedef struct bd_kernels {
     /* receptance.c: what rows and columns of a block see of each other at `width` frequencies */
     void (*receptance)(const bd_receptance *block, const double *omega, const double *moduli,
                        double *memory, double *response, double *growth);
+    /* exact.c: as predict and observe, as commit, and what bearing forces are to the modes, of an exact step */
+    void (*exact_predict)(const bd_model *model, bd_work *work, const bd_state *state);
+    int (*exact_commit)(const bd_model *model, bd_work *work, bd_state *state);
+    void (*exact_shares)(const bd_model *model, const bd_exact *exact, const double *g,
+                         double *shares);
 } bd_kernels;
 
 /* The kernels of an instruction set, or NULL where this build or machine lacks it. */

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static double sampled(const bd_load *load, double t)
+double bd_load_sampled(const bd_load *load, double t)
 {
     int low = 0, high = load->n_samples - 1;
     if (t <= load->time[0])
@@ -43,7 +43,7 @@ void bd_load_factors(const bd_model *model, bd_work *work, double t)
             break;
         }
         case BD_LOAD_SAMPLED:
-            factor[0] = sampled(load, t);
+            factor[0] = bd_load_sampled(load, t);
             break;
         }
     }

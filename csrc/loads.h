@@ -8,4 +8,7 @@
  * work->load_factor. */
 void bd_load_factors(const bd_model *model, bd_work *work, double t);
 
+/* The value of a table at a time, linear between, its ends held. */
+double bd_load_sampled(const bd_load *load, double t);
+
 #endif

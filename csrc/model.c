@@ -508,6 +508,11 @@ int bd_model_layers(const bd_model *model)
     return model->n_layers;
 }
 
+int bd_model_loads(const bd_model *model)
+{
+    return model->n_loads;
+}
+
 int bd_model_softening(const bd_model *model)
 {
     return model->n_softening;

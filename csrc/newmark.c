@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "energy.h"
+#include "exact.h"
 #include "kernels.h"
 #include "loads.h"
 #include "newton.h"
@@ -40,7 +41,8 @@ static bd_status solve_step(const bd_model *model, bd_work *work, bd_state *stat
     if (!work->drift) {
         if (!bearings)
             return BD_OK;
-        work->kernels->observe(model, work);
+        if (!work->exact)
+            work->kernels->observe(model, work);
         return bd_solve_bearings(model, work, state, report);
     }
 
@@ -67,10 +69,11 @@ static bd_status solve_step(const bd_model *model, bd_work *work, bd_state *stat
 
 /* ---------------------------------------------------------------- march */
 
-static void record_row(const bd_model *model, const bd_work *work, const bd_state *state,
-                       double *row)
+static void record_row(const bd_model *model, const bd_work *work, bd_state *state, double *row)
 {
     const double *const motion[] = {state->x, state->v, state->a};
+    if (work->exact && work->exact->physical)
+        bd_exact_motion(model, work, state);
     for (int c = 0; c < model->n_channels; c++) {
         const bd_channel *channel = &model->channels[c];
         double value = 0.0;
@@ -78,6 +81,10 @@ static void record_row(const bd_model *model, const bd_work *work, const bd_stat
         case BD_CHANNEL_DISPLACEMENT:
         case BD_CHANNEL_VELOCITY:
         case BD_CHANNEL_ACCELERATION:
+            if (work->exact) {
+                value = bd_exact_row(model, work, state, c);
+                break;
+            }
             for (int i = 0; i < model->n_padded; i++)
                 value += channel->row[i] * motion[channel->kind][i];
             break;
@@ -162,6 +169,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         bd_clock_restart(&state.clock, dt);
         state.clock.inverse_set = false;
     }
+    if (work->exact)
+        bd_exact_recall(model, work, &state);
     for (; report->steps < n_steps; report->steps++) {
         const double t = bd_clock_time(&state.clock, 1);
         if (bd_softening_moved(model, &state)) {
@@ -174,7 +183,12 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         /* the structure without its bearings */
         work->turn = bd_turn_at(&work->profile, t, 0.5 * dt, 0.5 * dt);
         bd_load_factors(model, work, t);
-        work->kernels->predict(model, work, &state);
+        if (work->exact) {
+            bd_exact_choose(model, work, &state, bd_clock_time(&state.clock, 0));
+            work->kernels->exact_predict(model, work, &state);
+        } else {
+            work->kernels->predict(model, work, &state);
+        }
 
         /* the bearings, on their own few numbers */
         if (model->n_bearings > 0)
@@ -184,7 +198,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
             break;
 
         /* both together; only now does the state change */
-        if (work->kernels->commit(model, work, &state)) {
+        if (work->exact ? work->kernels->exact_commit(model, work, &state)
+                        : work->kernels->commit(model, work, &state)) {
             report->status = BD_NOT_FINITE;
             break;
         }
@@ -194,6 +209,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         count_open_sides(model, work, t, report);
         for (int b = 0; b < model->n_bearings; b++)
             work->kernels->keep_peaks(&model->bearings[b], &work->bearings[b]);
+        if (scheme->audit && work->exact)
+            bd_exact_motion(model, work, &state);
         if (scheme->audit)
             bd_energy_step(model, work, &state);
 

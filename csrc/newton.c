@@ -28,9 +28,12 @@ void bd_turn_bearings(const bd_model *model, bd_work *work)
         const bd_bearing *bearing = &model->bearings[b];
         const double psi = bearing->data.angle0 + bearing->data.cage_ratio * work->turn.angle;
         work->kernels->turn(bearing, &work->bearings[b], psi);
-        if (!bd_bearing_perfect(bearing))
-            bd_bearing_imperfect(bearing, &work->bearings[b], psi,
-                                 bearing->data.cage_ratio * work->turn.speed, work->turn);
+        if (!bd_bearing_perfect(bearing)) {
+            const double cage_speed = bearing->data.cage_ratio * work->turn.speed;
+            const bd_bodies stand = bd_bearing_bodies(&bearing->data, psi, work->turn.angle);
+            const bd_bodies turn = bd_bearing_bodies(&bearing->data, cage_speed, work->turn.speed);
+            bd_bearing_imperfect(bearing, &work->bearings[b], &stand, &turn);
+        }
     }
 }
 
@@ -62,6 +65,13 @@ static int refresh(const bd_model *model, bd_work *work)
                                work->C);
         for (size_t k = 0; k < n; k++)
             for (size_t l = 0; l < n; l++) {
+                if (work->exact) {
+                    for (size_t c = 0; c < m; c++)
+                        work->J[(at + k) * m + c] +=
+                            work->K[k * stride + l] * work->W[c * m + at + l] +
+                            work->C[k * stride + l] * work->W_rate[c * m + at + l];
+                    continue;
+                }
                 double tangent =
                     work->in_x * work->K[k * stride + l] + work->in_v * work->C[k * stride + l];
                 for (size_t c = 0; c < m; c++)

@@ -80,7 +80,8 @@ bd_status bd_profile_take(bd_profile *profile, const bd_speed *speed)
         for (size_t k = 0; k < n; k++)
             angle[k] -= turned;
     }
-    return BD_OK;
+    return isfinite(angle[n - 1]) ? BD_OK
+                                  : BD_BAD_VALUE; /* finite knots turn it beyond all numbers */
 }
 
 void bd_profile_free(bd_profile *profile)

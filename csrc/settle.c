@@ -43,9 +43,10 @@ bd_settle *bd_settle_create(const bd_bearing_data *data, double angle, double sh
     s->step = s->r + n;
     s->factor = s->step + n;
     s->kernels->turn(&s->bearing, &s->work, angle);
-    if (!bd_bearing_perfect(&s->bearing))
-        bd_bearing_imperfect(&s->bearing, &s->work, angle, 0.0,
-                             (bd_turn){.speed = 0.0, .rate = 0.0, .angle = shaft_angle});
+    if (!bd_bearing_perfect(&s->bearing)) {
+        const bd_bodies stand = bd_bearing_bodies(data, angle, shaft_angle), still = {0};
+        bd_bearing_imperfect(&s->bearing, &s->work, &stand, &still);
+    }
     return s;
 }
 

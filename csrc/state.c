@@ -77,6 +77,7 @@ bd_state bd_state_view(const bd_model *model, double *flat)
     state.g_before = state.g + m;
     state.inverse = state.g_before + 2 * m;
     state.energy = (bd_energy *)(void *)(state.inverse + m * m);
+    state.q = flat + bd_state_size(model);
     return state;
 }
 

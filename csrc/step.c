@@ -1,6 +1,7 @@
 /* The linear algebra of one step; the order of the calls is in newmark.c. */
 #include "balls.h"
 #include "dense.h"
+#include "exact.h"
 #include "maxwell.h"
 #include "receptance.h"
 #include "work.h"
@@ -166,6 +167,18 @@ static void displace(const bd_model *model, bd_work *work)
         LANES_AT(work->z + k) = LANES(work->z_linear + k) - in_x * Wg;
         LANES_AT(work->z_rate + k) = LANES(work->z_rate_linear + k) - in_v * Wg;
     }
+    if (!work->exact)
+        return;
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+        LANES_AT(work->Wg + k) = (lanes){0};
+    for (int b = 0; b < model->n_bearings; b++) {
+        const int at = model->bearing_slot[b];
+        columns_add(model->coefs, model->bearings[b].data.n_coefs,
+                    work->W_rate + (size_t)at * (size_t)model->coefs, model->coefs,
+                    work->guess + at, work->Wg);
+    }
+    for (int k = 0; k < model->coefs; k += BD_WIDTH)
+        LANES_AT(work->z_rate + k) = LANES(work->z_rate_linear + k) - LANES(work->Wg + k);
 }
 
 /* guess += share * inverse (force - guess); returns through `change` what force and guess differed. */
@@ -256,4 +269,7 @@ const bd_kernels BD_NAMED(bd_kernels) = {
     .correct = correct,
     .commit = commit,
     .receptance = BD_NAMED(bd_receptance_solve),
+    .exact_predict = BD_NAMED(bd_exact_predict),
+    .exact_commit = BD_NAMED(bd_exact_commit),
+    .exact_shares = BD_NAMED(bd_exact_shares),
 };

@@ -109,6 +109,7 @@ void bd_work_free(bd_work *work)
     free(work->bearings);
     bd_profile_free(&work->profile);
     free(work->drift);
+    bd_exact_free(work->exact);
     free(work);
 }
 

@@ -9,6 +9,9 @@
 
 typedef struct bd_kernels bd_kernels;
 
+/* Safe on NULL. */
+void bd_exact_free(bd_exact *exact);
+
 struct bd_work {
     bd_scheme scheme;  /* its speed is the profile's */
     double in_x, in_v; /* beta dt^2, gamma dt: what an acceleration adds to x and to v */
@@ -28,6 +31,9 @@ struct bd_work {
     double *SB;      /* S^-1 B^T: a column per padded coefficient */
     double *SP;      /* S^-1 p: two columns per load (cosine, sine) */
     double *W;       /* B S^-1 B^T: a column per padded coefficient */
+    double *
+        W_rate; /* of an exact step, where W is of z alone and both hold what in_x and in_v are for */
+    bd_exact *exact;            /* or NULL */
     bd_branch_weights *weights; /* (branches) layer by layer */
 
     /* vectors of a step, padded */

@@ -87,18 +87,30 @@ def friswell() -> Application:
     return app
 
 
-def jis_rotor(r_inner: float = 40.1e-3, r_outer: float = 63.9e-3) -> Application:
-    """A rigid rotor on one JIS 6306, loaded along x; radii of the raceways, m."""
+def jis_rotor(r_inner: float = 40.1e-3, r_outer: float = 63.9e-3, clearance: float = 20e-6) -> Application:
+    """A rigid rotor on one JIS 6306, loaded along x; radii of the raceways and radial clearance a side, m."""
+    app = _jis_rotor(r_inner, r_outer, clearance)
+    app.ground("rotor.centre", damping=(200, 200, 200, 0.1, 0.1, 0.1))
+    return app
+
+
+def held_jis_rotor(clearance: float = 20e-6) -> Application:
+    """The same, moving in its plane alone: what is not x or y is held and damped."""
+    app = _jis_rotor(40.1e-3, 63.9e-3, clearance)
+    app.ground("rotor.centre", stiffness=(0, 0, 1e7, 1e5, 1e5, 1e5), damping=(200, 200, 1e4, 50, 50, 50))
+    return app
+
+
+def _jis_rotor(r_inner: float, r_outer: float, clearance: float) -> Application:
     app = Application()
     app.add("rotor", RigidBody(20.0, (0.1, 0.1, 0.1)))
-    app.ground("rotor.centre", damping=(200, 200, 200, 0.1, 0.1, 0.1))
     bearing = BallBearing(
         8,
         (r_outer - r_inner) / 2,
         (r_outer + r_inner) / 2,
         0.52,
         0.52,
-        clearance=40e-6,
+        clearance=2 * clearance,
         kappa=13.34e9,
         cage_ratio=r_inner / (r_inner + r_outer),
     )

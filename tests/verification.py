@@ -12,6 +12,7 @@ from pathlib import Path
 
 from verified import (
     application,
+    arrangements,
     bearings,
     contacts,
     ehl,
@@ -43,6 +44,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Factors of the rating standards": ratings.factors,
     "Reference lives": ratings.reference_lives,
     "Heat in slab and ring": ratings.heat,
+    "Bearings in arrangements": arrangements.arranged,
     "Balls with inertia": bearings.jones_harris,
     "Paired bearings": bearings.pairs,
     "Press fits": bearings.fits,

@@ -107,6 +107,9 @@ double bd_py_seconds(void);
 /* A bearing as BearingKernel.packed returns it. Returned: 0, or -1 with an exception. */
 int bd_py_parse_bearing(PyObject *keep, PyObject *dict, bd_bearing_data *bearing);
 
+/* Modes of an exact step, as analysis/exact_step.py makes them. Returned: 0, or -1 with an exception. */
+int bd_py_parse_exact(PyObject *keep, const bd_model *model, PyObject *dict, bd_exact_data *exact);
+
 /* A scheme as core.Scheme.packed returns it, with what cannot be marched with refused. */
 int bd_py_parse_scheme(PyObject *keep, PyObject *dict, bd_scheme *scheme);
 
@@ -115,13 +118,18 @@ PyObject *bd_py_bearing_settle(PyObject *module, PyObject *args);
 PyObject *bd_py_check_scheme(PyObject *module, PyObject *dict);
 extern const char bd_py_bearing_force_doc[], bd_py_bearing_settle_doc[], bd_py_check_scheme_doc[];
 
+/* ---------------------------------------------------------------- along.c */
+
+PyObject *bd_py_bearing_along(PyObject *module, PyObject *args);
+extern const char bd_py_bearing_along_doc[];
+
 /* ---------------------------------------------------------------- model.c, march.c, harmonic.c: Model */
 
 extern PyType_Spec bd_py_model_spec;
 
 const bd_model *bd_py_model_of(PyObject *object);
-/* A private copy of a state of this model. */
-double *bd_py_state_of(PyObject *keep, const bd_model *model, PyObject *object);
+/* A private copy of a state of this model, with so many numbers behind it for an exact march; -1: any. */
+double *bd_py_state_of(PyObject *keep, const bd_model *model, PyObject *object, npy_intp modes);
 
 PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords);
 PyObject *bd_py_harmonic(PyObject *object, PyObject *args);

@@ -3,18 +3,21 @@
 
 #include <limits.h>
 
-const char bd_py_harmonic_doc[] = PyDoc_STR(
-    "harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress) -> response\n\n"
-    "omega (f,), modulus (f, layers) complex, bearing_K and bearing_C (coefs, coefs),\n"
-    "force (inputs, n), row (outputs, n); response (f, outputs, inputs) complex.");
+const char bd_py_harmonic_doc[] =
+    PyDoc_STR("harmonic(omega, speed, modulus, bearing_K, bearing_C, ball, across, force, row, "
+              "progress) -> response\n\n"
+              "omega (f,), modulus (f, layers) complex, bearing_K and bearing_C (coefs, coefs),\n"
+              "ball (f, balls) complex, across (balls, coefs), force (inputs, n), row (outputs, "
+              "n); response (f, outputs, inputs) complex.");
 
 PyObject *bd_py_harmonic(PyObject *object, PyObject *args)
 {
     const bd_model *model = bd_py_model_of(object);
-    PyObject *omega_in, *modulus_in, *K_in, *C_in, *force_in, *row_in, *progress, *response = NULL;
+    PyObject *omega_in, *modulus_in, *K_in, *C_in, *ball_in, *across_in, *force_in, *row_in,
+        *progress, *response = NULL;
     bd_harmonic_data data = {0};
-    if (!PyArg_ParseTuple(args, "OdOOOOOO:harmonic", &omega_in, &data.speed, &modulus_in, &K_in,
-                          &C_in, &force_in, &row_in, &progress))
+    if (!PyArg_ParseTuple(args, "OdOOOOOOOO:harmonic", &omega_in, &data.speed, &modulus_in, &K_in,
+                          &C_in, &ball_in, &across_in, &force_in, &row_in, &progress))
         return NULL;
     bd_py_module *module = PyType_GetModuleState(Py_TYPE(object));
     PyObject *keep = PyList_New(0);
@@ -34,17 +37,25 @@ PyObject *bd_py_harmonic(PyObject *object, PyObject *args)
         bd_py_require_finite(PyArray_DATA(modulus), 2 * PyArray_SIZE(modulus), "modulus") ||
         !(data.bearing_K = bd_py_doubles(keep, K_in, "bearing_K", 2, coefs, coefs)) ||
         !(data.bearing_C = bd_py_doubles(keep, C_in, "bearing_C", 2, coefs, coefs)) ||
+        !(data.across = bd_py_doubles(keep, across_in, "across", 2, -1, coefs)))
+        goto done;
+    const npy_intp n_balls = bd_py_rows(keep);
+    PyArrayObject *ball = bd_py_copy(keep, ball_in, NPY_CDOUBLE, "ball", 2, n_omega, n_balls);
+    if (!ball || bd_py_require_finite(PyArray_DATA(ball), 2 * PyArray_SIZE(ball), "ball") ||
         !(data.force = bd_py_doubles(keep, force_in, "force", 2, -1, n)))
         goto done;
     const npy_intp n_in = bd_py_rows(keep);
     if (!(data.row = bd_py_doubles(keep, row_in, "row", 2, -1, n)))
         goto done;
     const npy_intp n_out = bd_py_rows(keep);
-    if (n_omega > INT_MAX || n_in > 100000 || n_out > 100000) {
-        PyErr_SetString(PyExc_ValueError, "harmonic: too many frequencies, inputs or outputs");
+    if (n_omega > INT_MAX || n_in > 100000 || n_out > 100000 || n_balls > 100000) {
+        PyErr_SetString(PyExc_ValueError,
+                        "harmonic: too many frequencies, inputs, outputs or balls");
         goto done;
     }
     data.modulus = PyArray_DATA(modulus);
+    data.ball = PyArray_DATA(ball);
+    data.n_balls = (int)n_balls;
     data.n_omega = (int)n_omega;
     data.n_in = (int)n_in;
     data.n_out = (int)n_out;

@@ -4,8 +4,10 @@
 #include <string.h>
 
 const char bd_py_march_doc[] = PyDoc_STR(
-    "march(state, steps, decimate, scheme, start, progress) -> record, state, report\n\n"
-    "scheme: a dict, see core.Scheme. The GIL is released. A new state is returned; the one given\n"
+    "march(state, steps, decimate, scheme, start, progress, modes=None) -> record, state, "
+    "report\n\n"
+    "modes: None for Newmark's steps, else a dict for exact ones. scheme: a dict, see core.Scheme. "
+    "The GIL is released. A new state is returned; the one given\n"
     "is not touched. progress(done, total) is called every 0.05 s. report: a dict of\n"
     "REPORT_FIELDS, and of peaks, the largest load of one ball of each bearing. An interrupt "
     "(Ctrl-C) ends the march with the status INTERRUPTED and what was\n"
@@ -37,13 +39,14 @@ static PyObject *peaks_of(const bd_model *model, const bd_work *work)
 PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
 {
     const bd_model *model = bd_py_model_of(object);
-    static char *names[] = {"state", "steps", "decimate", "scheme", "start", "progress", NULL};
-    PyObject *state_in, *scheme_in, *progress, *result = NULL;
+    static char *names[] = {"state", "steps",    "decimate", "scheme",
+                            "start", "progress", "modes",    NULL};
+    PyObject *state_in, *scheme_in, *progress, *modes_in = Py_None, *result = NULL;
     long long steps, decimate;
     int start;
     bd_scheme scheme;
-    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OLLOpO:march", names, &state_in, &steps,
-                                     &decimate, &scheme_in, &start, &progress))
+    if (!PyArg_ParseTupleAndKeywords(args, keywords, "OLLOpO|O:march", names, &state_in, &steps,
+                                     &decimate, &scheme_in, &start, &progress, &modes_in))
         return NULL;
     if (steps < 0 || steps >= 1LL << 53 || decimate < 1) {
         PyErr_Format(PyExc_ValueError,
@@ -61,10 +64,14 @@ PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
     const npy_intp channels = bd_model_channels(model);
     PyObject *state = NULL, *record = NULL;
     bd_work *work = NULL;
-    const double *given = bd_py_state_of(keep, model, state_in);
+    bd_exact_data exact = {0};
+    const bool exactly = modes_in != Py_None;
+    if (exactly && bd_py_parse_exact(keep, model, modes_in, &exact))
+        goto done;
+    const double *given = bd_py_state_of(keep, model, state_in, (npy_intp)exact.n);
     if (!given || bd_py_parse_scheme(keep, scheme_in, &scheme))
         goto done;
-    const size_t size = bd_state_size(model);
+    const size_t size = bd_exact_size(model, &exact);
     state = bd_py_new_array(1, (npy_intp)size, 0);
     record = bd_py_new_array(2, (npy_intp)(steps / decimate + 1), channels);
     work = bd_work_create(model);
@@ -81,11 +88,12 @@ PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
         bd_soften(model, &scheme, flat, false, work);
         if (start)
             status = bd_start(model, &scheme, &module->lapack, work, flat);
+        const double speed = bd_reference_speed(model, &scheme, flat, start != 0);
         if (status == BD_OK)
-            status = bd_prepare(model, &scheme, &module->lapack,
-                                bd_reference_speed(model, &scheme, flat, start != 0), work);
+            status = exactly ? bd_exact_prepare(model, &scheme, &exact, work)
+                             : bd_prepare(model, &scheme, &module->lapack, speed, work);
     Py_END_ALLOW_THREADS
-    if (status == BD_BAD_VALUE || status == BD_NO_MEMORY) {
+    if (status == BD_BAD_VALUE || status == BD_BAD_SHAPE || status == BD_NO_MEMORY) {
         /* the scheme has been checked: what is left is the speed that the state was factored at */
         bd_py_raise(status, "the state's clock, or the speed at its time");
         goto done;
@@ -128,6 +136,8 @@ PyObject *bd_py_march(PyObject *object, PyObject *args, PyObject *keywords)
         if (stop > 0 && total.status == BD_OK)
             total.status = BD_INTERRUPTED;
     }
+    if (total.steps > 0)
+        bd_exact_end(model, work, flat);
     /* a step refuses motion and stresses that are not finite; an audit's energies, and a start without steps, do not */
     if (total.status >= BD_OK && !all_finite(flat, size))
         total.status = BD_NOT_FINITE;

@@ -260,9 +260,15 @@ static PyObject *model_state(PyObject *object, PyObject *args)
     return state;
 }
 
-double *bd_py_state_of(PyObject *keep, const bd_model *model, PyObject *object)
+double *bd_py_state_of(PyObject *keep, const bd_model *model, PyObject *object, npy_intp modes)
 {
-    double *state = bd_py_doubles(keep, object, "state", 1, (npy_intp)bd_state_size(model), -1);
+    const npy_intp size = (npy_intp)bd_state_size(model);
+    double *state = bd_py_doubles(keep, object, "state", 1, modes < 0 ? -1 : size + modes, -1);
+    if (state && bd_py_rows(keep) < size) {
+        PyErr_Format(PyExc_ValueError, "state has %zd numbers; it must have %zd",
+                     (Py_ssize_t)bd_py_rows(keep), (Py_ssize_t)size);
+        return NULL;
+    }
     if (state &&
         !(state[1] >= 0.0 && state[1] < 9007199254740992.0 && state[2] >= 0.0)) { /* 2^53 */
         PyErr_SetString(PyExc_ValueError,
@@ -286,7 +292,7 @@ static PyObject *model_unpack(PyObject *object, PyObject *args)
     if (!keep)
         return NULL;
     PyObject *x = NULL, *v = NULL, *a = NULL, *energy = NULL;
-    double *state = bd_py_state_of(keep, model, state_in);
+    double *state = bd_py_state_of(keep, model, state_in, -1);
     if (state) {
         x = bd_py_new_array(1, bd_model_size(model), 0);
         v = bd_py_new_array(1, bd_model_size(model), 0);

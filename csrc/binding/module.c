@@ -76,6 +76,7 @@ static PyObject *status_text(PyObject *module, PyObject *args)
 static PyMethodDef module_methods[] = {
     {"maxwell_stress", maxwell_stress, METH_VARARGS, maxwell_stress_doc},
     {"bearing_force", bd_py_bearing_force, METH_VARARGS, bd_py_bearing_force_doc},
+    {"bearing_along", bd_py_bearing_along, METH_VARARGS, bd_py_bearing_along_doc},
     {"bearing_settle", bd_py_bearing_settle, METH_VARARGS, bd_py_bearing_settle_doc},
     {"check_scheme", bd_py_check_scheme, METH_O, bd_py_check_scheme_doc},
     {"status_text", status_text, METH_VARARGS, status_text_doc},

@@ -47,6 +47,7 @@ class Model:
         scheme: dict[str, object],
         start: bool,
         progress: Callable[[int, int], object] | None,
+        modes: dict[str, _Array] | None = None,
     ) -> tuple[_Array, _Array, dict[str, Any]]: ...
     def harmonic(
         self,
@@ -55,6 +56,8 @@ class Model:
         modulus: NDArray[np.complex128],
         bearing_K: _Array,
         bearing_C: _Array,
+        ball: NDArray[np.complex128],
+        across: _Array,
         force: _Array,
         row: _Array,
         progress: Callable[[int, int], object] | None,
@@ -74,6 +77,16 @@ def bearing_force(
     shaft_speed: float,
     /,
 ) -> tuple[_Array, _Array, _Array, _Array]: ...
+def bearing_along(
+    bearing: dict[str, object],
+    z: _Array,
+    z_rate: _Array,
+    angle: _Array,
+    speed: _Array,
+    window: float,
+    tangents: bool,
+    /,
+) -> tuple[_Array, _Array, _Array, _Array, _Array, _Array | None, _Array | None]: ...
 def bearing_settle(
     bearing: dict[str, object], loads: _Array, radius: _Array, angle: float, shaft_angle: float, /
 ) -> tuple[_Array, _Array, _Array]: ...

@@ -30,6 +30,7 @@ ISAS = _core.ISAS
 ENERGIES = _core.ENERGIES
 REPORT_FIELDS = _core.REPORT_FIELDS
 INTERRUPTED = _core.STATUSES["INTERRUPTED"]
+NO_CONVERGENCE = _core.STATUSES["NO_CONVERGENCE"]
 
 
 class Packable(Protocol):
@@ -293,6 +294,74 @@ def bearing_settle(
     return _core.bearing_settle(kernel.packed(), loads, radius, angle, shaft_angle)
 
 
+@dataclass(frozen=True, eq=False)
+class Along:
+    """One bearing through the samples (s) of a motion.
+
+    Parameters
+    ----------
+    g
+        Force on its coefficients (s, n), N.
+    loads
+        Of the balls (s, Z), N.
+    heat, pressing, turning
+        Power that its contacts turn into heat, that presses its balls in all (over a period the same), and
+        that cage and rings feed in (s,), W.
+    K, C
+        Tangents dg/dz, dg/dż (s, n, n); empty where they were not asked for.
+    """
+
+    g: Array
+    loads: Array
+    heat: Array
+    pressing: Array
+    turning: Array
+    K: Array
+    C: Array
+
+    __repr__ = short
+
+
+def bearing_along(
+    kernel: Packable,
+    z: Array,
+    z_rate: Array,
+    angle: Array,
+    speed: Array,
+    *,
+    window: float = 0.0,
+    tangents: bool = True,
+) -> Along:
+    """Forces of a bearing, sample by sample, along a motion that is given.
+
+    Parameters
+    ----------
+    kernel
+        The bearing, as `BearingKernel` packs it.
+    z, z_rate
+        Coefficients (s, n) of the raceways, m and rad, and their rates.
+    angle
+        (s, 4) rad: azimuth of the first ball, turn of the inner ring, of the outer ring, spin of a ball. They
+        need not belong to one time.
+    speed
+        (4,) of the same, rad/s.
+    window
+        Time between samples, s, over which a force that jumps as a film closes is spread; 0 for none.
+    tangents
+        Whether K and C are wanted.
+
+    Raises
+    ------
+    ArithmeticError
+        Where a force is not finite.
+    """
+    g, loads, heat, pressing, turning, K, C = _core.bearing_along(
+        kernel.packed(), z, z_rate, angle, speed, window, tangents
+    )
+    none = np.zeros((0, 0, 0))
+    return Along(g, loads, heat, pressing, turning, none if K is None else K, none if C is None else C)
+
+
 def march(
     model: Model,
     state: Array,
@@ -302,6 +371,7 @@ def march(
     *,
     start: bool = False,
     progress: Progress | None = None,
+    modes: dict[str, Array] | None = None,
 ) -> tuple[Array, Array, Report]:
     """March a state in the core, and say how far it came, whatever the status.
 
@@ -317,6 +387,8 @@ def march(
         Whether the acceleration is first made to satisfy the equation of motion.
     progress
         Told of the steps done and of all there are, every 0.05 s.
+    modes
+        For exact steps, the linear part's own (`analysis.exact_step`); None for Newmark's.
 
     Returns
     -------
@@ -324,7 +396,13 @@ def march(
         The record (rows, channels), the new state, and the report.
     """
     record, new_state, report = model.march(
-        state=state, steps=steps, decimate=decimate, scheme=stepping.packed(), start=start, progress=progress
+        state=state,
+        steps=steps,
+        decimate=decimate,
+        scheme=stepping.packed(),
+        start=start,
+        progress=progress,
+        modes=modes,
     )
     return record, new_state, Report(**report)
 
@@ -339,6 +417,7 @@ def harmonic(
     row: Array,
     speed: float = 0.0,
     progress: Progress | None = None,
+    balls: tuple[Complex, Array] | None = None,
 ) -> Complex:
     """Complex response (frequencies, outputs, inputs) of the core's model to unit forces.
 
@@ -358,6 +437,9 @@ def harmonic(
         Of the shaft, rad/s, for the gyroscopic and circulatory forces.
     progress
         Told of the frequencies done and of all there are.
+    balls
+        What balls add to that by frequency: stiffness (f, balls), N/m, and the v (balls, coefficients) of
+        each, whose v vᵀ it multiplies.
 
     Returns
     -------
@@ -373,7 +455,9 @@ def harmonic(
     ----------
     Paper, eq (20).
     """
-    return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, force, row, progress)
+    none = np.zeros((np.size(omega), 0), dtype=np.complex128), np.zeros((0, np.size(bearing_K, -1)))
+    ball, across = none if balls is None else balls
+    return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, ball, across, force, row, progress)
 
 
 def time_of(model: Model, state: Array) -> float:

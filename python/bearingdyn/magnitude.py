@@ -177,7 +177,11 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             "", (0.5, 1e4), (0.5, 1.0), "a groove's radius is 0.51 to 0.56 Dw, and 100 Dw is flat"
         ),
         "clearance": Magnitude(
-            "of Dw", (0.0, 0.1), (0.0, 0.04), "radial clearances (ISO 5753) are below Dw/80"
+            "of Dw",
+            (-0.02, 0.1),
+            (-0.005, 0.04),
+            "radial clearances (ISO 5753) are below Dw/80, and balls clamped by Dw/200 have 4.2 GPa",
+            by_size=False,
         ),
         "mount clearance": Magnitude(
             "m", (0.0, 0.1), (0.0, 2e-3), "fits leave some µm to some tenths of a mm", (_UM, _MM)

@@ -73,6 +73,16 @@ class BearingWarning(Notice):
     """
 
 
+class ClampedBalls(Notice):
+    """Notice: fits and temperatures have eaten a bearing's clearance, and its rings clamp the balls.
+
+    When: `Mounting.mounted` leaves a deep-groove bearing less than no clearance. The text says how hard each
+    ball is pressed before any load.
+
+    Remedy: looser fits, or a larger clearance class; none where the bearing is meant to run clamped.
+    """
+
+
 class PassedOver(Notice):
     """Notice: a designation says something that the model of a bearing does not know.
 

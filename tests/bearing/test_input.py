@@ -63,7 +63,7 @@ class TestBadInput:
             ("Dw", 0.0), ("Dw", -1e-3), ("Dw", "0.0115"), ("Dw", math.nan),
             ("Dpw", 0.0), ("Dpw", math.inf), ("Dpw", 20e-3),
             ("fi", 0.5), ("fi", 0.49), ("fi", math.nan), ("fo", 0.5), ("fo", -1.0), ("fo", math.nan),
-            ("clearance", -1e-6), ("clearance", math.nan), ("clearance", 10.0), ("clearance", "C3"),
+            ("clearance", -1e-3), ("clearance", math.nan), ("clearance", 10.0), ("clearance", "C3"),
             ("film", -1e-7), ("film", math.nan), ("damping", -30.0),
             ("damping", math.nan), ("damping", "oil"),
             ("kappa", 0.0), ("kappa", math.nan), ("cage_ratio", 1.5), ("cage_ratio", math.nan),

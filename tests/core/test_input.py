@@ -320,6 +320,7 @@ def test_a_march_names_what_is_wrong_in_its_scheme() -> None:
         (scheme | {"gamma": None}, "scheme.gamma is None"),
         (scheme | {"times": np.array([np.nan])}, "scheme.times"),
         (scheme | {"times": np.zeros(2), "speeds": np.zeros(2)}, "scheme.times"),
+        (scheme | {"times": np.array([6e305]), "speeds": np.array([300.0])}, "scheme.times"),
         (scheme | {"speeds": np.zeros(2)}, "scheme.speeds"),
         (scheme | {"max_iterations": 2**31 - 1}, "scheme.max_iterations is 2147483647; it must be 1 to 1000"),
         (scheme | {"isa": 4}, "scheme.isa is 4"),

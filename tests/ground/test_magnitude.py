@@ -13,7 +13,7 @@ from bearingdyn.bearing.catalogue import bearing, estimate
 from bearingdyn.bearing.mounting import Mounting, Seat
 from bearingdyn.fem import box_mesh
 from bearingdyn.material import OutsideBand, PowerLaw, fit_dense
-from bearingdyn.notice import AssumedMeaning, UnlikelyModulus, warn
+from bearingdyn.notice import AssumedMeaning, ClampedBalls, UnlikelyModulus, UnusualMagnitude, warn
 from bearingdyn.parts import Region
 
 SOFT = bd.Maxwell(1e6, [2e6], [1e-3], K=2e9, density=1200.0)
@@ -70,12 +70,17 @@ def test_clearance_in_micrometres_is_refused(clearance):
         bd.BallBearing(**BALLS, clearance=clearance)
 
 
-def test_negative_clearance_is_told_what_to_give_instead():
-    with pytest.raises(ValueError, match=r"clearance is -1e-06; .*give clearance=0 .* contact_angle"):
-        bd.BallBearing(**BALLS, clearance=-1e-6)
-    tight = Mounting(25e-3, 52e-3, Seat(60e-6))
-    with pytest.raises(ValueError, match=r"looser fits.*give clearance=0 and load .* contact_angle"):
-        tight.mounted(bd.BallBearing(**BALLS, clearance=1e-6))
+def test_balls_that_would_yield_and_clearance_that_is_eaten_are_told():
+    with pytest.raises(ValueError, match=r"clearance is -0.001; balls squeezed by more than Dw/50.* µm"):
+        bd.BallBearing(**BALLS, clearance=-1e-3)
+    with pytest.warns(UnusualMagnitude, match=r"clearance.*clamped by Dw/200 have 4.2 GPa"):
+        bd.BallBearing(**BALLS, clearance=-6e-5)
+    tight = Mounting(25e-3, 52e-3, Seat(25e-6))
+    with pytest.warns(ClampedBalls, match=r"take 20.1 µm of a clearance of 1 µm: .* GPa\) .*looser fits"):
+        left = tight.mounted(bd.BallBearing(**BALLS, clearance=1e-6)).clearance
+    assert left == pytest.approx(1e-6 - 25e-6 * 25 / 31.1, rel=1e-3)
+    with pytest.raises(ValueError, match=r"clearance is -0.0.*looser fits.*the balls yield"):
+        Mounting(25e-3, 52e-3, Seat(400e-6)).mounted(bd.BallBearing(**BALLS, clearance=1e-6))
 
 
 def test_catalogue_takes_the_designation_as_a_number_too():

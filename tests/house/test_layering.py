@@ -301,6 +301,11 @@ MAY_NAME_WORDS = {
         "bearingdyn.analysis.frequency_response",
         "CHANNEL_KINDS",
     ): "the units of a response",
+    (
+        "bearingdyn.analysis.steady.motion",
+        "CHANNEL_KINDS",
+    ): "how often a motion's amplitudes are derived in time",
+    ("bearingdyn.analysis.steady.torus", "PIT_KINDS"): "how the base frequency of each body is called",
     ("bearingdyn.bearing.ball_bearing", "PIT_KINDS"): "how far each body turns as the balls go round",
     ("bearingdyn.runfile", "REPORT_FIELDS"): "what files of version 1 hold, which will not change",
 }

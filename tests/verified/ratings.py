@@ -64,6 +64,12 @@ def reference_lives() -> list[Row]:
         ("Fr = Fa = 1 kN, 10 µm", loose, (1e3, 0, 1e3, 0, 0, 0), 1630.5367),
         ("M = 1 N m, no clearance", tight, (0, 0, 0, 1.0, 0, 0), 785144.75),
     ]
+    # the same code's other cases, github.com/minzhun/ISO16281, Test_BallBearing.py
+    others = [
+        ("Fr = 1 kN, 10 µm", loose, (1e3, 0, 0, 0, 0, 0), 10795.7948),
+        ("Fa = 1 kN, 10 µm", loose, (0, 0, 1e3, 0, 0, 0), 3115.8781),
+        ("Fr = Fa = 1 kN, M = 1 N m, 10 µm", loose, (1e3, 0, 1e3, 1.0, 0, 0), 1627.7479),
+    ]
     mean = dataclasses.replace(loose, overrides=loose.overrides._replace(arm=43.5 * MM / 2))
     q = mean.displacement((1e3, 0, 1e3, 0, 0, 0))
     metal = steel(206.843e9)
@@ -78,6 +84,11 @@ def reference_lives() -> list[Row]:
             "§4.5", 3e-4, "the digits of the code's own deflections", CODE,
             [(f"{what}: L10r (million rev.)", life, rating_life(b, f, C=23400.0))
              for what, b, f, life in cases],
+        )
+        + rows(
+            "§4.5", 3e-4, "the digits of the code's own deflections", f"{CODE}, github.com/minzhun/ISO16281",
+            [(f"{what}: L10r (million rev.)", life, rating_life(b, f, C=23400.0))
+             for what, b, f, life in others],
         )
         + rows(
             "§4.5", 1e-4, "the digits given", CODE,

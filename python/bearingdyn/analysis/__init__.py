@@ -8,6 +8,7 @@ from bearingdyn.analysis.energy_shares import energy_shares
 from bearingdyn.analysis.envelope import envelope_spectrum
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.frequency_response import frequency_response
+from bearingdyn.analysis.loaded_cage import cage_ratios, with_loaded_cages
 from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.operating_point import (
@@ -24,6 +25,7 @@ from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
+from bearingdyn.analysis.steady import steady_state
 from bearingdyn.analysis.stiffness_table import export_stiffness, ross_table, stiffness_table
 from bearingdyn.analysis.thermal_network import ThermalNetwork
 from bearingdyn.analysis.transient import transient, transients
@@ -40,6 +42,7 @@ __all__ = [
     "ThermalRunaway",
     "ball_channels",
     "bearing_sheet",
+    "cage_ratios",
     "campbell",
     "contact_statistics",
     "dissipation",
@@ -64,10 +67,12 @@ __all__ = [
     "spectrum",
     "state_space",
     "static_summary",
+    "steady_state",
     "stiffness_table",
     "track_orders",
     "transient",
     "transients",
     "unbalance_response",
     "waterfall",
+    "with_loaded_cages",
 ]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bearingdyn.analysis.lubricated_balls import LubricatedBalls
 from bearingdyn.bearing import NET, RIGID, RacewaySeries
 from bearingdyn.types import Array
 
@@ -26,6 +27,8 @@ class BearingState:
         Of the balls (Z,), N.
     series
         Which coefficients they are; between rigid rings there are five.
+    balls
+        Pressed balls on films, which answer by frequency; None where K and C say all.
     """
 
     z: Array
@@ -34,6 +37,7 @@ class BearingState:
     C: Array
     loads: Array
     series: RacewaySeries = RIGID
+    balls: LubricatedBalls | None = None
 
     def __repr__(self) -> str:
         """One line: the loaded balls, the force and the stiffness."""

@@ -102,19 +102,19 @@ def dissipation(
         memory=memory,
         least_steps=1,
     )
-    sinks = _sinks(march.modal)
-    channels = [sink.channels() for sink in sinks]
+    losing = sinks(march.modal)
+    channels = [sink.channels() for sink in losing]
     model = march.model([channel for own in channels for channel in own])
     dt, sizes = march.stepping.dt, [len(own) for own in channels]
 
     state = march.start(model)
-    energy, last, done = np.zeros(len(sinks)), np.zeros((0, len(sinks))), 0
+    energy, last, done = np.zeros(len(losing)), np.zeros((0, len(losing))), 0
     # the power of the last state before the record is the first that counts
     with told(progress, "step") as tell:
         for rows, _, report in march.pieces(
             model, state, start=True, size=PIECE, keep_settled=True, progress=tell
         ):
-            power = np.vstack([last, _powers(sinks, sizes, rows)])
+            power = np.vstack([last, _powers(losing, sizes, rows)])
             if len(power):
                 energy += dt * (power.sum(axis=0) - 0.5 * (power[0] + power[-1]))
             last, done = power[-1:], done + report.steps
@@ -137,31 +137,31 @@ def dissipation(
             "status": report.text,
             **inputs_of(march.system.inputs),
         },
-        {"part": ([s.name for s in sinks], "")},
+        {"part": ([s.name for s in losing], "")},
     )
     return march.ended(result, replace(report, steps=done))
 
 
-def _sinks(system: System) -> list[Sink]:
+def sinks(system: System) -> list[Sink]:
     """What loses energy in a system, in its own coordinates."""
     none = np.zeros((0, system.n))
-    sinks = []
+    found = []
     layer = 0
     for part in system.parts:
-        sinks.append(Sink(part.name, factor(np.asarray(part.element.C)).T @ part.place))
+        found.append(Sink(part.name, factor(np.asarray(part.element.C)).T @ part.place))
         for _ in part.element.viscoelastic:
             term = system.layers[layer]
             eta0 = float(getattr(term.material, "eta0", 0.0))
             name = f"{part.name} (shear)"
-            sinks.append(Sink(name, none, (core.CHANNEL_KINDS["branch_loss"], 0, layer)))
+            found.append(Sink(name, none, (core.CHANNEL_KINDS["branch_loss"], 0, layer)))
             if eta0 > 0.0:
-                sinks.append(Sink(f"{part.name} (shear, η0)", math.sqrt(2.0 * eta0) * term.L.T))
+                found.append(Sink(f"{part.name} (shear, η0)", math.sqrt(2.0 * eta0) * term.L.T))
             layer += 1
     for spring in system.springs:
-        sinks.append(Sink(spring.name, np.sqrt(spring.damping)[:, None] * spring.across))
+        found.append(Sink(spring.name, np.sqrt(spring.damping)[:, None] * spring.across))
     for k, hung in enumerate(system.bearings):
-        sinks.append(Sink(hung.name, none, (core.CHANNEL_KINDS["contact_loss"], k, 0)))
-    return [s for s in sinks if s.channel is not None or s.rows.any()]
+        found.append(Sink(hung.name, none, (core.CHANNEL_KINDS["contact_loss"], k, 0)))
+    return [s for s in found if s.channel is not None or s.rows.any()]
 
 
 def _powers(sinks: list[Sink], sizes: list[int], rows: Array) -> Array:

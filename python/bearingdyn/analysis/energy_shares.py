@@ -39,7 +39,8 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
     """Share of each part, bearing and spring in the energy and the loss of the modes that `modes` found.
 
     The shear of a viscoelastic part has an entry of its own, "layer (shear)"; "layer" is the rest of the
-    part: its mass, elastic regions and change of volume. A bearing has its tangent stiffness and damping.
+    part: its mass, elastic regions and change of volume. A bearing has its tangent stiffness and damping,
+    or those of its films, as the modes were found with.
 
     Parameters
     ----------
@@ -70,7 +71,9 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
             f"the modes have {shape.shape[1]} coordinates and the system {system.n}; give modes of this one"
         )
     damped, speed = bool(found.attrs["damped"]), float(found.attrs["speed"])
-    stores = list(_stores(source, system, shape.T, value, damped, speed, str(found.attrs["modulus"])))
+    filmed = damped and found.attrs.get("contacts", "viscous") == "film"
+    modulus = str(found.attrs["modulus"])
+    stores = list(_stores(source, system, shape.T, value, damped, speed, modulus, filmed))
     kinetic = np.array([s.kinetic for s in stores]).T
     stored = np.array([s.stored for s in stores]).T
     lost = np.array([s.lost for s in stores]).T
@@ -113,6 +116,7 @@ def _stores(
     damped: bool,
     speed: float,
     modulus: str,
+    filmed: bool,
 ) -> Iterator[Store]:
     size = np.abs(value) ** 2
     none = np.zeros(value.size)
@@ -146,9 +150,13 @@ def _stores(
     if isinstance(source, Equilibrium):
         for hung in system.bearings:
             state, u = source.bearings[hung.name], hung.B @ phi
-            yield Store(
-                hung.name, none, quadratic(state.K, u).real, loses * size * quadratic(state.C, u).real
-            )
+            stored, lost = quadratic(state.K, u).real, size * quadratic(state.C, u).real
+            if filmed and state.balls is not None:
+                omega = np.abs(value.imag)
+                k, moved = state.balls.stiffness(omega), np.abs(state.balls.across @ u) ** 2
+                stored = stored + np.sum(k.real.T * moved, axis=0)
+                lost = lost + size / omega * np.sum(k.imag.T * moved, axis=0)
+            yield Store(hung.name, none, stored, loses * lost)
 
 
 def _branches(material: Any, value: Complex, damped: bool, modulus: str) -> tuple[Array, Array]:

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bearingdyn.analysis.bearing_state import BearingState
+from bearingdyn.analysis.lubricated_balls import averaged, contact_angles, lubricated_balls
 from bearingdyn.analysis.static_balance import Statics, diagonal_blocks
 from bearingdyn.application import Application
 from bearingdyn.bearing import (
     OPEN_SIDE_REMEDY,
     BallBearing,
-    BearingKernel,
     check_bearing_pressure,
     lubricated,
     runs_off,
@@ -26,7 +26,7 @@ from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
 from bearingdyn.pictures import picture
 from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
-from bearingdyn.types import Array
+from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 
 PARTED = 1e-9
@@ -105,6 +105,27 @@ class Equilibrium:
     def bearing_C(self) -> Array:
         """Tangent damping of all bearings on their coefficients, block-diagonal, N s/m."""
         return diagonal_blocks([b.C for b in self.bearings.values()])
+
+    @property
+    def filmed(self) -> bool:
+        """Whether a bearing runs on films, which answer by frequency."""
+        return any(b.balls is not None for b in self.bearings.values())
+
+    def balls(self, omega: Array) -> tuple[Complex, Array] | None:
+        """What lubricated balls add to that by frequency, of all bearings; None where none runs on films.
+
+        Their stiffness beside the tangents (f, b), N/m, at omega (f,), rad/s, and the v (b, coefs) of each,
+        whose v vᵀ it multiplies.
+        """
+        ends = np.cumsum([0, *(len(b.K) for b in self.bearings.values())])
+        added, across = [], []
+        for first, state in zip(ends, self.bearings.values(), strict=False):
+            if state.balls is not None:
+                added.append(state.balls.stiffness(omega))
+                wide = np.zeros((len(state.balls.across), ends[-1]))
+                wide[:, first : first + len(state.K)] = state.balls.across
+                across.append(wide)
+        return (np.hstack(added), np.vstack(across)) if added else None
 
     def warn_of_unloaded(self) -> None:
         """Warn of every bearing without a pressed ball: about this state it has no stiffness."""
@@ -235,7 +256,15 @@ def equilibrium(
         for term in bearings:
             if isinstance(term.bearing, BallBearing):
                 check_bearing_pressure(term.bearing, states[term.name].loads, f"bearing {term.name!r}, ")
-        passage.append(states)
+        passage.append(
+            {
+                term.name: replace(
+                    states[term.name],
+                    balls=lubricated_balls(term, states[term.name].z, states[term.name].loads),
+                )
+                for term in bearings
+            }
+        )
         if i == 0:
             first, x = replace(system, bearings=bearings), rest.T @ q
     mean = {
@@ -243,6 +272,7 @@ def equilibrium(
             state,
             K=np.mean([s[name].K for s in passage], axis=0),
             C=np.mean([s[name].C for s in passage], axis=0),
+            balls=averaged([s[name].balls for s in passage]),
         )
         for name, state in passage[0].items()
     }
@@ -297,17 +327,6 @@ def _lubricated(system: System, rest: Statics, angle: float, q: Array | None) ->
 def _turned(system: System, angle: float) -> tuple[BearingTerm, ...]:
     """Its bearings with their cages at the angle, rad."""
     return tuple(replace(t, bearing=t.bearing.turned(angle)) for t in system.bearings)
-
-
-def contact_angles(kernel: BearingKernel, z: Array, azimuth: float) -> Array:
-    """Angles of the lines between the groove centres (Z,), rad, of raceway coefficients z, the first ball at
-    the azimuth, rad; surfaces taken as smooth."""
-    psi = azimuth + 2 * math.pi * np.arange(kernel.Z)[:, None] / kernel.Z
-    phi = np.where(kernel.sine, np.sin(kernel.order * psi), np.cos(kernel.order * psi))
-    axial = np.asarray(kernel.axial, dtype=bool)
-    return np.asarray(
-        np.arctan2(kernel.x0 + phi[:, axial] @ z[axial], kernel.y0 + phi[:, ~axial] @ z[~axial])
-    )
 
 
 def state_of(source: object) -> dict[str, str]:

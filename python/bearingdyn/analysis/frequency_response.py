@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, requested
-from bearingdyn.analysis.linearised import linear
+from bearingdyn.analysis.linearised import Contacts, linear
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, softening_layers, warn_of_strain
 from bearingdyn.application import QUANTITIES, RATES, Application
 from bearingdyn.checks import name_list, numbers, one_of, one_speed, positive, require
@@ -45,6 +45,7 @@ def frequency_response(
     speed: float | None = None,
     quantity: str = "displacement",
     amplitude: float | Sequence[float] | Mapping[str, float] | None = None,
+    contacts: Contacts = "film",
     progress: Progress | bool | None = None,
     rpm: float | None = None,
 ) -> xarray.Dataset:
@@ -73,6 +74,10 @@ def frequency_response(
         layers with a law of softening (`Maxwell.payne`) answer to it, each input acting alone. One number for
         all inputs, a number by input, or a list of numbers, the levels. None: layers are linear, as at the
         strain of their isotherms.
+    contacts
+        How lubricated bearings (`BallBearing(lubrication=...)`, or `lubricate`) answer: "film", by the
+        stiffness and damping that their films have at each frequency; "viscous", by those of low frequency,
+        as a march does.
     progress
         True for a bar, False for none, or a function called with (frequencies done, in all); None for a bar
         where standard error is a terminal.
@@ -122,7 +127,7 @@ def frequency_response(
     f = frequencies(frequency)
     inputs, outputs = name_list("inputs", inputs), name_list("outputs", outputs)
     one_of("quantity", quantity, QUANTITIES)
-    state = linear(source)
+    state = linear(source, contacts)
     speed = one_speed(speed, rpm, 0.0)
     state.system.check_speed(speed)
     given = [Input.of(state.system, name) for name in inputs]
@@ -147,10 +152,12 @@ def frequency_response(
     }
     levels = None if amplitude is None else _levels(amplitude, inputs, state.system)
     strain = None
+    # only what passes forces asks for it
+    bearings = state.dynamic(omega if any(o.bearings for o in wanted) else omega[:0])
     with told(progress, "frequency") as tell:
         if levels is None:
             x = state.solve(omega, force, rows, speed, tell)
-            response = recovered(wanted, given, x, omega, speed, power, state.K, state.C)
+            response = recovered(wanted, given, x, omega, speed, power, bearings)
         else:
             drives = [_drive(level, given, omega, power) for level in levels]
             found = softened(state, omega, force, rows, speed, drives, tell)
@@ -159,7 +166,7 @@ def frequency_response(
                 size = np.einsum("fii->fi", drive)
                 x = one.x / np.where(size == 0, 1.0, size)[:, None, :]
                 moduli = moduli_of(state.system, omega, one.change)
-                responses.append(recovered(wanted, given, x, omega, speed, power, state.K, state.C, moduli))
+                responses.append(recovered(wanted, given, x, omega, speed, power, bearings, moduli))
             response, strain = np.stack(responses), np.stack([one.strain for one in found])
             warn_of_strain(state.system, strain)
             coords["layer"] = (layer_names(state.system), "")
@@ -191,6 +198,7 @@ def frequency_response(
             "analysis": "frequency response",
             "speed": speed,
             "quantity": quantity,
+            "contacts": contacts,
             **more,
             **state_of(source),
             **inputs_of(state.system.inputs),

@@ -201,8 +201,7 @@ class Output:
         x: Complex,
         omega: Array,
         speed: float,
-        K: Array,
-        C: Array,
+        bearings: Complex,
         inputs: Sequence[Input],
         moduli: Moduli | None = None,
     ) -> Complex:
@@ -225,7 +224,7 @@ class Output:
             total += sprung(share * spring.stiffness, share * spring.damping, taken(len(spring.across)))
         for first, B, share in self.bearings:
             own = slice(first, first + len(B))
-            total += sprung(share @ K[own, own], share @ C[own, own], taken(len(B)))
+            total += np.einsum("k,fkl,fli->fi", share, bearings[:, own, own], taken(len(B)), optimize=True)
         return total
 
 
@@ -284,13 +283,13 @@ def recovered(
     omega: Array,
     speed: float,
     power: int,
-    K: Array,
-    C: Array,
+    bearings: Complex,
     moduli: Moduli | None = None,
 ) -> Complex:
     """The outputs (f, o, i) of a harmonic analysis from the motions (f, k, i) of the `requested` rows.
 
-    power: 0, 1, 2 for displacement, velocity, acceleration. moduli: of rubbers that soften, where x is of
+    power: 0, 1, 2 for displacement, velocity, acceleration. bearings: their dynamic stiffness
+    (f, coefs, coefs), `Linear.dynamic`. moduli: of rubbers that soften, where x is of
     such.
     """
     response = np.zeros((omega.size, len(outputs), len(inputs)), dtype=np.complex128)
@@ -305,7 +304,7 @@ def recovered(
         own = x[:, at : at + count]
         at += count
         if output.is_force:
-            response[:, k] = scale * output.force(own, omega, speed, K, C, inputs, moduli)
+            response[:, k] = scale * output.force(own, omega, speed, bearings, inputs, moduli)
             continue
         response[:, k] = scale * own[:, 0] * (rate**power)[:, None]
         for i, given in enumerate(inputs):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.static_balance import HOLD
 from bearingdyn.application import COMPONENTS, Application
+from bearingdyn.checks import one_of
 from bearingdyn.system import System, natural, system_of
 from bearingdyn.types import Array, Complex
 
@@ -19,11 +22,15 @@ IDLE = 1e3
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """A system with its bearings linearised: K, C (coefs, coefs) on their raceway coefficients."""
+    """A system with its bearings linearised: K, C (coefs, coefs) on their raceway coefficients.
+
+    balls: what lubricated balls add by frequency, as `Equilibrium.balls` says; None: nothing.
+    """
 
     system: System
     K: Array
     C: Array
+    balls: Callable[[Array], tuple[Complex, Array] | None] | None = None
 
     def solve(
         self,
@@ -42,14 +49,32 @@ class Linear:
         x = np.zeros((omega.size, len(rows), len(force)), dtype=np.complex128)
         for part in (omega > 0, omega == 0):
             if part.any():
-                held = system if omega[part][0] > 0 else self._held_at_rest(modulus[part][0], force)
+                held = system if omega[part][0] > 0 else self.held_at_rest(modulus[part][0], force)
                 model = held.model([], relaxed=False)
                 x[part] = core.harmonic(
-                    model, omega[part], modulus[part], self.K, self.C, force, rows, speed, progress
+                    model,
+                    omega[part],
+                    modulus[part],
+                    self.K,
+                    self.C,
+                    force,
+                    rows,
+                    speed,
+                    progress,
+                    self.balls and self.balls(omega[part]),
                 )
         return x
 
-    def _held_at_rest(self, modulus: Complex, force: Array) -> System:
+    def dynamic(self, omega: Array) -> Complex:
+        """K + iωC of all bearings (f, coefs, coefs), with what lubricated balls add, at omega (f,), rad/s."""
+        found = self.K + 1j * omega[:, None, None] * self.C
+        balls = self.balls and self.balls(omega)
+        if balls:
+            k, v = balls
+            found += np.einsum("fb,bk,bl->fkl", k, v, v, optimize=True)
+        return np.asarray(found)
+
+    def held_at_rest(self, modulus: Complex, force: Array) -> System:
         """The system with its free motions held, which no force drives; modulus (layers,) at 0 Hz, Pa.
 
         Raises
@@ -96,17 +121,30 @@ def _freedom(system: System, motion: Array, idle: list[str]) -> str:
     )
 
 
-def linear(source: Equilibrium | Application | System) -> Linear:
+Contacts: TypeAlias = Literal["film", "viscous"]
+
+
+def linear(source: Equilibrium | Application | System, contacts: Contacts = "film") -> Linear:
     """The linearised system that a harmonic analysis starts from.
+
+    Parameters
+    ----------
+    source
+        What is linear or linearised.
+    contacts
+        How lubricated contacts answer: "film", by their stiffness and damping at each frequency, or
+        "viscous", by the tangents that hold at low frequency, as in a march.
 
     Raises
     ------
     ValueError
-        For bearings without an equilibrium.
+        For bearings without an equilibrium, and for unknown contacts.
     """
+    one_of("contacts", contacts, ("film", "viscous"))
     if isinstance(source, Equilibrium):
         source.warn_of_unloaded()
-        return Linear(source.system, source.bearing_K, source.bearing_C)
+        balls = source.balls if contacts == "film" else None
+        return Linear(source.system, source.bearing_K, source.bearing_C, balls)
     system = system_of("source", source)
     if system.bearings:
         raise ValueError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,13 +15,14 @@ from bearingdyn import core, fingerprint, runfile
 from bearingdyn.analysis.core_channels import CoreChannel, channel_of
 from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
+from bearingdyn.analysis.exact_step import ExactModes
 from bearingdyn.analysis.march_state import check_state, moved, system_hash
 from bearingdyn.analysis.shaft_speed import drive_of
-from bearingdyn.analysis.softening import memory_of
-from bearingdyn.analysis.step_size import warn_if_coarse
+from bearingdyn.analysis.softening import memory_of, softening_layers
+from bearingdyn.analysis.step_size import step_error, warn_if_coarse
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
-from bearingdyn.checks import instance, positive, require, whole
+from bearingdyn.checks import instance, one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.progress import part_of
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
 
 # words of a state: steps since its clock began, and their size (csrc/state.c)
 STEPS, STEP = 1, 2
+METHODS = ("newmark", "exact")
+CoreMarch = tuple[Array, Array, core.Report]
 NEVER = 2**62  # a decimation that keeps nothing
 # steps between two chunks on the disk: a tenth of a second or so, which a kill may cost
 CHUNK_STEPS = 50_000
@@ -59,6 +63,8 @@ class March:
         Whether what is kept is low-passed.
     memory
         Time, s, over which layers that soften remember their amplitude; None where none does.
+    method
+        One of METHODS.
     """
 
     system: System
@@ -71,6 +77,7 @@ class March:
     decimate: int
     filter: bool = False
     memory: float | None = None
+    method: str = "newmark"
 
     @classmethod
     def of(
@@ -86,6 +93,7 @@ class March:
         audit: bool = False,
         scheme: core.Scheme | None = None,
         memory: float | None = None,
+        method: str = "newmark",
         least_steps: int = 0,
     ) -> March:
         """Prepare a march from an equilibrium, an application (its equilibrium is found) or a system at zero.
@@ -106,6 +114,7 @@ class March:
             "decimate": whole("decimate", decimate, 1),
         }
         drive = drive_of(speed)
+        one_of("method", method, METHODS)
         if scheme is not None:
             instance("scheme", scheme, core.Scheme, "it must be a bd.Scheme(...)")
         if isinstance(source, Application):
@@ -126,6 +135,8 @@ class March:
         )
         fastest = float(np.abs(drive[1]).max()) if isinstance(drive, tuple) else drive
         system.check_speed(fastest)
+        if method == "exact":
+            _check_exact(system, drive)
         warn_if_coarse(system, fastest, dt)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
@@ -137,6 +148,7 @@ class March:
             stepping=stepping,
             filter=bool(filter),
             memory=memory_of(system, drive, memory),
+            method=method,
             **counts,
         )
 
@@ -164,7 +176,31 @@ class March:
             these motions together.
         """
         x = moved(self.system, self.x, initial) if initial else self.x
-        return model.state(0.0, self.T.T @ self.system.M @ x, np.zeros(self.system.n))
+        q = self.T.T @ self.system.M @ x
+        state = model.state(0.0, q, np.zeros(self.system.n))
+        return state if self.method == "newmark" else np.concatenate([state, self._modes.start(q)])
+
+    @cached_property
+    def _modes(self) -> ExactModes:
+        """The linear part's own modes, for exact steps."""
+        return ExactModes.of(self.modal, float(self.stepping.profile[1][0]))
+
+    @cached_property
+    def _step(self) -> dict[str, Array]:
+        """What the core needs of them for the step."""
+        return self._modes.step(self.stepping.dt)
+
+    def _core_march(self, model: core.Model, state: Array, steps: int, every: int, **how: Any) -> CoreMarch:
+        """The core's march by this method."""
+        modes = None if self.method == "newmark" else self._step
+        return core.march(model, state, self.stepping, steps, every, modes=modes, **how)
+
+    def step_error(self, model: core.Model, state: Array) -> Array:
+        """Error of each channel that the step size leaves behind a state, (channels,): `step_error`."""
+        if self.method == "newmark":
+            return step_error(model, state, self.stepping)
+        half = self._modes.step(self.stepping.dt / 2)
+        return step_error(model, state, self.stepping, (self._step, half))
 
     def resumed(self, model: core.Model, result: xarray.Dataset) -> Array:
         """State at the end of an earlier march of this system.
@@ -198,6 +234,12 @@ class March:
 
     def _check_origin(self, result: xarray.Dataset, size: int, own_size: int) -> None:
         """Refuse a result that was not marched with this very system: ValueError."""
+        method = result.attrs.get("method", "newmark")
+        if method != self.method:
+            raise ValueError(
+                f"resume was marched with method={method!r}, and method is {self.method!r}; go on with the "
+                f"same, or start anew with `initial`"
+            )
         another = "resume is the state of another application"
         remedy = "resume a result of this application, or start anew with `initial`"
         if size != own_size:
@@ -232,6 +274,7 @@ class March:
             "steps": self.steps,
             "inputs": self.system.inputs,
             "system_hash": system_hash(self.modal),
+            **({} if self.method == "newmark" else {"method": self.method}),
         }
 
     def digest(self, state: Array) -> str:
@@ -245,6 +288,7 @@ class March:
                 "stepping": self.stepping,
                 "state": state,
                 **({} if self.memory is None else {"memory": self.memory}),
+                **({} if self.method == "newmark" else {"method": self.method}),
             }
         )
 
@@ -283,10 +327,9 @@ class March:
             settling = done < self.settle
             left = (self.settle if settling else self.total) - done
             before = (self.settle or NEVER) if keep_settled else NEVER
-            rows, state, report = core.march(
+            rows, state, report = self._core_march(
                 model,
                 state,
-                self.stepping,
                 left if size is None else min(left, size),
                 before if settling else self.decimate,
                 start=start,
@@ -326,10 +369,9 @@ class March:
         while status == 0 and (done < self.total or start):
             goal = next((g for g in (blind, self.settle) if done < g), self.total)
             every = NEVER if goal == blind and done < blind else 1
-            rows, state, report = core.march(
+            rows, state, report = self._core_march(
                 model,
                 state,
-                self.stepping,
                 min(goal - done, size),
                 every,
                 start=start,
@@ -347,7 +389,7 @@ class March:
                 self._tell_open_side(report)
             ahead, after = rows[:0], status
             if done > self.settle and status in (0, core.INTERRUPTED):
-                ahead, _, looked = core.march(model, state, self.stepping, sieve.half, 1)
+                ahead, _, looked = self._core_march(model, state, sieve.half, 1)
                 after = core.INTERRUPTED if looked.status == core.INTERRUPTED else status
             report, status = replace(report, status=after), after
             yield sieve.take(ahead), state, report
@@ -374,7 +416,7 @@ class March:
                 break
             at, state, start = at + chunk.report.steps, chunk.state, False
         if done > self.settle - half:
-            again, _, _ = core.march(model, state, self.stepping, done - at, 1, start=start)
+            again, _, _ = self._core_march(model, state, done - at, 1, start=start)
             before = np.repeat(again[:1], half, axis=0) if past is None or at > 0 else past
             rows = np.concatenate([before, again])[-half:]
         return Decimator(self.decimate, plain, begun + done, rows)
@@ -467,3 +509,20 @@ class March:
                 result,
             )
         return result
+
+
+def _check_exact(system: System, drive: float | tuple[Array, Array]) -> None:
+    """Refuse what exact steps cannot be taken through: ValueError."""
+    remedy = "take method='newmark'"
+    if isinstance(drive, tuple) and np.ptp(drive[1]) > 0:
+        raise ValueError(
+            f"method is 'exact', and the speed runs from {float(np.min(drive[1])):g} to "
+            f"{float(np.max(drive[1])):g} rad/s; an exact step is that of one constant speed: "
+            f"{remedy} through a run-up"
+        )
+    soft = [system.layers[k].part for k in softening_layers(system)]
+    if soft:
+        raise ValueError(
+            f"method is 'exact', and layer {soft[0]!r} softens with its amplitude (`Maxwell.payne`), so that "
+            f"no step is linear; {remedy}, or leave its law of softening out"
+        )

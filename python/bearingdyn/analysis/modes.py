@@ -8,9 +8,10 @@ import numpy as np
 import scipy
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
-from bearingdyn.analysis.linearised import linear
+from bearingdyn.analysis.film_modes import film_modes
+from bearingdyn.analysis.linearised import Contacts, linear
 from bearingdyn.application import Application
-from bearingdyn.checks import number, one_speed, truth, whole
+from bearingdyn.checks import number, one_of, one_speed, truth, whole
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
@@ -31,6 +32,7 @@ def modes(
     speed: float | None = None,
     damped: bool = False,
     modulus: str = "relaxed",
+    contacts: Contacts = "film",
     rpm: float | None = None,
 ) -> xarray.Dataset:
     """Natural modes about an equilibrium, or of an application without bearings.
@@ -48,6 +50,10 @@ def modes(
         act, each branch as a state, so that the eigenvalues solve the frequency-dependent problem exactly.
     modulus
         Of the layers in undamped modes, "relaxed" or "instantaneous".
+    contacts
+        How lubricated bearings act in damped modes: "film", by the stiffness and damping that their films
+        have at the frequency of each mode, good to the first order in its damping ratio; "viscous", by those
+        of low frequency, as a march does. In undamped modes they have their static stiffness.
     rpm
         The speed in revolutions a minute, instead of `speed`.
 
@@ -62,6 +68,8 @@ def modes(
     ValueError
         For bearings without an equilibrium, and for a part that would turn although its damping is known at
         rest only.
+    ArithmeticError
+        Where a mode is not found with the films of its own frequency.
 
     Warns
     -----
@@ -80,10 +88,13 @@ def modes(
     if count is not None:
         count = whole("count", count, 0)
     damped, speed = truth("damped", damped), number("speed", one_speed(speed, rpm, 0.0))
+    one_of("contacts", contacts, ("film", "viscous"))
     system = source.linearised() if isinstance(source, Equilibrium) else linear(source).system
     system.check_speed(speed)
     if damped:
         values, shapes = _damped(system, speed)
+        if contacts == "film" and isinstance(source, Equilibrium) and source.filmed:
+            values, shapes = _with_films(source, system, speed, values[np.argsort(np.abs(values))][:count])
     elif speed == 0.0:
         squares, real = scipy.linalg.eigh(system.stiffness(modulus), system.M)
         values, shapes = 1j * np.sqrt(np.maximum(squares, 0.0)), real.astype(np.complex128)
@@ -112,10 +123,26 @@ def modes(
             "speed": speed,
             "damped": int(damped),
             "modulus": modulus,
+            "contacts": contacts,
             **state_of(source),
             **inputs_of(system.inputs),
         },
     )
+
+
+def _with_films(
+    source: Equilibrium, system: System, speed: float, values: Complex
+) -> tuple[Complex, Complex]:
+    """The damped modes nearest to the values (m,) with lubricated contacts as they are at each."""
+    modal, T = system.modal()
+    B = source.system.B @ T
+
+    def balls(omega: Array) -> tuple[Complex, Array] | None:
+        found = source.balls(omega)
+        return found and (found[0], found[1] @ B)
+
+    values, shapes = film_modes(modal, speed, balls, values, lambda held: _damped_modal(held, speed))
+    return values, T @ shapes
 
 
 def _swinging(values: Complex, shapes: Complex) -> tuple[Complex, Complex]:
@@ -134,6 +161,11 @@ def _gyroscopic(K: Array, M: Array, G: Array) -> tuple[Complex, Complex]:
 def _damped(system: System, speed: float) -> tuple[Complex, Complex]:
     """States x, v and every branch stress: ṡ = 2 G Lᵀ v − s/τ, force L s (paper (6) differentiated)."""
     modal, T = system.modal()
+    values, shapes = _damped_modal(modal, speed)
+    return values, T @ shapes
+
+
+def _damped_modal(modal: System, speed: float) -> tuple[Complex, Complex]:
     n = modal.n
     columns, rates = [np.zeros((n, 0))], [np.zeros(0)]
     strengths = [np.zeros(0)]
@@ -158,5 +190,4 @@ def _damped(system: System, speed: float) -> tuple[Complex, Complex]:
         ]
     )
     values, vectors = scipy.linalg.eig(A)
-    values, shapes = _swinging(values, vectors[:n])
-    return values, T @ shapes
+    return _swinging(values, vectors[:n])

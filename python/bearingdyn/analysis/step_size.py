@@ -18,10 +18,6 @@ from bearingdyn.types import Array
 SHARE = 0.05
 NAMED = 12  # lines of a warning; the fastest come first
 CHECKED = 2000  # steps of the stretch that is repeated at half the step
-STEP_ERROR_MADE = (
-    f"{CHECKED} steps beyond the end, at dt and at dt/2 from the same state: 4/3 of the rms difference over "
-    "the rms of the channel about its mean (the scheme is of second order)"
-)
 
 
 def warn_if_coarse(system: System, speed: float, dt: float) -> None:
@@ -51,20 +47,36 @@ def _rounded_down(value: float) -> float:
     return float(f"{math.floor(value / unit * (1 + 1e-12)) * unit:.2g}")
 
 
-def step_error(model: core.Model, state: Array, stepping: core.Stepping) -> Array:
+def step_error_made(method: str) -> str:
+    """How `step_error` was made, in words."""
+    share, order = ("4/3", "second") if method == "newmark" else ("8/7", "third")
+    return (
+        f"{CHECKED} steps beyond the end, at dt and at dt/2 from one state: {share} of the rms difference "
+        f"over the rms of the channel about its mean (the scheme is of {order} order)"
+    )
+
+
+def step_error(
+    model: core.Model,
+    state: Array,
+    stepping: core.Stepping,
+    modes: tuple[dict[str, Array], dict[str, Array]] | None = None,
+) -> Array:
     """Error of each channel that the step size leaves, (channels,), relative; NaN where one stands still.
 
     From the state at the end of a march CHECKED steps go on, once with the step and once with half of it. The
     scheme is of second order, so that 4/3 of the difference (rms) is the error of the coarser one
-    (Richardson); it is put over the channel's own rms about its mean.
+    (Richardson); it is put over the channel's own rms about its mean. With `modes`, of the step and its
+    half, steps are exact but for the bearing forces, of third order, and 8/7 of the difference is the error.
     """
+    whole, halved = modes or (None, None)
     plain = replace(stepping, audit=False)
     half = replace(plain, dt=plain.dt / 2)
     # both start their own count, so that both begin without an old Newton matrix
-    coarse, _, _ = core.march(model, state.copy(), plain, CHECKED)
-    fine, _, report = core.march(model, state.copy(), half, 2 * CHECKED, 2)
+    coarse, _, _ = core.march(model, state.copy(), plain, CHECKED, modes=whole)
+    fine, _, report = core.march(model, state.copy(), half, 2 * CHECKED, 2, modes=halved)
     if len(coarse) != CHECKED or report.status != 0:
         return np.full(coarse.shape[1], np.nan)
     size = np.std(fine, axis=0)
-    error = 4 / 3 * np.sqrt(np.mean((coarse - fine) ** 2, axis=0))
+    error = (4 / 3 if modes is None else 8 / 7) * np.sqrt(np.mean((coarse - fine) ** 2, axis=0))
     return np.asarray(np.divide(error, size, out=np.full_like(size, np.nan), where=size > 0))

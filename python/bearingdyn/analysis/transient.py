@@ -15,7 +15,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
-from bearingdyn.analysis.step_size import STEP_ERROR_MADE, step_error
+from bearingdyn.analysis.step_size import step_error_made
 from bearingdyn.application import Application
 from bearingdyn.checks import instance, items, name_list, named, one_speed, whole
 from bearingdyn.progress import Progress, told
@@ -45,6 +45,7 @@ def transient(
     check_step: bool = False,
     scheme: core.Scheme | None = None,
     memory: float | None = None,
+    method: str = "newmark",
     progress: Progress | bool | None = None,
     rpm: float | tuple[ArrayLike, ArrayLike] | None = None,
 ) -> xarray.Dataset:
@@ -107,6 +108,12 @@ def transient(
         strain: one to ten periods of the slowest motion that counts. None: five of the slowest of shaft and
         harmonic loads. A lasting load does not count as amplitude; under strong vibration it sags, as the
         spring that bears a part of it breaks.
+    method
+        "newmark", the paper's, or "exact": at a constant speed structure, gyroscopic forces and layers move
+        in modes of their own, without an error of the step; what is left is that the bearing forces are held
+        as a parabola through three steps' ends. Of the same error it takes some four times fewer steps. A
+        constant, harmonic or rotating load is exact, a table is linear from step to step. It does not take a
+        speed that varies, nor layers with a law of softening; `scheme`'s β and γ do not count.
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
@@ -179,6 +186,7 @@ def transient(
         audit=audit,
         scheme=scheme,
         memory=memory,
+        method=method,
     )
     check_room(march.steps // march.decimate, record)
     found = [channel_of(march.modal, name) for name in record]
@@ -200,7 +208,7 @@ def transient(
     energies = march.energies(model, state) if audit else {}
     error: dict[str, Any] = {}
     if check_step and report.status == 0:
-        error = {"step_error": step_error(model, state, march.stepping), "step_error_made": STEP_ERROR_MADE}
+        error = {"step_error": march.step_error(model, state), "step_error_made": step_error_made(method)}
     result = march_dataset(
         facts, rows, state, report, {f"energy_{k}": v for k, v in energies.items()} | error
     )

@@ -82,6 +82,7 @@ def unbalance_response(
         raise ValueError("there is no unbalance; add one with app.unbalance(place, moment, phase)")
     wanted = [Output.of(system, name) for name in outputs]
     rows = requested(wanted, system.n)
+    forces = any(o.bearings for o in wanted)
     inputs = [
         Input(name, force, part=load.part, load=own)
         for load in loads
@@ -103,7 +104,8 @@ def unbalance_response(
                 moduli = moduli_of(system, omega, found.change)
             else:
                 x, moduli = state.solve(omega, force, rows, turning, None), None
-            unit = recovered(wanted, inputs, x, omega, turning, power, state.K, state.C, moduli)
+            bearings = state.dynamic(omega if forces else omega[:0])
+            unit = recovered(wanted, inputs, x, omega, turning, power, bearings, moduli)
             response[k] = speed**2 * (unit[0] @ phase)
     if soft:
         warn_of_strain(system, strain)

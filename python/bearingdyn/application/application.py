@@ -13,10 +13,10 @@ from bearingdyn.application.fit_of_neighbours import RINGS, check_bearing, check
 from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
 from bearingdyn.application.loads import Unbalance, in_time
 from bearingdyn.application.part import Part
-from bearingdyn.application.place import GRAVITY
+from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.application.plan import Plan
 from bearingdyn.application.summary import summary
-from bearingdyn.bearing import BallBearing, LooseFit, Pair
+from bearingdyn.bearing import BallBearing, LooseFit, RowSet
 from bearingdyn.checks import require
 from bearingdyn.magnitude import plausible
 from bearingdyn.pictures import picture
@@ -138,7 +138,7 @@ class Application:
         """
         plan = self.plan
         plan.check_new("part", name)
-        if isinstance(part, BallBearing | Pair):
+        if isinstance(part, BallBearing | RowSet):
             raise ValueError(
                 f"part {name!r} is a {type(part).__name__}; hang bearings between parts with "
                 f"app.bearing({name!r}, …, inner=…, outer=…)"
@@ -267,11 +267,12 @@ class Application:
     def bearing(
         self,
         name: str,
-        bearing: BallBearing,
+        bearing: BallBearing | RowSet,
         *,
         inner: str,
         outer: str,
         offset: float = 0.0,
+        mirrored: bool = False,
         fits: bool = True,
     ) -> None:
         """Hang a bearing between the interfaces of its two rings.
@@ -279,9 +280,10 @@ class Application:
         Parameters
         ----------
         name
-            A word without dots.
+            A word without dots. The rows of a set become the bearings "name-1", "name-2" and so on.
         bearing
-            What is hung; of a pair, each row by itself.
+            What is hung: one bearing, or a `Pair` or `Triplet`, whose middle stands at the interfaces and
+            whose preload comes with it.
         inner, outer
             Interfaces of the rings. outer may be "ground", or the raceway of a flexible ring,
             "ring.raceway", made for this bearing's arm. A ring turns with the shaft where its part does: one
@@ -290,6 +292,9 @@ class Application:
         offset
             How far along z the inner ring sits beyond where it is drawn, m: a spacer or nut that preloads
             two bearings against each other by displacement.
+        mirrored
+            Whether it is hung the other way round, its open side turned: `BallBearing.mirrored`; of a set,
+            its rows in the other order too.
         fits
             Whether bore, outside and width are compared with the seats, as by `connect`; of a bearing without
             `boundary`, whether the seats leave room for its rings.
@@ -297,8 +302,8 @@ class Application:
         Raises
         ------
         ValueError
-            If it is not a bearing, a name is unknown or taken, the raceway has another arm, the offset is not
-            finite, or a ring does not fit.
+            If it is not a bearing, a name is unknown or taken, the raceway has another arm or is to carry
+            more than one row, the offset is not finite, or a ring does not fit.
 
         Warns
         -----
@@ -306,13 +311,22 @@ class Application:
             Where a ring hardly fits.
         """
         self.plan.check_new("bearing", name)
+        joints: list[BearingJoint] = []
         ends = self.plan.interface(inner), self.plan.raceway_or_interface(outer)
-        joint = BearingJoint(name, bearing, *ends, offset)
-        self.plan.check_raceway(joint)
-        if fits:
-            for ring, place in zip(RINGS, (joint.inner, joint.outer), strict=True):
-                check_bearing(name, bearing, ring, place, self.plan.faces(place))
-        self.plan.bearings[name] = joint
+        require(isinstance(mirrored, bool), "mirrored", mirrored, "it must be True or False")
+        if isinstance(bearing, RowSet) and self.plan.raceway(ends[1]) is not None:
+            raise ValueError(
+                f"bearing {name!r}: {ends[1]} carries one row of balls, and a {type(bearing).__name__} has "
+                f"{len(bearing.rows)}; hang it in a rigid interface, or each row in a ring of its own"
+            )
+        for joint in _hung(name, bearing, ends, offset, mirrored):
+            self.plan.check_new("bearing", joint.name)
+            self.plan.check_raceway(joint)
+            if fits:
+                for ring, place in zip(RINGS, (joint.inner, joint.outer), strict=True):
+                    check_bearing(joint, ring, place, self.plan.faces(place))
+            joints.append(joint)
+        self.plan.bearings |= {joint.name: joint for joint in joints}
 
     def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
         """Set a flexible ring loosely in a bore.
@@ -495,3 +509,23 @@ class Application:
                 raise ValueError(f"part {part!r} at {T} °C: {error}") from None
         self.plan.parts[part] = replace(element, viscoelastic=tuple(moved))
         self.plan.temperatures[part] = T
+
+
+def _hung(
+    name: str,
+    bearing: BallBearing | RowSet,
+    ends: tuple[Place, Place],
+    offset: float,
+    mirrored: bool,
+) -> list[BearingJoint]:
+    """The joints of one bearing, or one for each row of a set."""
+    if not isinstance(bearing, RowSet):
+        joint = BearingJoint(name, bearing, *ends, offset)
+        return [replace(joint, bearing=bearing.mirrored())] if mirrored else [joint]
+    rows = [row.reversed() for row in reversed(bearing.rows)] if mirrored else bearing.rows
+    joints = []
+    for k, row in enumerate(rows, 1):
+        own, lift = row.hung(bearing.row)
+        whole = BearingJoint(f"{name}-{k}", own, *ends, offset)  # checks the offset
+        joints.append(replace(whole, offset=whole.offset + lift, place=row.place))
+    return joints

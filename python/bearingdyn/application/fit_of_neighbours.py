@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 from bearingdyn.application.channel import GROUND
+from bearingdyn.application.joints import BearingJoint
 from bearingdyn.application.place import Place
-from bearingdyn.bearing import BallBearing
 from bearingdyn.notice import FitWarning, warn
 from bearingdyn.parts import RoundFace
 
@@ -63,9 +63,7 @@ def check_connection(
             _check_carried(own, other, str(name), str(neighbour), least=0.0)
 
 
-def check_bearing(
-    name: str, bearing: BallBearing, ring: Ring, place: Place, faces: Sequence[RoundFace]
-) -> None:
+def check_bearing(joint: BearingJoint, ring: Ring, place: Place, faces: Sequence[RoundFace]) -> None:
     """Check that one ring of a bearing fits its neighbour: a seat, or a body that stands for the ring.
 
     Raises
@@ -75,7 +73,8 @@ def check_bearing(
     """
     if not faces or place == GROUND:
         return
-    title = f"the {ring} ring of bearing {name!r}"
+    bearing, at = joint.bearing, joint.place
+    title = f"the {ring} ring of bearing {joint.name!r}"
     half = 0.5 * (bearing.Dpw + (-1 if ring == "inner" else 1) * bearing.Dw)
     hollow = {face.kind for face in faces} == {"shaft", "bore"}
     if bearing.boundary is None:
@@ -85,7 +84,7 @@ def check_bearing(
     own = RoundFace(
         "bore" if ring == "inner" else "shaft",
         0.5 * (bore if ring == "inner" else outside),
-        (-0.5 * width, 0.5 * width),
+        (at - 0.5 * width, at + 0.5 * width),
     )
     # a ring of its own has the bearing's bore or outside, a seat meets it: the radius is the same
     candidates = [face for face in faces if face.kind != own.kind or (hollow and face.beside)]

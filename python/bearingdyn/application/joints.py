@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.application.place import Place
-from bearingdyn.bearing import BallBearing, LooseFit, Pair, catalogue
+from bearingdyn.bearing import RIGID, BallBearing, LooseFit, RacewaySeries, at_distance, catalogue
 from bearingdyn.checks import require, vector
 from bearingdyn.magnitude import plausible
 from bearingdyn.short_repr import short
@@ -116,6 +116,8 @@ class BearingJoint:
         Interfaces of the two rings; outer may be the raceway of a flexible ring, or GROUND.
     offset
         How far along z the seat of the inner ring was put beyond where it was drawn, m.
+    place
+        Of the balls along z, from the references of both interfaces, m.
 
     Raises
     ------
@@ -128,6 +130,7 @@ class BearingJoint:
     inner: Place
     outer: Place
     offset: float = 0.0
+    place: float = 0.0
 
     def __post_init__(self) -> None:
         field = f"bearing {self.name!r}"
@@ -136,6 +139,11 @@ class BearingJoint:
             raise ValueError(f"{field} has both rings at {self.inner}; name two interfaces")
         offset = plausible("offset", f"{field}: offset", self.offset, "it must be a finite length in m")
         object.__setattr__(self, "offset", offset)
+
+    def coefficients(self, series: RacewaySeries = RIGID) -> Array:
+        """(n, 6) from the motion of an interface to the raceway coefficients of its ring."""
+        rows = self.bearing.coefficients(series)
+        return rows @ at_distance(self.place) if self.place else rows
 
 
 @dataclass(frozen=True)
@@ -196,11 +204,6 @@ def _check_bearing(field: str, bearing: object) -> None:
     """Refuse anything but a bearing, and say what to give instead."""
     if isinstance(bearing, BallBearing):
         return
-    if isinstance(bearing, Pair):
-        raise ValueError(
-            f"{field} is a Pair; it must be one BallBearing: hang its two rows one by one, each between "
-            f"interfaces of its own, and preload them with offset="
-        )
     if isinstance(bearing, type):
         raise ValueError(f"{field} is the class {bearing.__name__}; make a bearing of it first")
     if isinstance(bearing, str | int) and str(bearing) in catalogue.CATALOGUE:

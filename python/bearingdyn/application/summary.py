@@ -32,7 +32,7 @@ def summary(plan: Plan) -> str:
     lines += [f"  {place} free" for place in sorted(plan.free_interfaces)]
     lines.append("bearings")
     for b in plan.bearings.values():
-        moved = f", offset {b.offset:g} m" if b.offset else ""
+        moved = (f", at {b.place:g} m" if b.place else "") + (f", offset {b.offset:g} m" if b.offset else "")
         lines.append(f"  {b.name}: {b.inner} in {b.outer}, {b.bearing.Z} balls{moved}")
     for f in plan.fits.values():
         lines.append(f"  {f.name}: {f.ring} loose in {f.bore}, {f.fit.clearance * 1e6:g} µm")
@@ -76,9 +76,9 @@ def _constraints(plan: Plan) -> Iterator[Mapping[str, Array]]:
     for b in plan.bearings.values():
         raceway = plan.raceway(b.outer)
         if raceway is None:
-            yield between(b.inner, b.outer, b.bearing.coefficients())
+            yield between(b.inner, b.outer, b.coefficients())
         else:
-            held = b.bearing.coefficients(raceway.series) @ plan.rows(b.inner)
+            held = b.coefficients(raceway.series) @ plan.rows(b.inner)
             yield {b.inner.part: held, b.outer.part: -raceway.rows}
     for f in plan.fits.values():
         raceway = plan.raceway(f.ring)

@@ -19,6 +19,7 @@ from bearingdyn.bearing.contact_damping import (
 from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure
 from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
+from bearingdyn.bearing.film_answer import AnswerUnderLoads, FilmAnswer
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.hertz import PointContact, contact_modulus, resultant_deflection_coefficient
@@ -31,7 +32,7 @@ from bearingdyn.bearing.lubrication import Lubrication, lubricate, lubricated
 from bearingdyn.bearing.mounting import Mounting, Seat
 from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
-from bearingdyn.bearing.pairs import Pair
+from bearingdyn.bearing.pairs import Pair, Triplet
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
 from bearingdyn.bearing.random_surfaces import WavinessSpectrum, diameter_scatter
 from bearingdyn.bearing.rating import (
@@ -54,6 +55,7 @@ from bearingdyn.bearing.rating import (
     rating_life,
     ratings_of,
 )
+from bearingdyn.bearing.row_set import Row, RowSet, at_distance
 from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
 from bearingdyn.bearing.surface_damage import dent, spall
 from bearingdyn.notice import BearingWarning
@@ -63,6 +65,7 @@ __all__ = [
     "OPEN_SIDE_REMEDY",
     "RIGID",
     "STATIC_PRESSURE",
+    "AnswerUnderLoads",
     "BallBearing",
     "Balls",
     "BearingKernel",
@@ -70,6 +73,7 @@ __all__ = [
     "ConstantDamping",
     "Damping",
     "Film",
+    "FilmAnswer",
     "FilmDamping",
     "Frequencies",
     "Friction",
@@ -92,13 +96,17 @@ __all__ = [
     "PointContact",
     "RacewaySeries",
     "Ratings",
+    "Row",
+    "RowSet",
     "Running",
     "Seat",
     "Supply",
     "TabulatedDamping",
+    "Triplet",
     "Walther",
     "Waviness",
     "WavinessSpectrum",
+    "at_distance",
     "catalogue",
     "check_bearing_pressure",
     "clearance_range",

@@ -23,7 +23,7 @@ from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_p
 from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
-from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness, checked
+from bearingdyn.bearing.imperfections import Body, Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.kernel import BearingKernel
 from bearingdyn.bearing.load_and_motion_checks import check_load, check_motion
 from bearingdyn.bearing.oil_supply import OilSupply
@@ -89,7 +89,8 @@ class BallBearing:
     fi, fo
         Groove radius over ball diameter, inner and outer race, above ½.
     clearance
-        Diametral clearance Pd, m. Exactly one of clearance and contact_angle.
+        Diametral clearance Pd, m; negative where the rings clamp the balls. Exactly one of clearance and
+        contact_angle.
     contact_angle
         Free contact angle α0, rad; the inner ring then carries axial load towards +z, see `open_side`.
     material, ball_material
@@ -314,6 +315,35 @@ class BallBearing:
             require(not self.contact_angle, "open_side", self.open_side, 'to be mirrored, give "+z" or "-z"')
             return self
         return replace(self, open_side="+z" if side > 0 else "-z")
+
+    def misaligned(
+        self, inner: tuple[float, float] = (0.0, 0.0), outer: tuple[float, float] = (0.0, 0.0)
+    ) -> BallBearing:
+        """The bearing with rings that sit askew on shaft or in housing; each tilt turns with its ring.
+
+        A race that is tilted runs out along the axis once a turn: an axial wave of order 1.
+
+        Parameters
+        ----------
+        inner, outer
+            (θx, θy) of the ring against its seat, rad, when the shaft stands at zero.
+
+        Raises
+        ------
+        ValueError
+            For anything else than two finite small angles.
+        """
+        waves = list(self.waviness)
+        rings: tuple[tuple[Body, tuple[float, float]], ...] = (("inner", inner), ("outer", outer))
+        for body, tilt in rings:
+            field = f"tilt of the {body} ring"
+            x, y = vector(field, tilt, (2,), "(θx, θy) in rad").tolist()
+            for angle in (x, y):
+                plausible("tilt", field, angle)
+            if x or y:
+                # R (θx sin ψ − θy cos ψ) = a cos(ψ + φ), the inner groove being the outer's arm away too
+                waves.append(Waviness(body, 1, self.arm * math.hypot(x, y), math.atan2(-x, -y), "axial"))
+        return replace(self, waviness=tuple(waves))
 
     @property
     def arm(self) -> float:
@@ -561,7 +591,9 @@ class BallBearing:
             # ∫κ s^{3/2} ds = (2/5) F s with s = (F/κ)^{2/3}
             return float(0.4 * (loads * (loads / self.kappa) ** (2 / 3)).sum()), g, K, float(loads.sum())
 
-        expected = (float(np.linalg.norm(target)) / self.kappa) ** (2 / 3) + self.geometry.Pd / 2 + self.film
+        expected = (
+            (float(np.linalg.norm(target)) / self.kappa) ** (2 / 3) + abs(self.geometry.Pd) / 2 + self.film
+        )
         z = minimum(stored, target, expected or 1e-9)
         loads = core.bearing_force(self._kernel, z, still, turn, 0.0, shaft)[3]
         astray = runs_off(self._kernel, z, loads, turn) if self._kernel.shoulder else ""

@@ -11,6 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bearingdyn.bearing.film_answer import FilmAnswer
 from bearingdyn.bearing.film_thickness import moes_groups
 from bearingdyn.bearing.hertz import PointContact, resultant_deflection_coefficient
 from bearingdyn.checks import nonnegative, number, positive, require, vector
@@ -154,6 +155,8 @@ class FilmDamping:
         The s at which w is a half, m.
     c
         (65,) damping of one ball, N s/m, at w = 0, 1/64, …, 1; zero at the first.
+    answer
+        How the contacts answer by frequency, for harmonic analyses; None: as this damping says, at any.
 
     Raises
     ------
@@ -163,10 +166,13 @@ class FilmDamping:
 
     scale: float
     c: Array
+    answer: FilmAnswer | None
 
     __repr__ = short
 
-    def __init__(self, scale: float, c: ArrayLike) -> None:
+    def __init__(self, scale: float, c: ArrayLike, answer: FilmAnswer | None = None) -> None:
+        remedy = "leave it to bearing.lubricate, or None"
+        require(isinstance(answer, FilmAnswer | None), "damping.answer", answer, remedy)
         positive("damping.scale", scale, "an approach in metres must be positive and finite")
         plausible("offset", "damping.scale", scale)
         y = vector("damping.c", c, (FILM_NODES,), "dampings in N s/m at w = 0, 1/64, …, 1")
@@ -177,6 +183,7 @@ class FilmDamping:
         y.flags.writeable = False
         object.__setattr__(self, "scale", float(scale))
         object.__setattr__(self, "c", y)
+        object.__setattr__(self, "answer", answer)
 
     @cached_property
     def _rises(self) -> Array:

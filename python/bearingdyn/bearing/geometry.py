@@ -14,10 +14,8 @@ from bearingdyn.bearing.characteristic_frequencies import Frequencies
 from bearingdyn.checks import nonnegative, number, positive, require
 from bearingdyn.magnitude import plausible
 
-PRELOADED = (
-    "an interference that leaves none is not modelled: give clearance=0 and load the bearing along its axis, "
-    "or give contact_angle"
-)
+CLAMPED = 0.02
+"""Of Dw: balls squeezed by so much have 9 GPa in their contacts, twice the static limit."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,8 @@ class Geometry:
     fi, fo
         Groove radius over ball diameter, inner and outer race; both above ½ (closer to ½ is tighter).
     clearance
-        Diametral clearance Pd, m, 0 ≤ Pd < 2A; the nominal contact angle is then 0 (deep groove).
+        Diametral clearance Pd, m, below 2A; the nominal contact angle is then 0 (deep groove). Negative: the
+        rings clamp their balls, as fits and warmth leave them; centred, each ball is indented by −Pd/2.
     contact_angle
         Contact angle, rad, 0 ≤ α0 < π/2, nominal and free at once. Exactly one of the two is given.
 
@@ -82,10 +81,11 @@ class Geometry:
             "give exactly one: clearance (diametral, m; deep groove) or contact_angle (rad; angular contact)",
         )
         if self.clearance is not None:
-            Pd = number("clearance", self.clearance, "it must be zero or positive, in m")
-            require(
-                Pd >= 0, "clearance", self.clearance, f"it must be zero or positive, in metres; {PRELOADED}"
+            Pd = number("clearance", self.clearance, "it must be finite, in m")
+            least = (
+                f"balls squeezed by more than Dw/50, {CLAMPED * self.Dw:.6g} m, yield: is it in µm? give m"
             )
+            require(Pd >= -CLAMPED * self.Dw, "clearance", self.clearance, least)
             unit = f"it must be at most Dw/10, {0.1 * self.Dw:.6g} m: is it in µm? give m"
             require(Pd <= 0.1 * self.Dw, "clearance", self.clearance, unit)
             plausible("clearance", "clearance", Pd / self.Dw)
@@ -121,8 +121,8 @@ class Geometry:
         """Free contact angle, rad: the one given, or cosα0 = 1 − Pd/2A."""
         if self.clearance is None:
             return self.contact_angle or 0.0
-        # acos(1 − Pd/2A) itself loses half the digits of a small clearance
-        return 2 * math.asin(math.sqrt(self.clearance / (4 * self.A)))
+        # acos(1 − Pd/2A) itself loses half the digits of a small clearance; clamped balls stand on the bottom
+        return 2 * math.asin(math.sqrt(max(self.clearance, 0.0) / (4 * self.A)))
 
     @property
     def Pd(self) -> float:

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing import ehl
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.contact_damping import FILM_NODES, FilmDamping
+from bearingdyn.bearing.film_answer import FilmAnswer, in_series
 from bearingdyn.bearing.film_thickness import hamrock_dowson, nijenbanning_venner_moes
-from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.load_distribution import load_distribution
 from bearingdyn.bearing.lubricant import Lubricant
 from bearingdyn.bearing.oil_supply import OilSupply
@@ -229,46 +229,25 @@ def lubricated(
     )
 
 
-def in_series(inner: ehl.LubricatedContact, outer: ehl.LubricatedContact) -> float:
-    """Damping of one ball by two lubricated contacts, N s/m, at low frequency: k²(c_i/k_i² + c_o/k_o²)."""
-    k = 1 / (1 / inner.k0 + 1 / outer.k0)
-    return k**2 * (inner.c0 / inner.k0**2 + outer.c0 / outer.k0**2)
-
-
 def _over_load(
     bearing: BallBearing, oil: Lubricant, us: float, T: float, Q: float, c: float
 ) -> FilmDamping | None:
     """Damping of a ball over its load: the table's, in proportion so that it is c under Q; else None."""
-    contacts = (bearing.inner_contact, bearing.outer_contact)
-    ends = [_table_ends(contact, oil, us, T) for contact in contacts]
-    if math.isnan(c) or any(end is None for end in ends):
+    answer = FilmAnswer(bearing.inner_contact, bearing.outer_contact, oil, T, us)
+    ends = answer.loads()
+    if math.isnan(c) or ends is None:
         return None
-    low, high = max(e[0] for e in ends if e), min(e[1] for e in ends if e)
+    low, high = ends
 
     def damping(F: float) -> float:
-        held = min(max(F, low), high)
-        at = in_series(*(ehl.look_up(contact, oil, held, us, T) for contact in contacts))
-        return at * min(F / low, 1.0) ** _RIGID
+        return answer.damping(min(max(F, low), high)) * min(F / low, 1.0) ** _RIGID
 
-    turn = max(e[2] for e in ends if e)
-    scale = (_WIDE * turn / bearing.kappa) ** (2 / 3)
+    scale = (_WIDE * answer.turning_load() / bearing.kappa) ** (2 / 3)
     w = np.linspace(0, 1, FILM_NODES)
     loads = bearing.kappa * (scale * (w[1:-1] / (1 - w[1:-1])) ** 2) ** 1.5
     values = [0.0, *(damping(float(F)) for F in loads)]
     values.append(values[-1])
-    return FilmDamping(scale, np.array(values) * (c / damping(Q)))
-
-
-def _table_ends(
-    contact: PointContact, oil: Lubricant, us: float, T: float
-) -> tuple[float, float, float] | None:
-    """Least and largest load of a contact in the table, N, and that where it turns from rigid to Hertz's."""
-    M, L, D = ehl.scales(contact, 1.0, us, oil.viscosity(T), oil.alpha)
-    if not ehl.in_table(L, D):
-        return None
-    low, high = ehl.loads_between(D)
-    # a hair inside, for round-off
-    return low / M * (1 + 1e-9), high / M * (1 - 1e-9), ehl.turning_load(D) / M
+    return FilmDamping(scale, np.array(values) * (c / damping(Q)), answer)
 
 
 def _check_rolling(bearing: BallBearing, supply: OilSupply) -> None:

@@ -11,10 +11,11 @@ import math
 from dataclasses import dataclass
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.geometry import PRELOADED
+from bearingdyn.bearing.geometry import CLAMPED
 from bearingdyn.checks import nonnegative, positive, require
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.notice import ClampedBalls, warn
 
 _STEEL_EXPANSION = 11.5e-6
 """Thermal expansion of bearing steel, 1/K; handbooks give 11 to 12.5e-6."""
@@ -147,17 +148,30 @@ class Mounting:
         Raises
         ------
         ValueError
-            If the clearance left is negative: rings clamped onto their balls are not modelled.
+            If the clearance left is so negative that the balls yield, or no contact angle is left.
+
+        Warns
+        -----
+        ClampedBalls
+            Where the clearance left is negative.
         """
         require(isinstance(bearing, BallBearing), "bearing", bearing, "give a BallBearing")
         left = bearing.geometry.Pd + self.clearance_change(bearing)
-        why = (
-            "fits and temperatures leave less than none; choose looser fits or a larger clearance "
-            f"({PRELOADED})"
-        )
-        require(left >= 0, "clearance", left, why)
+        why = "fits and temperatures leave less than none; choose looser fits or a larger clearance"
         if bearing.clearance is not None:
-            return dataclasses.replace(bearing, clearance=left)
+            require(left >= -CLAMPED * bearing.Dw, "clearance", left, f"{why}: the balls yield")
+            mounted = dataclasses.replace(bearing, clearance=left)
+            if left < 0:
+                load = float(mounted.ball_loads([0.0] * 6).max())
+                warn(
+                    f"fits and temperatures take {1e6 * (bearing.clearance - left):.3g} µm of a clearance of "
+                    f"{1e6 * bearing.clearance:.3g} µm: the rings clamp each ball with {load:.3g} N "
+                    f"({mounted.pressure(load) / 1e9:.2f} GPa) before any load; choose looser fits or a "
+                    f"larger clearance, unless that is meant",
+                    ClampedBalls,
+                )
+            return mounted
+        require(left >= 0, "clearance", left, why)
         A = bearing.geometry.A
         require(left < 2 * A, "clearance", left, f"it must stay below 2A = {2 * A:.6g} m")
         return dataclasses.replace(bearing, contact_angle=2 * math.asin(math.sqrt(left / (4 * A))))

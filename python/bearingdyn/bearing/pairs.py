@@ -1,4 +1,4 @@
-"""Two equal ball bearings side by side, set against each other (DB, DF) or one behind the other (DT)."""
+"""Two or three equal ball bearings side by side, set against each other or one behind the other."""
 
 from __future__ import annotations
 
@@ -6,25 +6,19 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-import numpy as np
-from numpy.typing import ArrayLike
+import scipy
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.contact_pressure import check_bearing_pressure
-from bearingdyn.bearing.energy_minimum import minimum
-from bearingdyn.bearing.load_and_motion_checks import check_load
-from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
-from bearingdyn.checks import nonnegative, positive, require, vector
+from bearingdyn.bearing.row_set import Row, RowSet, touching
+from bearingdyn.checks import nonnegative, positive, require
 from bearingdyn.magnitude import plausible
-from bearingdyn.types import Array
 
 Arrangement = Literal["DB", "DF", "DT"]
-_MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
-"""Reflection z → −z of a motion or of a load: axial vectors keep their component along z."""
+Threefold = Literal["DBD", "DFD", "DTD"]
 
 
 @dataclass(frozen=True)
-class Pair:
+class Pair(RowSet):
     """A pair of equal bearings on one shaft and in one housing, all four rings rigid.
 
     Motions q (6,) and loads (6,) are of both inner rings together relative to both outer rings, reference on
@@ -70,112 +64,124 @@ class Pair:
     preload_force: float | None = None
 
     def __post_init__(self) -> None:
-        require(isinstance(self.row, BallBearing), "row", self.row, "give a BallBearing")
+        self._check_row()
         known = self.arrangement in ("DB", "DF", "DT")
         require(known, "arrangement", self.arrangement, 'it must be "DB", "DF" or "DT"')
-        side = shoulder(self.row.open_side, self.row.contact_angle)
-        remedy = "a row by itself must carry towards +z: give the row as it is made, bearing.mirrored()"
-        require(side >= 0, "row", self.row, remedy)
-        apart = positive(
-            "distance", self.distance, "between the rows, in metres, must be positive and finite"
-        )
-        plausible("length", "distance", apart)
-        remedy = "it must be zero or positive, and finite"
-        if self.preload is not None:
-            plausible("offset", "preload", nonnegative("preload", self.preload, f"in m, {remedy}"))
-            both = self.preload_force is None
-            require(both, "preload_force", self.preload_force, "give a preload or a preload_force, not both")
-        if self.preload_force is not None:
-            force = nonnegative("preload_force", self.preload_force, f"{remedy}, in N")
-            plausible("force", "preload_force", force)
-        free = self.arrangement != "DT" or not (self.preload or self.preload_force)
-        require(
-            free, "arrangement", self.arrangement, "a tandem has no preload of its own: load it from outside"
-        )
+        _check_distance_and_preload(self)
 
     @cached_property
     def approach(self) -> float:
         """Axial approach of the rings of each row from touching, without load, m."""
         if self.preload_force:
-            pressed = self.row.displacement([0, 0, self.preload_force, 0, 0, 0])[2]
-            return float(pressed) - self._touch
+            return _approach(self.row, self.preload_force)
         return (self.preload or 0.0) / 2
 
-    @property
-    def _touch(self) -> float:
-        """Axial position of a row, from its own origin, at which all balls touch."""
-        return 0.0 if self.row.clearance is None else self.row.geometry.Pe / 2
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """The row at −distance/2 and the row at +distance/2."""
+        senses, half = {"DB": (1, -1), "DF": (-1, 1), "DT": (1, 1)}[self.arrangement], self.distance / 2
+        return tuple(Row(z, s, self.approach) for z, s in zip((-half, half), senses, strict=True))
+
+
+@dataclass(frozen=True)
+class Triplet(RowSet):
+    """A triplet of equal bearings on one shaft and in one housing: two rows in tandem against a third.
+
+    Motions q (6,) and loads (6,) are of all inner rings together relative to all outer rings, reference on
+    the axis at the middle row; q = 0 is the preloaded triplet without load.
+
+    Parameters
+    ----------
+    row
+        One bearing; by itself its inner ring carries axial load towards +z.
+    arrangement
+        "DBD" the two rows at −distance and 0 carry towards +z, back to back with the third, which carries
+        towards −z (TBT); "DFD" the same face to face (TFT); "DTD" all three carry towards +z. The other way
+        round: `app.bearing(…, mirrored=True)`.
+    distance
+        Between the middles of neighbouring rows, m.
+    preload
+        How much closer than touching the rings are clamped, tandem and third row together, m. Not for "DTD".
+    preload_force
+        Axial force of the third row on the other two, N, of which each carries half, instead of `preload`.
+
+    Raises
+    ------
+    ValueError
+        Naming the field: a wrong type or arrangement, a distance or preload that is not positive or zero,
+        both preloads at once, or a preload of a tandem.
+
+    Examples
+    --------
+    >>> import math
+    >>> import bearingdyn as bd
+    >>> from bearingdyn.bearing import Triplet
+    >>> row = bd.BallBearing(Z=14, Dw=9e-3, Dpw=50e-3, fi=0.52, fo=0.53, contact_angle=math.radians(15))
+    >>> held = Triplet(row, "DBD", distance=0.015, preload_force=300.0)
+    >>> [round(loads.mean()) for loads in held.ball_loads([0.0] * 6)]  # the third row holds the other two
+    [38, 38, 74]
+    """
+
+    row: BallBearing
+    arrangement: Threefold
+    distance: float
+    preload: float | None = None
+    preload_force: float | None = None
+
+    def __post_init__(self) -> None:
+        self._check_row()
+        known = self.arrangement in ("DBD", "DFD", "DTD")
+        require(known, "arrangement", self.arrangement, 'it must be "DBD", "DFD" or "DTD"')
+        _check_distance_and_preload(self)
 
     @cached_property
-    def _rows(self) -> tuple[tuple[Array, Array], ...]:
-        """(T, q0) of each row: its own q is T q + q0, T (6, 6)."""
-        towards = {"DB": (1, -1), "DF": (-1, 1), "DT": (1, 1)}[self.arrangement]
-        rows = []
-        for sign, place in zip(towards, (-self.distance / 2, self.distance / 2), strict=True):
-            T = np.eye(6)
-            # a small rotation moves the point (0, 0, place) by θ × (0, 0, place)
-            T[0, 4], T[1, 3] = place, -place
-            if sign < 0:
-                T = _MIRROR[:, None] * T
-            rows.append((T, np.array([0, 0, self._touch + self.approach, 0, 0, 0])))
-        return tuple(rows)
+    def approaches(self) -> tuple[float, float]:
+        """Axial approach, without load, of the rings of each tandem row and of the third row, m."""
+        if self.preload_force:
+            return _approach(self.row, self.preload_force / 2), _approach(self.row, self.preload_force)
+        if not self.preload:
+            return 0.0, 0.0
+        whole = self.preload
 
-    def row_displacements(self, q: ArrayLike) -> tuple[Array, Array]:
-        """Motion (6,) of each row from its own origin, in its own frame (mirrored if it carries −z)."""
-        x = vector("q", q, (6,), "(x, y, z, θx, θy, θz) of the inner rings relative to the outer rings")
-        first, second = (T @ x + q0 for T, q0 in self._rows)
-        return first, second
+        def surplus(third: float) -> float:
+            return _thrust(self.row, third) - 2 * _thrust(self.row, whole - third)
 
-    def force(self, q: ArrayLike, angle: float = 0.0) -> Array:
-        """Load (6,), N and N m, that holds the inner rings at q (6,), both cages at `angle`, rad."""
-        places = self.row_displacements(q)
-        parts = (T.T @ self.row.force(x, angle) for (T, _), x in zip(self._rows, places, strict=True))
-        return np.asarray(sum(parts))
+        third = float(scipy.optimize.brentq(surplus, 0.0, whole, xtol=1e-18, rtol=1e-14))
+        return whole - third, third
 
-    def stiffness(self, q: ArrayLike, angle: float = 0.0) -> Array:
-        """Tangent (6, 6) ∂force/∂q, symmetric, N/m, N and N m."""
-        places = self.row_displacements(q)
-        parts = (T.T @ self.row.stiffness(x, angle) @ T for (T, _), x in zip(self._rows, places, strict=True))
-        return np.asarray(sum(parts))
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """The rows at −distance, 0 and +distance."""
+        senses = {"DBD": (1, 1, -1), "DFD": (-1, -1, 1), "DTD": (1, 1, 1)}[self.arrangement]
+        tandem, third = self.approaches
+        return tuple(
+            Row(k * self.distance, sense, lift)
+            for k, sense, lift in zip((-1, 0, 1), senses, (tandem, tandem, third), strict=True)
+        )
 
-    def ball_loads(self, q: ArrayLike, angle: float = 0.0) -> tuple[Array, Array]:
-        """Contact loads (Z,) of the row at −distance/2 and of the row at +distance/2, N."""
-        first, second = self.row_displacements(q)
-        return self.row.ball_loads(first, angle), self.row.ball_loads(second, angle)
 
-    def displacement(self, load: ArrayLike, angle: float = 0.0) -> Array:
-        """Equilibrium q (6,) of the inner rings under a load (6,) in N and N m, θz held, outer rings fixed.
+def _thrust(row: BallBearing, approach: float) -> float:
+    """Axial force of a row whose rings are closer than touching by `approach`, m; N."""
+    return float(row.force([0, 0, touching(row) + approach, 0, 0, 0])[2])
 
-        Raises
-        ------
-        ValueError
-            On a wrong shape or a value that is not finite, and for a load that presses balls onto the open
-            side of a row.
-        ArithmeticError
-            If no equilibrium is found.
-        """
-        f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner rings in N and N m")
-        length = np.array([1, 1, 1, 1 / self.row.arm, 1 / self.row.arm])
 
-        def law(u: Array) -> tuple[float, Array, Array, float]:
-            q, kappa = np.append(u * length, 0.0), self.row.kappa
-            energy, g, K, held = 0.0, np.zeros(5), np.zeros((5, 5)), 0.0
-            for (T, _), x in zip(self._rows, self.row_displacements(q), strict=True):
-                # as far out as the search goes, whatever the pressures there
-                B = self.row.coefficients() @ T[:, :5] * length
-                g_row, K_row, _, loads = self.row.evaluate(x, angle)
-                energy += float(0.4 * (loads * (loads / kappa) ** (2 / 3)).sum())
-                g, K, held = g + B.T @ g_row, K + B.T @ K_row @ B, held + float(loads.sum())
-            return energy, g, K, held
+def _approach(row: BallBearing, force: float) -> float:
+    """How much closer than touching an axial force, N, presses the rings of a row, m."""
+    return float(row.displacement([0, 0, force, 0, 0, 0])[2]) - touching(row)
 
-        check_load("load", f)
-        target = f[:5] * length
-        expected = (float(np.linalg.norm(target)) / self.row.kappa) ** (2 / 3) + self.approach
-        q = np.append(minimum(law, target, expected or 1e-9) * length, 0.0)
-        places = zip(("first", "second"), self.row_displacements(q), self.ball_loads(q, angle), strict=True)
-        for name, place, loads in places:
-            astray = runs_off(self.row.kernel(), self.row.relative(place), loads, self.row.angle0 + angle)
-            if astray:
-                raise ValueError(f"load is {f.tolist()}; in the {name} row {astray}; {OPEN_SIDE_REMEDY}")
-            check_bearing_pressure(self.row, loads)
-        return q
+
+def _check_distance_and_preload(rows: Pair | Triplet) -> None:
+    """Check the fields that a pair and a triplet share; a tandem has no preload of its own."""
+    apart = positive("distance", rows.distance, "between the rows, in metres, must be positive and finite")
+    plausible("length", "distance", apart)
+    remedy = "it must be zero or positive, and finite"
+    if rows.preload is not None:
+        plausible("offset", "preload", nonnegative("preload", rows.preload, f"in m, {remedy}"))
+        both = rows.preload_force is None
+        require(both, "preload_force", rows.preload_force, "give a preload or a preload_force, not both")
+    if rows.preload_force is not None:
+        force = nonnegative("preload_force", rows.preload_force, f"{remedy}, in N")
+        plausible("force", "preload_force", force)
+    free = not rows.arrangement.startswith("DT") or not (rows.preload or rows.preload_force)
+    remedy = "a tandem has no preload of its own: load it from outside"
+    require(free, "arrangement", rows.arrangement, remedy)

@@ -154,7 +154,7 @@ class FlexibleBearing:
             hessian[5:, 5:] += S
             return energy + 0.5 * float(z @ S @ z), gradient, hessian, float(loads.sum())
 
-        size = (float(np.linalg.norm(f)) / self.bearing.kappa) ** (2 / 3) + self.bearing.geometry.Pd / 2
+        size = (float(np.linalg.norm(f)) / self.bearing.kappa) ** (2 / 3) + abs(self.bearing.geometry.Pd) / 2
         x = minimum(stored, np.concatenate([unit @ f[:5], np.zeros(len(S))]), size or 1e-9)
         kernel, relative = self.bearing.kernel(self._element.raceways["raceway"].series), J @ x
         astray = runs_off(kernel, relative, self._press(relative, angle)[3], self.bearing.angle0 + angle)

@@ -86,6 +86,7 @@ def march_dataset(
             "dt": facts["dt"],
             "decimate": decimate,
             **({"filter": int(facts["filter"])} if "filter" in facts else {}),
+            **({"method": facts["method"]} if "method" in facts else {}),
             "settle": facts["settle"],
             **report.counts,
             "steps": max(report.steps - facts["settle"], 0),

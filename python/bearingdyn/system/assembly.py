@@ -84,9 +84,9 @@ def assemble(app: Application) -> System:
     for hung in plan.bearings.values():
         raceway = plan.raceway(hung.outer)
         series = RIGID if raceway is None else raceway.series
-        ends = {str(hung.inner): hung.bearing.coefficients(series)}
+        ends = {str(hung.inner): hung.coefficients(series)}
         if raceway is None and hung.outer != GROUND:
-            ends[str(hung.outer)] = -hung.bearing.coefficients()
+            ends[str(hung.outer)] = -hung.coefficients()
         B = _between(ends, outputs)
         if raceway is not None:
             B = B - raceway.rows @ select[hung.outer.part]

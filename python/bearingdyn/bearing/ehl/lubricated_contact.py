@@ -59,8 +59,8 @@ class LubricatedContact:
         return self.contact.Rx * math.sqrt(self.eta0 * self.us / (2 * self.contact.modulus * self.contact.Rx))
 
     @property
-    def _stiffness(self) -> float:
-        """Of the dry contact, N/m."""
+    def dry_stiffness(self) -> float:
+        """Stiffness of the dry contact, N/m."""
         return 1.5 * self.F / self.contact.approach(self.F)
 
     @property
@@ -86,12 +86,12 @@ class LubricatedContact:
     @property
     def k0(self) -> float:
         """Stiffness at low frequency, N/m."""
-        return self.steady.K0 * self._stiffness
+        return self.steady.K0 * self.dry_stiffness
 
     @property
     def c0(self) -> float:
         """Damping at low frequency, N s/m."""
-        return self.steady.C0 * self._stiffness / 1.5 * self._passage
+        return self.steady.C0 * self.dry_stiffness / 1.5 * self._passage
 
     @property
     def _passage(self) -> float:
@@ -102,7 +102,7 @@ class LubricatedContact:
         """Dynamic stiffness K(ω) + iωc(ω) of a small harmonic approach, N/m, at frequencies in Hz."""
         asked = np.asarray(frequency, dtype=float)
         require(bool(np.isfinite(asked).all()), "frequency", frequency, "it must be finite, in Hz")
-        return np.asarray(self.steady.stiffness(2 * math.pi * asked * self._passage) * self._stiffness)
+        return np.asarray(self.steady.stiffness(2 * math.pi * asked * self._passage) * self.dry_stiffness)
 
     @cached_property
     def viscous_limit(self) -> float:

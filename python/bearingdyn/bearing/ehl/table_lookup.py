@@ -13,8 +13,9 @@ import math
 from bisect import bisect_right
 from collections import defaultdict
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib import resources
+from typing import Any
 
 import numpy as np
 import scipy
@@ -73,6 +74,15 @@ class Lookup:
         """Damping at low frequency, c = C0 (F/δ_dry)(2a/us)."""
         return self.figures.C0
 
+    @cached_property
+    def _rest(self) -> Any:
+        """What the film carried along leaves unsaid, which is small and smooth: K, and C/1.5, over Ω."""
+        nodes = np.array((0.0, *OMEGA))
+        said = travelling_film.stiffness(self.K0, self.C0, nodes)
+        K = np.array((self.K0, *self.K)) - said.real
+        C = np.array((self.C0, *self.C))[1:] / 1.5 - said.imag[1:] / nodes[1:]
+        return scipy.interpolate.PchipInterpolator(nodes, np.column_stack([K, (0.0, *C)]))
+
     def stiffness(self, Omega: ArrayLike) -> Complex:
         """Dynamic stiffness F̂/δ̂ over that of the dry contact, at frequencies ωa/um, as `Steady.stiffness`.
 
@@ -80,16 +90,9 @@ class Lookup:
         """
         asked = np.abs(np.asarray(Omega, dtype=float))
         require(bool(np.isfinite(asked).all()), "Omega", Omega, "frequencies ωa/um must be finite")
-        K0, C0 = self.figures.K0, self.figures.C0
-        nodes = np.array((0.0, *OMEGA))
-        given = np.array(
-            [K0 + 0j, *(k + 1j * x * c / 1.5 for k, c, x in zip(self.K, self.C, OMEGA, strict=True))]
-        )
-        # what the film carried along leaves unsaid is small and smooth
-        rest = given - travelling_film.stiffness(K0, C0, nodes)
-        slope = scipy.interpolate.PchipInterpolator(nodes, np.column_stack([rest.real, rest.imag]))
-        found = slope(np.minimum(asked, nodes[-1]))
-        answer = travelling_film.stiffness(K0, C0, asked) + found[..., 0] + 1j * found[..., 1]
+        at = np.minimum(asked, OMEGA[-1])
+        found = self._rest(at)
+        answer = travelling_film.stiffness(self.K0, self.C0, asked) + found[..., 0] + 1j * at * found[..., 1]
         return np.asarray(np.where(np.asarray(Omega, dtype=float) < 0, answer.conj(), answer))
 
 

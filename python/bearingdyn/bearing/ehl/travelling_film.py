@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 import scipy
 
 from bearingdyn.types import Array, Complex
+
+_LAST = 16.0  # ωa/um, beyond which the integral is formed anew; a motor's kHz stay below
 
 
 @cache
@@ -24,11 +27,25 @@ def _strips() -> tuple[Array, Array]:
     return np.sin(phi), math.pi / 4 * weights * np.sin(phi)
 
 
+def _integral(Omega: Array) -> Complex:
+    s, weights = _strips()
+    at = Omega[..., None] * s
+    return np.asarray((scipy.special.j0(at) * np.exp(-1j * at)) @ weights)
+
+
+@cache
+def _spline() -> Any:
+    """S by its real and imaginary part, to 1e-9."""
+    nodes = np.linspace(0.0, _LAST, 801)
+    return scipy.interpolate.CubicSpline(nodes, _integral(nodes).view(np.float64).reshape(-1, 2))
+
+
 def stiffness(K0: float, C0: float, Omega: Array) -> Complex:
     """F̂/δ̂ over the stiffness of the dry contact at ωa/um, any shape; K0 and C0 as in `ehl.Steady`."""
-    s, weights = _strips()
-    at = np.asarray(Omega, dtype=float)[..., None] * s
-    S = (scipy.special.j0(at) * np.exp(-1j * at)) @ weights
+    asked = np.asarray(Omega, dtype=float)
+    S = _spline()(np.minimum(asked, _LAST)).view(np.complex128)[..., 0]
+    if (asked > _LAST).any():
+        S = np.where(asked > _LAST, _integral(asked), S)
     A = K0 - 1
     B = C0 / 1.5 + A * math.pi / 4
     return np.asarray(1 + (A + 1j * np.asarray(Omega) * B) * S)

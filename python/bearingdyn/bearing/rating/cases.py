@@ -99,7 +99,7 @@ def load_cases(
     R = held.arm
     target = np.column_stack([f[:, 0], f[:, 1], f[:, 2], -f[:, 4] / R, f[:, 3] / R])
     size = np.linalg.norm(target, axis=1)
-    radius = (size / held.kappa) ** (2 / 3) + held.geometry.Pd / 2 + held.film
+    radius = (size / held.kappa) ** (2 / 3) + abs(held.geometry.Pd) / 2 + held.film
     kernel = held.kernel()
     shaft = turn / held.cage_ratio if held.cage_ratio else 0.0
     z, Q, ended = core.bearing_settle(

@@ -46,6 +46,7 @@ def reference_viscosity(speed: float, Dpw: float) -> float:
     n = abs(number("speed", speed)) * 30 / math.pi
     require(n > 0, "speed", speed, "it must not be zero: at rest there is no film")
     D = positive("Dpw", Dpw) * 1e3
+    # as ISO 281 has it, and as others quote it of SKF's catalogue
     return float((45000 * n**-0.83 if n < 1000 else 4500 * n**-0.5) * D**-0.5 * 1e-6)
 
 

@@ -1,0 +1,335 @@
+"""The balance of harmonics: z + R h(z) = z_F at every line, the forces of the balls found in time.
+
+    h = g(z, ż) − K z − C ż,   R = B (D + Bᵀ (K + iωC) B)⁻¹ Bᵀ,   z_F likewise of the loads
+
+with any reference K, C; alternating frequency and time, T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56
+(1989) 149.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from bearingdyn import core
+from bearingdyn.analysis.steady.krylov import gmres
+from bearingdyn.analysis.steady.receptances import Receptances
+from bearingdyn.analysis.steady.torus import Bases, Lines, body_angles, load_lines
+from bearingdyn.system import System
+from bearingdyn.types import Array, Complex
+
+# m: a motion smaller than this is none
+TINY = 1e-15
+# residual below which only round-off is left
+ROUND_OFF = 1e-14
+
+
+@dataclass(frozen=True, eq=False)
+class Pressed:
+    """What the balls do along a motion, bearing by bearing, and the sum of it on the lines.
+
+    Parameters
+    ----------
+    bearings
+        Of each bearing its samples.
+    g
+        Force on all coefficients (L, m).
+    K, C
+        Mean tangents (m, m), block-diagonal.
+    """
+
+    bearings: tuple[core.Along, ...]
+    g: Complex
+    K: Array
+    C: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """The equations of one system at one speed on chosen lines.
+
+    Parameters
+    ----------
+    system, bases, receptances
+        The system, what turns in it, and what its structure answers.
+    lines
+        Lines and samples.
+    speed
+        Of the shaft, rad/s.
+    rows
+        (k, n) motions that are asked for beside the bearings' own.
+    """
+
+    system: System
+    bases: Bases
+    receptances: Receptances
+    lines: Lines
+    speed: float
+    rows: Array | None = None
+
+    @cached_property
+    def omega(self) -> Array:
+        """(L,) rad/s of the lines; of the mean 0, else not 0."""
+        return np.asarray(self.lines.index @ self.bases.frequencies(self.speed))
+
+    @cached_property
+    def slots(self) -> list[slice]:
+        """Of every bearing its coefficients among all."""
+        ends = np.cumsum([0, *(len(t.B) for t in self.system.bearings)]).tolist()
+        return [slice(a, b) for a, b in pairwise(ends)]
+
+    @cached_property
+    def kernels(self) -> list[dict[str, object]]:
+        return [term.kernel().packed() for term in self.system.bearings]
+
+    @cached_property
+    def bodies(self) -> list[tuple[Array, Array]]:
+        """Of every bearing the angles (N, 4) of its bodies, rad, and their speeds (4,), rad/s."""
+        angles = self.lines.angles()
+        return [
+            (body_angles(turning, angles), self.speed * np.array(turning.ratio))
+            for turning in self.bases.bearings
+        ]
+
+    @cached_property
+    def loads(self) -> list[tuple[int, Complex]]:
+        """Lines that loads drive, and their forces (n,)."""
+        found = load_lines(self.system, self.bases, self.speed)
+        return [(self._line(n), force) for n, force in found.items()]
+
+    def _line(self, n: Sequence[int]) -> int:
+        return int(np.flatnonzero((self.lines.index == np.array(n)).all(axis=1))[0])
+
+    @cached_property
+    def _above(self) -> Array:
+        B = self.receptances.B
+        return B if self.rows is None else np.vstack([B, self.rows])
+
+    @cached_property
+    def _answers(self) -> Complex:
+        """(L, m + k, m) of coefficients and rows to forces on coefficients."""
+        return self.receptances.answer(self.omega, self.speed, self._above, self.receptances.B)
+
+    @cached_property
+    def _driven(self) -> Complex:
+        out = np.zeros((self.lines.count, len(self._above)), dtype=np.complex128)
+        for line, force in self.loads:
+            omega = self.omega[line : line + 1]
+            out[line] += self.receptances.answer(omega, self.speed, self._above, force[None])[0, :, 0]
+        return out
+
+    @cached_property
+    def R(self) -> Complex:
+        """(L, m, m) with the reference on."""
+        m = len(self.receptances.B)
+        return np.ascontiguousarray(self._answers[:, :m])
+
+    @cached_property
+    def driven(self) -> Complex:
+        """z_F (L, m): what the loads alone would do, with the reference on."""
+        return self._driven[:, : len(self.receptances.B)]
+
+    def moved(self, z: Complex, g: Complex) -> Complex:
+        """Amplitudes (L, k) of the rows."""
+        m = len(self.receptances.B)
+        h = self.excess(z, g)
+        return np.asarray(self._driven[:, m:] - (self._answers[:, m:] @ h[:, :, None])[:, :, 0])
+
+    def window(self, lines: Lines) -> float:
+        """Time between samples, s; of several bases, whose samples have none, 1/12 of the fastest line's."""
+        if lines.index.shape[1] == 1:
+            return float(2 * np.pi / abs(self.bases.frequencies(self.speed)[0]) / lines.samples)
+        return float(2 * np.pi / 12 / np.abs(self.omega).max())
+
+    def rates(self, z: Complex) -> Complex:
+        """Amplitudes of the rate of change."""
+        return np.asarray(1j * self.omega[:, None] * z)
+
+    def press(self, z: Complex, *, tangents: bool = True, lines: Lines | None = None) -> Pressed:
+        """What the balls do along the motion z (L, m)."""
+        lines = lines or self.lines
+        signal = lines.signals(np.hstack([z, self.rates(z)]))
+        m = z.shape[1]
+        bodies = self.bodies if lines is self.lines else replace(self, lines=lines).bodies
+        found = []
+        K, C = np.zeros((m, m)), np.zeros((m, m))
+        g = np.zeros((lines.samples, m))
+        for term, own, (angles, speeds) in zip(self.system.bearings, self.slots, bodies, strict=True):
+            along = core.bearing_along(
+                _Packed(self.kernels[self.system.bearings.index(term)]),
+                signal[:, own],
+                signal[:, m + own.start : m + own.stop],
+                angles,
+                speeds,
+                window=self.window(lines),
+                tangents=tangents,
+            )
+            g[:, own] = along.g
+            if tangents:
+                K[own, own], C[own, own] = along.K.mean(axis=0), along.C.mean(axis=0)
+            found.append(along)
+        return Pressed(tuple(found), lines.amplitudes(g), K, C)
+
+    def excess(self, z: Complex, g: Complex) -> Complex:
+        """h (L, m): the balls' force less the reference's."""
+        return np.asarray(g - z @ self.receptances.K.T - self.rates(z) @ self.receptances.C.T)
+
+    def residual(self, z: Complex, pressed: Pressed) -> Complex:
+        """z + R h − z_F (L, m), m."""
+        h = self.excess(z, pressed.g)
+        return np.asarray(z + (self.R @ h[:, :, None])[:, :, 0] - self.driven)
+
+    def linearised(self, pressed: Pressed) -> Linearised:
+        """The derivative of the residual, preconditioned."""
+        return Linearised.of(self, pressed)
+
+
+@dataclass(frozen=True)
+class _Packed:
+    fields: dict[str, object]
+
+    def packed(self) -> dict[str, object]:
+        return self.fields
+
+
+@dataclass(frozen=True, eq=False)
+class Linearised:
+    """Derivative of the residual at a motion, times vectors: P⁻¹ J, P the same with the mean tangent alone.
+
+    Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's
+    imaginary part is kept at zero.
+    """
+
+    balance: Balance
+    tangents: tuple[Array, ...]
+    inverse: Complex = field(repr=False)
+    R: Complex = field(repr=False)
+
+    @classmethod
+    def of(cls, balance: Balance, pressed: Pressed) -> Linearised:
+        reference = balance.receptances
+        omega = balance.omega[:, None, None]
+        off = (pressed.K - reference.K) + 1j * omega * (pressed.C - reference.C)
+        m = len(reference.K)
+        P = np.eye(m) + balance.R @ off
+        inverse = np.linalg.inv(P)
+        tangents = tuple(
+            np.concatenate([a.K - a.K.mean(axis=0), a.C - a.C.mean(axis=0)], axis=2) for a in pressed.bearings
+        )
+        # P⁻¹ (I + R (T − Z)) = I + P⁻¹ R (T − T̄)
+        return cls(balance, tangents, np.asarray(inverse), np.asarray(inverse @ balance.R))
+
+    def forced(self, z: Complex) -> Complex:
+        """What the tangents less their mean make of a change z (L, m)."""
+        b = self.balance
+        m = z.shape[1]
+        signal = b.lines.signals(np.hstack([z, b.rates(z)]))
+        g = np.zeros((b.lines.samples, m))
+        for own, T in zip(b.slots, self.tangents, strict=True):
+            both = np.concatenate([signal[:, own], signal[:, m + own.start : m + own.stop]], axis=1)
+            g[:, own] = np.matmul(T, both[:, :, None])[:, :, 0]
+        return b.lines.amplitudes(g)
+
+    def product(self, vector: Array) -> Array:
+        """P⁻¹ J times a vector."""
+        z = unflat(vector, self.balance)
+        return vector + flat((self.R @ self.forced(z)[:, :, None])[:, :, 0])
+
+    def prepared(self, residual: Complex) -> Array:
+        """P⁻¹ times a residual, as a vector."""
+        return flat((self.inverse @ residual[:, :, None])[:, :, 0])
+
+    def solve(self, residual: Complex, tolerance: float) -> tuple[Complex, float]:
+        """J⁻¹ residual (L, m), and what the solve left, relative."""
+        x, left = gmres(self.product, self.prepared(residual), tolerance)
+        return unflat(x, self.balance), left
+
+
+def flat(z: Complex) -> Array:
+    """Amplitudes (L, m) as real numbers."""
+    z = np.ascontiguousarray(z)
+    z[0].imag = 0.0
+    return z.view(np.float64).reshape(-1)
+
+
+def unflat(vector: Array, balance: Balance) -> Complex:
+    """Real numbers as amplitudes (L, m)."""
+    return np.ascontiguousarray(vector).view(np.complex128).reshape(balance.lines.count, -1)
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A motion and how well it balances.
+
+    Parameters
+    ----------
+    z
+        Amplitudes (L, m) of the bearings' coefficients, m.
+    residual
+        Largest entry of the residual over the largest amplitude.
+    line, coefficient
+        Where it is.
+    iterations
+        Of Newton.
+    converged
+        Whether the residual is below what was asked for.
+    """
+
+    z: Complex
+    pressed: Pressed
+    residual: float
+    line: int
+    iterations: int
+    converged: bool
+
+
+def measure(residual: Complex, z: Complex) -> tuple[float, int]:
+    """The largest residual over the largest amplitude, and its line."""
+    sizes = np.abs(residual).max(axis=1, initial=0.0)
+    if not sizes.any():
+        return float(sizes.sum()), 0
+    return float(sizes.max() / max(np.abs(z).max(initial=0.0), TINY)), int(np.argmax(sizes))
+
+
+def newton(
+    balance: Balance,
+    z: Complex,
+    *,
+    tolerance: float = 1e-11,
+    most: int = 40,
+    tell: Callable[[int, float], object] | None = None,
+) -> Found:
+    """Newton's iteration from amplitudes z, its steps halved while they do not help."""
+    pressed = balance.press(z)
+    r = balance.residual(z, pressed)
+    size, line = measure(r, z)
+    last = np.inf
+    for iteration in range(most):
+        if tell is not None:
+            tell(iteration, size)
+        if not np.isfinite(size):
+            break
+        if size <= tolerance:
+            return Found(z, pressed, size, line, iteration, True)
+        # as exact as the quadratic convergence can use, no more
+        forcing = min(1e-2, max(0.03 * size, 0.1 * tolerance / size))
+        step, _ = balance.linearised(pressed).solve(r, forcing)
+        share = 1.0
+        while True:
+            trial = z - share * step
+            tried = balance.press(trial)
+            r_new = balance.residual(trial, tried)
+            new, where = measure(r_new, trial)
+            if new <= (1.0 - 0.1 * share) * size or share < 1.0 / 32.0:
+                break
+            share *= 0.5
+        stuck = new > 0.9 * size and last > 0.9
+        last = new / size
+        z, pressed, r, size, line = trial, tried, r_new, new, where
+        if stuck and size <= max(1e3 * tolerance, ROUND_OFF):
+            break
+    return Found(z, pressed, size, line, most, bool(size <= max(tolerance, ROUND_OFF)))

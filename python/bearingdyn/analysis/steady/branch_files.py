@@ -1,0 +1,94 @@
+"""Finished searches of a map, kept in a folder: one file of arrays each, named by what it was made from."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from bearingdyn.analysis.steady.balance import Pressed
+from bearingdyn.analysis.steady.branches import Branch, Mark
+from bearingdyn.analysis.steady.continuation import Point
+from bearingdyn.analysis.steady.stability import Stability
+from bearingdyn.fingerprint import fingerprint
+from bearingdyn.types import Array
+from bearingdyn.writing import write_whole
+
+
+@dataclass(frozen=True)
+class BranchFiles:
+    """A folder of finished searches, and what told their maps apart."""
+
+    folder: Path
+    told: str
+
+    @classmethod
+    def of(cls, folder: str | os.PathLike[str], about: object) -> BranchFiles:
+        """The folder, made if it is not there, for maps of what is told by `about`."""
+        path = Path(folder)
+        path.mkdir(parents=True, exist_ok=True)
+        return cls(path, fingerprint(about))
+
+    def _path(self, search: object) -> Path:
+        return self.folder / f"{fingerprint((self.told, search))}.npz"
+
+    def read(self, search: object) -> list[Branch] | None:
+        """The branches of a search, or None where it was not finished."""
+        path = self._path(search)
+        if not path.exists():
+            return None
+        with np.load(path, allow_pickle=False) as arrays:
+            heads = json.loads(str(arrays["heads"]))
+            return [_branch({k: arrays[f"{i}.{k}"] for k in KEPT}, head) for i, head in enumerate(heads)]
+
+    def write(self, search: object, branches: list[Branch]) -> None:
+        """Keep a finished search."""
+        arrays: dict[str, Array] = {}
+        heads = []
+        for i, branch in enumerate(branches):
+            heads.append([branch.passages, branch.origin, [m.event for m in branch.marks]])
+            arrays |= {f"{i}.{k}": v for k, v in _arrays(branch).items()}
+        held = io.BytesIO()
+        np.savez(held, heads=np.array(json.dumps(heads)), **arrays)  # type: ignore[arg-type]
+        write_whole(self._path(search), held.getbuffer())
+
+
+KEPT = ("z", "numbers", "tangent", "moved", "multipliers", "period")
+
+
+def _arrays(branch: Branch) -> dict[str, Array]:
+    points = [m.point for m in branch.marks]
+    states = [m.stability for m in branch.marks]
+    most = max((len(s.multipliers) for s in states if s is not None), default=0)
+    multipliers = np.full((len(states), most), np.nan, dtype=np.complex128)
+    for row, state in zip(multipliers, states, strict=True):
+        if state is not None:
+            row[: len(state.multipliers)] = state.multipliers
+    return {
+        "z": np.array([p.z for p in points]),
+        "numbers": np.array([[p.parameter, p.residual, p.iterations, p.slope] for p in points]),
+        "tangent": np.array([p.tangent for p in points]),
+        "moved": np.array([m.moved for m in branch.marks]),
+        "multipliers": multipliers,
+        "period": np.array([np.nan if s is None else s.period for s in states]),
+    }
+
+
+def _branch(arrays: dict[str, Array], head: tuple[int, str, list[str]]) -> Branch:
+    passages, origin, events = head
+    marks = []
+    nothing = Pressed((), np.zeros((0, 0), dtype=np.complex128), np.zeros((0, 0)), np.zeros((0, 0)))
+    for i, event in enumerate(events):
+        p, residual, iterations, slope = arrays["numbers"][i].tolist()
+        z = np.ascontiguousarray(arrays["z"][i])
+        point = Point(z, p, nothing, residual, int(iterations), arrays["tangent"][i], slope)
+        values = arrays["multipliers"][i]
+        values = values[np.isfinite(values)]
+        period = float(arrays["period"][i])
+        state = Stability(values, period) if np.isfinite(period) else None
+        marks.append(Mark(point, state, arrays["moved"][i], event))
+    return Branch(passages, tuple(marks), origin)

@@ -1,0 +1,456 @@
+"""All branches of steady motions over a parameter: followed, their events located, switched at flips."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Protocol, TypeAlias
+
+import numpy as np
+
+from bearingdyn.analysis.core_channels import channel_of
+from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
+from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, follow, locate
+from bearingdyn.analysis.steady.problem import Problem
+from bearingdyn.analysis.steady.stability import (
+    FirstOrder,
+    Floquet,
+    Stability,
+    band_of,
+    floquet,
+    kind,
+    pooled,
+)
+from bearingdyn.analysis.steady.torus import Bases, Lines
+from bearingdyn.application import Application
+from bearingdyn.types import Complex
+
+# of a motion, by which another at the same parameter must differ to be another
+DIFFERENT = 1e-3
+# amplitude of the doubled motion with which a branch begins at a flip, as a share of the motion there
+BEGIN = 0.02
+# places of the range where motions are looked for beside those of the two ends, and amplitudes, as shares of
+# the mean deflection, with which they begin
+PLACES, PUSHES = 5, (0.5, 1.5)
+# of the range, by which a sweep that can go no further leaps on; and its most leaps
+LEAP, LEAPS = 0.01, 40
+# of a multiplier's size, within which an event lies on the unit circle
+ON_CIRCLE = 2e-3
+# times as many samples for the multipliers of a located point
+FINER = 4
+
+
+Tell: TypeAlias = Callable[[float], object] | None
+"""Told of the parameter reached."""
+
+
+class Family(Protocol):
+    """Systems over a parameter: of each value its problem and the speed of its shaft."""
+
+    def at(self, parameter: float) -> tuple[Problem, float]:
+        """The problem, and the speed, rad/s."""
+
+
+@dataclass(frozen=True, eq=False)
+class Speeds:
+    """One system over its speed."""
+
+    problem: Problem
+
+    def at(self, parameter: float) -> tuple[Problem, float]:
+        """The problem, and the parameter as its speed."""
+        return self.problem, parameter
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """Applications made from a parameter, at one speed; the last few are kept."""
+
+    make: Callable[[float], Application]
+    speed: float
+    recent: dict[float, Problem] = field(default_factory=dict)
+
+    def at(self, parameter: float) -> tuple[Problem, float]:
+        """The problem of what is made from the parameter, and the speed."""
+        if parameter not in self.recent:
+            while len(self.recent) > 6:
+                del self.recent[next(iter(self.recent))]
+            self.recent[parameter] = Problem.of(self.make(parameter))
+        return self.recent[parameter], self.speed
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What is followed, and where.
+
+    Parameters
+    ----------
+    family
+        Systems over the parameter.
+    places
+        Channels of motion whose rows are asked for.
+    low, high, longest
+        Range of the parameter and longest step in it.
+    harmonics, per
+        Of a passage, and samples for each.
+    most
+        Points of a branch.
+    tolerance
+        Of the location of events, in the parameter.
+    slope_step
+        Of the parameter, relative, over which slopes are taken.
+    """
+
+    family: Family
+    places: tuple[str, ...]
+    low: float
+    high: float
+    longest: float
+    harmonics: int
+    per: int
+    most: int
+    tolerance: float
+    slope_step: float = SLOPE
+    models: dict[tuple[int, int], FirstOrder] = field(default_factory=dict)
+
+    def at(self, parameter: float, lines: Lines) -> Balance:
+        """The balance at a parameter, on lines."""
+        problem, speed = self.family.at(parameter)
+        rows = [channel_of(problem.system, name)[0][1] for name in self.places]
+        return problem.balance(lines, speed, np.array(rows).reshape(-1, problem.system.n))
+
+    def standing(self, parameter: float, lines: Lines) -> Complex:
+        """The motion that stands still."""
+        return self.family.at(parameter)[0].standing(lines)
+
+    def lines(self, passages: int) -> Lines:
+        """Of a motion that repeats after so many passages."""
+        return Lines.harmonics(self.harmonics * passages, self.per)
+
+    def stability(self, balance: Balance, z: Complex, passages: int, fine: int = 1) -> Floquet:
+        """Multipliers of a motion that repeats after so many passages."""
+        base = abs(float(balance.bases.frequencies(balance.speed)[0]))
+        band = band_of(float(np.abs(balance.omega).max()))
+        key = (id(balance.system), band)
+        if key not in self.models:
+            if len(self.models) > MODELS:
+                self.models.clear()
+            fastest = 2.0 ** (band / 2)
+            self.models[key] = FirstOrder.of(balance.system, fastest, (base / 60, fastest / 6))
+        lines = balance.lines
+        count = max(SAMPLES * passages, 2 * (lines.samples // 2)) * fine
+        pressed = balance.press(z, lines=Lines(lines.index, lines.steps, count))
+        m = z.shape[1]
+        K = pooled([a.K for a in pressed.bearings], m)
+        C = pooled([a.C for a in pressed.bearings], m)
+        return floquet(self.models[key], balance.speed, 2 * np.pi / base, K, C)
+
+
+# balances of a curve that are kept: what they have answered is asked again
+RECENT = 4
+# first-order models that are kept
+MODELS = 40
+# samples of a passage for its stability
+SAMPLES = 256
+
+
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """One point of a branch, as it is kept."""
+
+    point: Point
+    stability: Stability | None
+    moved: Complex
+    event: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """Points of one branch in their order along it; passages after which its motions repeat."""
+
+    passages: int
+    marks: tuple[Mark, ...]
+    origin: str
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Lowest and highest parameter."""
+        values = [m.point.parameter for m in self.marks if m.event != "failed"]
+        return min(values, default=math.nan), max(values, default=math.nan)
+
+
+def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
+    """A curve in the measure of what moves: a motion's size, and a tenth of the range."""
+
+    recent: dict[float, Balance] = {}
+
+    def at(parameter: float) -> Balance:
+        if parameter not in recent:
+            while len(recent) >= RECENT:
+                del recent[next(iter(recent))]
+            balance = task.at(parameter, lines)
+            if passages > 1:
+                balance = replace(balance, bases=_divided(balance.bases, passages))
+            recent[parameter] = balance
+        return recent[parameter]
+
+    moving = float(np.linalg.norm(found.z[1:]))
+    size = max(5.0 * moving, 0.1 * float(np.linalg.norm(found.z[0])))
+    return Curve(at, scale=0.1 * (task.high - task.low), size=size, slope_step=task.slope_step)
+
+
+class Tracer:
+    """Follows one branch and marks what happens on it."""
+
+    def __init__(
+        self,
+        task: Task,
+        passages: int,
+        others: Sequence[Branch] = (),
+        tell: Callable[[float], object] | None = None,
+    ) -> None:
+        self.task, self.passages, self.others, self.tell = task, passages, others, tell
+        self.lines = task.lines(passages)
+
+    def mark(self, curve: Curve, point: Point, event: str = "", fine: int = 1) -> Mark:
+        """A point with its stability and what moves."""
+        balance = curve.at(point.parameter)
+        state = self.stability(balance, point.z, fine)
+        return Mark(point, state, balance.moved(point.z, point.pressed.g), event)
+
+    def stability(self, balance: Balance, z: Complex, fine: int = 1) -> Stability | None:
+        """Multipliers, or None without bearings."""
+        if not balance.system.bearings:
+            return None
+        return self.task.stability(balance, z, self.passages, fine).stability
+
+    def trace(self, found: Found, parameter: float, direction: float, origin: str) -> Branch:
+        """The branch through a motion, towards rising (+1) or falling parameter."""
+        curve = curve_of(self.task, self.lines, found, self.passages)
+        begin = curve.begin(found, parameter, direction)
+        return Branch(self.passages, tuple(self._marks(curve, begin)), origin)
+
+    def _marks(self, curve: Curve, begin: Point) -> Iterator[Mark]:
+        task = self.task
+        last = self.mark(curve, begin)
+        yield last
+        met, ended, over = 0, begin, False
+        for point in follow(curve, begin, task.low, task.high, task.longest, task.most):
+            if self.passages > 1 and _mirrored(ended.z, point.z):
+                over = (
+                    True  # through the flip where the branch ends: what follows is the same, a passage later
+                )
+                break
+            new = self._cut(curve, last, self.mark(curve, point))
+            yield from self._events(curve, last, new)
+            yield new
+            if self.tell is not None:
+                self.tell(new.point.parameter)
+            last, ended = new, point
+            met = met + 1 if known(self.others, self.passages, point.parameter, point.z) else 0
+            over = met > 1 or not task.low < point.parameter < task.high
+            if over:
+                break
+        if not over:
+            yield Mark(ended, None, np.full_like(last.moved, np.nan), "failed")
+
+    def _cut(self, curve: Curve, last: Mark, new: Mark) -> Mark:
+        """The point itself, or of one beyond the range the motion at its end."""
+        task, p = self.task, new.point.parameter
+        if task.low <= p <= task.high:
+            return new
+        end = task.low if p < task.low else task.high
+        a, b = last.point, new.point
+        share = (end - a.parameter) / (b.parameter - a.parameter)
+        found = newton(curve.at(end), a.z + share * (b.z - a.z), tolerance=curve.tolerance)
+        if not found.converged:
+            return new
+        point = replace(b, z=found.z, parameter=end, pressed=found.pressed, residual=found.residual)
+        return self.mark(curve, point)
+
+    def _events(self, curve: Curve, before: Mark, after: Mark) -> list[Mark]:
+        found = []
+        if before.point.slope * after.point.slope < 0.0:
+            found.append(self._at(curve, before, after, "fold", lambda p: p.slope))
+        a, b = before.stability, after.stability
+        if a is not None and b is not None:
+            for name in ("flip", "neimark-sacker"):
+                if (_beyond(a, name) > 0.0) != (_beyond(b, name) > 0.0):
+
+                    def test(p: Point, name: str = name) -> float:
+                        state = self.stability(curve.at(p.parameter), p.z, FINER)
+                        return 0.0 if state is None else _beyond(state, name)
+
+                    found.append(self._at(curve, before, after, name, test))
+        ahead = 1.0 if after.point.parameter >= before.point.parameter else -1.0
+        # a pair that meets on the real axis changes its name without a crossing
+        real = [f for f in found if f is not None and (f.event == "fold" or _crossing(f) <= ON_CIRCLE)]
+        return sorted(real, key=lambda f: ahead * f.point.parameter)
+
+    def _at(
+        self, curve: Curve, before: Mark, after: Mark, name: str, test: Callable[[Point], float]
+    ) -> Mark | None:
+        point = locate(curve, before.point, after.point, test, self.task.tolerance)
+        return None if point is None else self.mark(curve, point, name, FINER)
+
+    def doubled(self, flip: Mark) -> Branch | None:
+        """The branch of twice the period that begins at a flip, or None where it is not found."""
+        task, twice = self.task, 2 * self.passages
+        tracer = Tracer(task, twice, self.others, self.tell)
+        curve = curve_of(task, self.lines, _found(flip.point), self.passages)
+        balance = curve.at(flip.point.parameter)
+        direction = task.stability(balance, flip.point.z, self.passages, FINER).antiperiodic(tracer.lines)
+        if direction is None:
+            return None
+        z = self.lines.moved(flip.point.z, tracer.lines, 2)
+        size = BEGIN * float(np.linalg.norm(flip.point.z[1:])) / max(float(np.linalg.norm(direction)), 1e-300)
+        grown = curve_of(task, tracer.lines, replace(_found(flip.point), z=z), twice)
+        border = flat(direction / grown.size)
+        border /= np.linalg.norm(border)
+        point = grown.correct(z + size * direction, flip.point.parameter, (border, 0.0))
+        if point is None:
+            return None
+        if float(point.tangent @ border) < 0.0:  # away from the flip
+            point = replace(point, tangent=-point.tangent, slope=-point.slope)
+        marks = tuple(tracer._marks(grown, point))
+        return Branch(twice, marks, f"flip at {flip.point.parameter:.6g}")
+
+
+def _divided(bases: Bases, passages: int) -> Bases:
+    """The bases of motions that repeat after so many passages only."""
+    base = bases.bases[0]
+    return Bases(
+        (replace(base, ratio=base.ratio / passages, omega=base.omega / passages),),
+        tuple(replace(t, multiple=tuple(passages * k for k in t.multiple)) for t in bases.bearings),
+    )
+
+
+def _found(point: Point) -> Found:
+    return Found(point.z, point.pressed, point.residual, 0, point.iterations, True)
+
+
+def _crossing(mark: Mark) -> float:
+    """How far from the unit circle the multiplier of an event lies."""
+    return math.inf if mark.stability is None else abs(_beyond(mark.stability, mark.event))
+
+
+def _mirrored(before: Complex, after: Complex) -> bool:
+    """Whether the lines of half the frequency have gone through zero."""
+    return float(np.real(np.vdot(before[1::2], after[1::2]))) < 0.0
+
+
+def _beyond(state: Stability, name: str) -> float:
+    """Size less one of the largest multiplier that would bring this; −1 where there is none."""
+    return max((abs(m) - 1.0 for m in state.multipliers if kind(complex(m)) == name), default=-1.0)
+
+
+def known(branches: Sequence[Branch], passages: int, parameter: float, z: Complex) -> bool:
+    """Whether a motion lies on a branch, between two of its points."""
+    size = float(np.linalg.norm(z[1:])) + 1e-4 * float(np.linalg.norm(z[0]))
+    for branch in branches:
+        if branch.passages != passages:
+            continue
+        points = [m.point for m in branch.marks if m.event != "failed"]
+        for a, b in pairwise(points):
+            if (a.parameter - parameter) * (b.parameter - parameter) > 0.0 or a.parameter == b.parameter:
+                continue
+            share = (parameter - a.parameter) / (b.parameter - a.parameter)
+            near = a.z + share * (b.z - a.z)
+            gap = float(np.linalg.norm(b.z - a.z))
+            if float(np.linalg.norm(near - z)) <= DIFFERENT * size + 0.2 * gap:
+                return True
+    return False
+
+
+@dataclass(frozen=True)
+class Job:
+    """One search: "sweep" from a place towards a direction, "state" begun with a push there, or "flip"."""
+
+    kind: str
+    place: float
+    direction: float = 0.0
+    push: float = 0.0
+    origin: str = ""
+
+
+def sweeps(task: Task) -> list[Job]:
+    """The two that begin at the ends of the range."""
+    return [
+        Job("sweep", task.high, -1.0, origin="coasting down"),
+        Job("sweep", task.low, 1.0, origin="running up"),
+    ]
+
+
+def states(task: Task) -> list[Job]:
+    """Those that begin between, from several states."""
+    places = np.linspace(task.low, task.high, PLACES + 2)[1:-1].tolist()
+    return [Job("state", p, push=push, origin="another state") for p in places for push in (0.0, *PUSHES)]
+
+
+def done(
+    task: Task, job: Job, others: Sequence[Branch], flip: tuple[int, Mark] | None = None, tell: Tell = None
+) -> list[Branch]:
+    """The branches that a job finds and that are not known from others."""
+    if job.kind == "sweep":
+        return _sweep(task, others, job, tell)
+    if job.kind == "state":
+        return _state(task, others, job, tell)
+    assert flip is not None
+    made = Tracer(task, flip[0], others, tell).doubled(flip[1])
+    return [] if made is None or _same_start(made, others) else [made]
+
+
+def _state(task: Task, others: Sequence[Branch], job: Job, tell: Tell) -> list[Branch]:
+    lines = task.lines(1)
+    rest = task.standing(job.place, lines)
+    z = rest.copy()
+    # a swing of its own size across the load, in the sense of rotation
+    size = job.push * float(np.abs(rest[0]).max(initial=0.0))
+    z[1] += size * np.where(np.arange(z.shape[1]) % 2 == 0, 1.0, -1j)
+    found = newton(task.at(job.place, lines), z, tolerance=1e-10, most=25)
+    if not found.converged or known(others, 1, job.place, found.z):
+        return []
+    made: list[Branch] = []
+    for direction in (-1.0, 1.0):
+        tracer = Tracer(task, 1, [*others, *made], tell)
+        made.append(tracer.trace(found, job.place, direction, job.origin))
+    return made
+
+
+def _same_start(branch: Branch, others: Sequence[Branch]) -> bool:
+    """Whether a branch is one that is known already, begun at its other end."""
+    middle = branch.marks[len(branch.marks) // 2].point
+    if known(others, branch.passages, middle.parameter, middle.z):
+        return True
+    # half a period later it is the same motion
+    odd = np.arange(len(middle.z)) % 2 == 1
+    z = middle.z.copy()
+    z[odd] *= -1.0
+    return known(others, branch.passages, middle.parameter, z)
+
+
+def _sweep(task: Task, others: Sequence[Branch], job: Job, tell: Tell) -> list[Branch]:
+    """Branches met from one end, leaping on where one can be followed no further."""
+    lines = task.lines(1)
+    found: list[Branch] = []
+    place = job.place
+    z = task.standing(place, lines)
+    for _ in range(LEAPS):
+        if not task.low <= place <= task.high:
+            break
+        motion = newton(task.at(place, lines), z, tolerance=1e-10)
+        if not motion.converged:
+            motion = newton(task.at(place, lines), task.standing(place, lines), tolerance=1e-10)
+        if motion.converged:
+            have = [*others, *found]
+            if known(have, 1, place, motion.z):
+                break
+            found.append(Tracer(task, 1, have, tell).trace(motion, place, job.direction, job.origin))
+            last = found[-1].marks[-1]
+            if last.event != "failed":
+                break
+            place, z = last.point.parameter, last.point.z
+        place += job.direction * LEAP * (task.high - task.low)
+    return found

@@ -1,0 +1,180 @@
+"""From the balance to what is asked for: coordinates, channels, signals, powers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bearingdyn import core
+from bearingdyn.analysis.core_channels import CoreChannel
+from bearingdyn.analysis.dissipation import sinks
+from bearingdyn.analysis.steady.balance import Balance, Found, Pressed
+from bearingdyn.analysis.steady.torus import Lines
+from bearingdyn.types import Array, Complex
+
+# times as many samples as the balance had, for powers and loads
+FINER = 4
+# lines beyond the last that the estimate of what was cut looks at
+BEYOND = 12
+# samples of the signals of a motion with several base frequencies, at most
+MOST_SAMPLES = 20_000
+
+MOTIONS = tuple(core.CHANNEL_KINDS[q] for q in ("displacement", "velocity", "acceleration"))
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A balanced motion in all coordinates of its system."""
+
+    balance: Balance
+    found: Found
+
+    @cached_property
+    def x(self) -> Complex:
+        """Amplitudes (L, n) of the coordinates."""
+        b = self.balance
+        rows = np.eye(b.system.n)
+        B = b.receptances.B
+        h = b.excess(self.found.z, self.found.pressed.g)
+        gives = b.receptances.answer(b.omega, b.speed, rows, B)
+        x = -(gives @ h[:, :, None])[:, :, 0]
+        for line, force in b.loads:
+            x[line] += b.receptances.answer(b.omega[line : line + 1], b.speed, rows, force[None])[0, :, 0]
+        return np.asarray(x)
+
+    @cached_property
+    def fine(self) -> Pressed:
+        """What the balls do, sampled more finely where one base allows it."""
+        b = self.balance
+        lines = b.lines.finer(FINER) if b.lines.index.shape[1] == 1 else b.lines
+        return b.press(self.found.z, tangents=False, lines=lines)
+
+    def times(self) -> Array:
+        """One period, s; of several bases one of the slowest line, as far as samples allow."""
+        b = self.balance
+        slow, fast = np.abs(b.omega[1:]).min(initial=np.inf), np.abs(b.omega).max()
+        if b.lines.index.shape[1] == 1:
+            base = float(b.bases.frequencies(b.speed)[0])
+            return np.asarray(np.arange(b.lines.samples) * (2 * np.pi / abs(base) / b.lines.samples))
+        count = int(min(MOST_SAMPLES, np.ceil(8 * fast / slow)))
+        return np.asarray(np.arange(count) * (2 * np.pi / (8 * fast)))
+
+    def at(self, amplitudes: Complex, times: Array) -> Array:
+        """Signals (t, k) of amplitudes (L, k)."""
+        b = self.balance
+        if b.lines.index.shape[1] == 1 and len(times) == b.lines.samples:
+            return b.lines.signals(amplitudes)
+        return np.asarray((np.exp(1j * times[:, None] * b.omega) @ amplitudes).real)
+
+    def pressed_at(self, times: Array) -> tuple[core.Along, ...]:
+        """What every bearing does at times, s."""
+        b = self.balance
+        z, rate = self.at(self.found.z, times), self.at(b.rates(self.found.z), times)
+        out = []
+        for term, own, turning in zip(b.system.bearings, b.slots, b.bases.bearings, strict=True):
+            speeds = b.speed * np.array(turning.ratio)
+            angles = times[:, None] * speeds
+            angles[:, 0] += turning.angle0
+            out.append(
+                core.bearing_along(term.kernel(), z[:, own], rate[:, own], angles, speeds, tangents=False)
+            )
+        return tuple(out)
+
+    def amplitudes(self, channels: Sequence[CoreChannel]) -> Complex:
+        """(L, channels) of what a march would record."""
+        b = self.balance
+        lines = b.lines.finer(FINER) if b.lines.index.shape[1] == 1 else b.lines
+        out = np.zeros((b.lines.count, len(channels)), dtype=np.complex128)
+        for c, (kind, row, bearing, index) in enumerate(channels):
+            if row is not None and kind in MOTIONS:
+                out[:, c] = (1j * b.omega) ** MOTIONS.index(kind) * (self.x @ row)
+            elif kind == core.CHANNEL_KINDS["force"]:
+                out[:, c] = self.found.pressed.g[:, b.slots[bearing].start + index]
+            else:
+                out[:, c] = lines.amplitudes(_of_balls(kind, index, self.fine.bearings[bearing])[:, None])[
+                    :, 0
+                ]
+        return out
+
+    def signals(self, channels: Sequence[CoreChannel], amplitudes: Complex, times: Array) -> Array:
+        """(t, channels) of the same."""
+        out = self.at(amplitudes, times)
+        plain = (*MOTIONS, core.CHANNEL_KINDS["force"])
+        if any(kind not in plain for kind, *_ in channels):
+            pressed = self.pressed_at(times)
+            for c, (kind, _, bearing, index) in enumerate(channels):
+                if kind not in plain:
+                    out[:, c] = _of_balls(kind, index, pressed[bearing])
+        return out
+
+    def powers(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Mean powers, W: what feeds energy in, and what turns it into heat, by name.
+
+        What presses the balls is heat in the mean, for what is elastic comes back; and it is known to the
+        samples of the balance, while heat by itself leaves the samples' own error.
+        """
+        b, s, x = self.balance, self.balance.system, self.x
+        velocity = 1j * b.omega[:, None] * x
+        fed = {"loads": 0.0}
+        for line, force in b.loads:
+            fed["loads"] += 0.5 * float(np.real(np.vdot(force, velocity[line])))
+        for term, own in zip(s.bearings, self.found.pressed.bearings, strict=True):
+            fed[f"{term.name} (turning)"] = float(own.turning.mean())
+        if s.N.any():
+            circulatory = -b.speed * np.real(np.einsum("lj,lj->", (x @ s.N.T).conj(), velocity))
+            fed["shaft's own damping (turning)"] = 0.5 * float(circulatory)
+        lost = {}
+        for sink in sinks(s):
+            if sink.channel is None:
+                lost[sink.name] = 0.5 * float((np.abs(velocity @ sink.rows.T) ** 2).sum())
+            elif sink.channel[0] == core.CHANNEL_KINDS["contact_loss"]:
+                lost[sink.name] = float(self.found.pressed.bearings[sink.channel[1]].pressing.mean())
+            else:
+                lost[sink.name] = self._shear(sink.channel[2])
+        return fed, lost
+
+    def _shear(self, layer: int) -> float:
+        """Mean power that the branches of a layer turn into heat, W: ω Im G*(ω) |Lᵀx|², η0 apart."""
+        b = self.balance
+        term = b.system.layers[layer]
+        omega = np.abs(b.omega[1:])
+        loss = np.imag(np.asarray(term.material.complex_modulus(omega)))
+        loss = loss - omega * float(getattr(term.material, "eta0", 0.0))
+        return float((omega * loss * (np.abs(self.x[1:] @ term.L) ** 2).sum(axis=1)).sum())
+
+    def beyond(self, channels: Sequence[CoreChannel]) -> Array:
+        """(channels,) amplitude of the motions on the lines next above the last: what the balance cut off.
+
+        NaN of channels that are no motions, and of several bases.
+        """
+        b = self.balance
+        out = np.full(len(channels), np.nan)
+        moves = [c for c, channel in enumerate(channels) if channel[0] in MOTIONS]
+        if b.lines.index.shape[1] != 1 or not moves:
+            return out
+        last = b.lines.count - 1
+        count = min(BEYOND, b.lines.samples // 2 - 1 - last)
+        more = Lines(np.arange(last + count + 1)[:, None], b.lines.steps, b.lines.samples * FINER)
+        g = np.zeros((more.samples, len(self.found.z[0])))
+        for own, along in zip(b.slots, self.fine.bearings, strict=True):
+            g[:, own] = along.g
+        force = more.amplitudes(g)[last + 1 :]
+        omega = np.arange(last + 1.0, last + count + 1.0) * float(b.bases.frequencies(b.speed)[0])
+        rows = np.array([channels[c][1] for c in moves])
+        rate = np.array([MOTIONS.index(channels[c][0]) for c in moves])
+        moved = (b.receptances.answer(omega, b.speed, rows, b.receptances.B) @ force[:, :, None])[:, :, 0]
+        moved = np.abs(moved) * omega[:, None] ** rate
+        out[moves] = np.sqrt((moved**2).sum(axis=0))
+        return np.asarray(out)
+
+
+def _of_balls(kind: int, index: int, along: core.Along) -> Array:
+    """Samples of a channel that the balls make."""
+    if kind == core.CHANNEL_KINDS["ball"]:
+        return np.asarray(along.loads[:, index])
+    if kind == core.CHANNEL_KINDS["loaded"]:
+        return np.asarray(np.count_nonzero(along.loads > 0.0, axis=1), dtype=np.float64)
+    return along.heat

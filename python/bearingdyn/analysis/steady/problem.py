@@ -1,0 +1,129 @@
+"""What a steady motion is sought of: a system, what turns in it, what its structure answers, and a start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearingdyn.analysis.bearing_state import BearingState
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
+from bearingdyn.analysis.static_balance import Statics
+from bearingdyn.analysis.steady.balance import Balance
+from bearingdyn.analysis.steady.receptances import Receptances
+from bearingdyn.analysis.steady.torus import Bases, Lines
+from bearingdyn.application import Application
+from bearingdyn.material import Maxwell
+from bearingdyn.system import LayerTerm, System, system_of
+from bearingdyn.types import Array, Complex
+
+# of the mean of the bearings' own stiffness, that the reference adds to each coefficient: what holds a rotor
+# whose loaded balls stand on one side. Any value gives the same motion
+EVEN = 1.0
+# N/m, where no ball is pressed
+IDLE = 1e6
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A system ready to be balanced.
+
+    Parameters
+    ----------
+    source
+        Where its bearings stand still.
+    system, bases, receptances
+        The system, its base frequencies and what its structure answers.
+    rest
+        (m,) coefficients of all bearings at rest, m.
+    """
+
+    source: Equilibrium | System
+    system: System
+    bases: Bases
+    receptances: Receptances
+    rest: Array
+
+    @classmethod
+    def of(cls, source: Equilibrium | Application | System, subharmonic: int = 1) -> Problem:
+        """From an equilibrium, an application (its equilibrium is found) or a system.
+
+        Raises
+        ------
+        ValueError
+            For a layer whose law has no modulus at rest although a dead load rests on it; for what
+            `Bases.of` and `equilibrium` refuse.
+        """
+        system = source.system if isinstance(source, Equilibrium) else system_of("source", source)
+        for layer in system.layers:
+            check_linear(layer)
+            check_rest(layer, system)
+        bases = Bases.of(system, subharmonic)
+        if not isinstance(source, Equilibrium) and _plain(system):
+            source = equilibrium(source)
+        if isinstance(source, Equilibrium):
+            system, states = source.system, source.bearings
+        else:
+            source, states = system, _standing(system)
+        rest = np.concatenate([np.zeros(0), *(s.z for s in states.values())])
+        K = np.zeros((len(rest), len(rest)))
+        C = np.zeros_like(K)
+        at = 0
+        for s in states.values():
+            own = slice(at, at + len(s.z))
+            K[own, own], C[own, own] = s.K, s.C
+            at += len(s.z)
+        level = EVEN * float(np.trace(K)) / max(len(rest), 1)
+        return cls(
+            source, system, bases, Receptances(system, K + max(level, IDLE) * np.eye(len(rest)), C), rest
+        )
+
+    def balance(self, lines: Lines, speed: float, rows: Array | None = None) -> Balance:
+        """Its equations on chosen lines at a speed, rad/s; rows (k, n) of motions asked for beside them."""
+        return Balance(self.system, self.bases, self.receptances, lines, speed, rows)
+
+    def standing(self, lines: Lines) -> Complex:
+        """The motion (L, m) that stands still at the equilibrium."""
+        z = np.zeros((lines.count, len(self.rest)), dtype=np.complex128)
+        z[0] = self.rest
+        return z
+
+
+def _plain(system: System) -> bool:
+    return all(isinstance(t.material, Maxwell) for t in system.layers)
+
+
+def rest_modulus(layer: LayerTerm) -> float:
+    """G*(0) of a layer's law, Pa; NaN where it has none."""
+    if isinstance(layer.material, Maxwell):
+        return float(layer.material.G0)
+    try:
+        return float(np.real(layer.material.complex_modulus(np.zeros(1)))[0])
+    except (ValueError, ZeroDivisionError, FloatingPointError):
+        return float("nan")
+
+
+def check_linear(layer: LayerTerm) -> None:
+    """Refuse a law that softens with its own amplitude: ValueError."""
+    if layer.strain is not None:
+        raise ValueError(
+            f"layer {layer.part!r} softens with its amplitude (payne), and a steady motion is balanced with "
+            f"laws that do not; leave payne out of its material, or march with bd.transient"
+        )
+
+
+def check_rest(layer: LayerTerm, system: System) -> None:
+    """Refuse a law without a modulus at rest under a dead load: ValueError."""
+    G = rest_modulus(layer)
+    if not G > 0.0 and system.static_load().any():
+        raise ValueError(
+            f"layer {layer.part!r} has the material {type(layer.material).__name__}, whose modulus at rest "
+            f"is {G:g} Pa; under a dead load it must be positive, or there is no mean to move about: give a "
+            f"law with a plateau, or take the constant loads away"
+        )
+
+
+def _standing(system: System) -> dict[str, BearingState]:
+    """Bearings at rest, layers at G*(0) of their own laws."""
+    statics = Statics.of(system, [rest_modulus(layer) for layer in system.layers])
+    return statics.balance(system.bearings)[1]

@@ -1,0 +1,232 @@
+"""Receptances between bearings, loads and outputs, line by line, with G*(ω) of any law.
+
+The structure without its bearings falls into blocks; what each answers at its few coordinates of interest is
+B D⁻¹ Bᵀ. A block that neither turns nor has a law other than Maxwell's is taken apart once into its poles,
+D⁻¹ = Σ v wᵀ/(iω − λ); the others are solved frequency by frequency. Blocks are joined through a reference
+stiffness and damping of the bearings, (I + R Z)⁻¹ R, so that a rotor which floats without them does not stand
+out; what the reference takes away the balance gives back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bearingdyn.analysis.linearised import Linear
+from bearingdyn.material import Maxwell
+from bearingdyn.system import System, natural
+from bearingdyn.types import Array, Complex, Index
+
+# digits that joining floating blocks may cost, as in csrc/harmonic.c
+LARGEST_JOINT = 1e6
+# of a block's answer, by which its poles may miss it: else it is solved frequency by frequency
+POLES_AGREE = 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Poles:
+    """Of one block λ (p,), and its D⁻¹ = right (n, p) · 1/(iω − λ) · left (p, n)."""
+
+    values: Complex
+    right: Complex
+    left: Complex
+
+    @classmethod
+    def of(cls, block: System) -> Poles | None:
+        """Poles of a block at rest, or None where they do not give its answer back."""
+        n = block.n
+        C, K = block.viscous(), block.stiffness("relaxed")
+        branches = [
+            (term.L, 2.0 * G, tau)
+            for term in block.layers
+            for G, tau in zip(term.material.G, term.material.tau, strict=True)
+            if G > 0.0
+        ]
+        ranks = [L.shape[1] for L, _, _ in branches]
+        A = np.zeros((2 * n + sum(ranks),) * 2)
+        A[:n, n : 2 * n] = np.eye(n)
+        inverse = np.linalg.inv(block.M)
+        A[n : 2 * n, :n], A[n : 2 * n, n : 2 * n] = -inverse @ K, -inverse @ C
+        at = 2 * n
+        for (L, G, tau), rank in zip(branches, ranks, strict=True):
+            own = slice(at, at + rank)
+            A[n : 2 * n, own] = -inverse @ L
+            A[own, n : 2 * n] = G * L.T
+            A[own, own] = -np.eye(rank) / tau
+            at += rank
+        values, vectors = np.linalg.eig(A)
+        try:
+            left = np.linalg.solve(vectors, np.vstack([np.zeros((n, n)), inverse, np.zeros((at - 2 * n, n))]))
+        except np.linalg.LinAlgError:
+            return None
+        found = cls(values, vectors[:n], left)
+        fast = np.abs(values).max()
+        scale = np.sort(np.abs(values))[: max(len(values) // 2, 1)].max()
+        for omega in (1e-3 * scale, 0.1 * scale, scale):
+            if omega <= 0.0 or not fast:
+                return None
+            exact = np.linalg.inv(dynamic_stiffness(block, np.array([omega]), 0.0)[0])
+            with np.errstate(all="ignore"):  # undamped, it may stand on a pole: then it does not agree
+                own = found.right @ (found.left / (1j * omega - found.values)[:, None])
+            if not np.abs(own - exact).max() <= POLES_AGREE * np.abs(exact).max():
+                return None
+        return found
+
+    def answer(self, omega: Array, rows: Array, forces: Array | Complex) -> Complex:
+        """rows (k, n) D⁻¹ forces (n, i) at every ω, (f, k, i)."""
+        right, left = rows @ self.right, self.left @ forces
+        residues = (right.T[:, :, None] * left[:, None, :]).reshape(len(self.values), -1)
+        at = 1.0 / (1j * omega[:, None] - self.values)
+        return np.asarray((at @ residues).reshape(len(omega), len(rows), forces.shape[1]))
+
+
+def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
+    """D (f, n, n) of a system without its bearings; η0 sits in G*(ω)."""
+    D = (
+        (block.K + speed * block.N)
+        + 1j * omega[:, None, None] * (block.C + speed * block.G)
+        - omega[:, None, None] ** 2 * block.M
+    )
+    for term in block.layers:
+        G = np.asarray(term.material.complex_modulus(omega))
+        D += 2.0 * G[:, None, None] * (term.L @ term.L.T)
+    return np.asarray(D)
+
+
+def part_of(system: System, block: Index) -> System:
+    """The coordinates of one block as a system by itself."""
+    keep = np.zeros((system.n, len(block)))
+    keep[block, np.arange(len(block))] = 1.0
+    own = system.transformed(keep)
+    from dataclasses import replace
+
+    return replace(own, layers=tuple(t for t in own.layers if np.abs(t.L).any()), bearings=(), parts=())
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """One block of the structure: its coordinates, itself, and its poles if they do not move with speed."""
+
+    index: Index
+    system: System
+    poles: Poles | None
+
+    @classmethod
+    def of(cls, system: System, index: Index) -> Block:
+        """A block, its poles found if it has any to keep."""
+        own = part_of(system, index)
+        still = not (own.G.any() or own.N.any()) and all(isinstance(t.material, Maxwell) for t in own.layers)
+        floats = bool((natural(own.stiffness("relaxed"), own.M)[0] <= 0.0).any()) if still else True
+        return cls(index, own, Poles.of(own) if still and not floats else None)
+
+    def answer(self, omega: Array, speed: float, rows: Array, forces: Array | Complex) -> Complex:
+        """rows (k, n) D⁻¹ forces (n, i), (f, k, i)."""
+        if self.poles is not None:
+            return self.poles.answer(omega, rows, forces)
+        D = dynamic_stiffness(self.system, omega, speed)
+        right = np.broadcast_to(forces, (len(omega), *forces.shape)).astype(np.complex128)
+        return np.asarray(rows @ np.linalg.solve(D, right))
+
+
+@dataclass(frozen=True, eq=False)
+class Receptances:
+    """What a system answers without its balls' forces but with a reference of them.
+
+    Parameters
+    ----------
+    system
+        The system.
+    K, C
+        Reference stiffness and damping (m, m) of all bearings' coefficients.
+    """
+
+    system: System
+    K: Array
+    C: Array
+
+    @cached_property
+    def B(self) -> Array:
+        """All bearings' coefficients (m, n)."""
+        return self.system.B
+
+    @cached_property
+    def blocks(self) -> list[Block]:
+        """The blocks of the structure."""
+        modal, _ = self.modal
+        return [Block.of(modal, index) for index in modal.blocks()]
+
+    @cached_property
+    def modal(self) -> tuple[System, Array]:
+        """The system in modes of its own, x = T q, in which blocks are well scaled."""
+        if any(not isinstance(t.material, Maxwell) for t in self.system.layers):
+            return self.system, np.eye(self.system.n)
+        return self.system.modal()
+
+    def reference(self, omega: Array) -> Complex:
+        """Z (f, m, m) = K + iωC of the reference."""
+        return np.asarray(self.K + 1j * omega[:, None, None] * self.C)
+
+    def answer(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
+        """Motions rows (k, n) with the reference on, under forces (i, n), (f, k, i)."""
+        out = np.zeros((len(omega), len(rows), len(forces)), dtype=np.complex128)
+        rest = omega == 0.0
+        if rest.any():
+            turned = self._at_rest + speed * self.system.N if self.system.N.any() else self._at_rest
+            out[rest] = rows @ np.linalg.solve(turned, np.transpose(forces))
+        if not rest.all():
+            out[~rest] = self._joined(omega[~rest], speed, rows, forces)
+        return out
+
+    @cached_property
+    def _at_rest(self) -> Array:
+        """D (n, n) at 0 Hz with the reference on, and springs on free motions that no bearing feels."""
+        linear = Linear(self.system, self.K, self.C)
+        moduli = np.array(
+            [np.asarray(t.material.complex_modulus(np.zeros(1)))[0] for t in self.system.layers]
+        )
+        held = linear.held_at_rest(moduli, np.vstack([np.zeros(self.system.n), self.B]))
+        K = held.K + self.B.T @ self.K @ self.B
+        for layer, G in zip(self.system.layers, moduli.real, strict=True):
+            K += 2.0 * G * (layer.L @ layer.L.T)
+        return np.asarray(K)
+
+    def _whole(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
+        """All coordinates at once."""
+        linear = Linear(self.system, self.K, self.C)
+        found = np.zeros((len(omega), len(rows), len(forces)), dtype=np.complex128)
+        for unit, part in ((1.0, np.real(forces)), (1j, np.imag(forces))):
+            # as unit forces: what is no larger than their round-off drives nothing
+            size = np.abs(part).max(axis=1, initial=0.0)
+            if size.any():
+                driven = part / np.where(size > 0.0, size, 1.0)[:, None]
+                found += unit * size * linear.solve(omega, driven, rows, speed)
+        return found
+
+    def _joined(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
+        """Block by block, joined through the reference; all at once where that would cost digits."""
+        _, T = self.modal
+        m = len(self.B)
+        above = np.vstack([self.B, rows]) @ T
+        right = np.vstack([self.B, forces]) @ T
+        free = np.zeros((len(omega), len(above), len(right)), dtype=np.complex128)
+        for block in self.blocks:
+            touched = np.flatnonzero(np.abs(above[:, block.index]).any(axis=1))
+            driven = np.flatnonzero(np.abs(right[:, block.index]).any(axis=1))
+            if touched.size and driven.size:
+                rows_in, forces_in = (
+                    np.asarray(of[np.ix_(which, block.index)])
+                    for of, which in ((above, touched), (right, driven))
+                )
+                own = block.answer(omega, speed, rows_in, forces_in.T)
+                free[np.ix_(np.arange(len(omega)), touched, driven)] += own
+        if not m:
+            return free
+        joint = np.eye(m) + free[:, :m, :m] @ self.reference(omega)
+        held = np.linalg.solve(joint, free[:, :m])
+        out = free[:, m:, m:] - free[:, m:, :m] @ (self.reference(omega) @ held[:, :, m:])
+        lost = np.flatnonzero(~(np.abs(joint).max(axis=(1, 2)) <= LARGEST_JOINT))
+        for k in lost:
+            out[k] = self._whole(omega[k : k + 1], speed, rows, forces)[0]
+        return out

@@ -1,0 +1,383 @@
+"""Steady motions over speed, or over any other number an application is made from."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bearingdyn.analysis.core_channels import channel_of
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
+from bearingdyn.analysis.march_state import system_hash
+from bearingdyn.analysis.steady.branch_files import BranchFiles
+from bearingdyn.analysis.steady.branches import (
+    Branch,
+    Family,
+    Job,
+    Made,
+    Mark,
+    Speeds,
+    Task,
+    done,
+    states,
+    sweeps,
+)
+from bearingdyn.analysis.steady.motion import MOTIONS
+from bearingdyn.analysis.steady.problem import Problem
+from bearingdyn.application import Application
+from bearingdyn.checks import name_list, number, require, vector, whole
+from bearingdyn.progress import Progress, told
+from bearingdyn.system import System
+from bearingdyn.types import Array
+
+if TYPE_CHECKING:
+    import xarray
+
+# harmonics of a passage in a map, samples for each, points of a branch at most
+HARMONICS, PER, MOST = 24, 16, 1000
+# of the range, to which events are located
+LOCATED = 1e-6
+# of a made application's number, over which slopes are taken: its parts are meshed and reduced anew
+MADE_SLOPE = 1e-4
+
+
+def speed_map(
+    source: Equilibrium | Application | System,
+    *,
+    speeds: tuple[float, float],
+    record: Sequence[str],
+    harmonics: int = HARMONICS,
+    points: int = 100,
+    doublings: int = 1,
+    several: bool = True,
+    store: str | os.PathLike[str] | None = None,
+    executor: Executor | None = None,
+    progress: Progress | bool | None = None,
+) -> xarray.Dataset:
+    """Follow all steady motions over a range of speeds, with their stability.
+
+    Branches are followed by the length of their arc, round folds, from both ends of the range: as a
+    coast-down and a run-up would meet them, and from several states between, for branches that hang
+    together with none of these. Folds, flips (period doublings) and Neimark–Sacker points are located; at
+    flips the branch of twice the period is followed as well. Where a branch can be followed no further a
+    point is marked "failed", and the search goes on beyond it.
+
+    Parameters
+    ----------
+    source
+        Equilibrium, application or system whose motion has one base frequency, the passage of the balls.
+    speeds
+        Lowest and highest speed of the shaft, rad/s, both positive.
+    record
+        Motions: "shaft.left.y", "shaft.left.y.velocity", "….acceleration".
+    harmonics
+        Of a passage.
+    points
+        About how many of a branch that hardly bends; more where it does.
+    doublings
+        How often the period may double.
+    several
+        Whether motions are looked for from several states between the ends.
+    store
+        Folder that keeps every finished search: the same call continues from there.
+    executor
+        Searches run in it, as in a process pool or Dask's; what two of them both found is kept once.
+    progress
+        True for a bar, False for none, or a function called with (searches done, in all).
+
+    Returns
+    -------
+    xarray.Dataset
+        Over "point", branch by branch and along each: speed, rad/s; branch, its number; passages, after which
+        the motion repeats; stable (1, 0, or −1 where it was not computed); multiplier, the largest by size;
+        growth, 1/s; event ("", "fold", "flip", "neimark-sacker" or "failed"); peak_to_peak and rms (point,
+        channel); amplitude (point, order, channel), complex, at multiples of the passage, and of its half
+        where periods doubled.
+
+    Raises
+    ------
+    ValueError
+        For a range that is none, a channel that is no motion, and a motion of several base frequencies.
+
+    References
+    ----------
+    E. L. Allgower and K. Georg, Introduction to Numerical Continuation Methods, SIAM 2003.
+    """
+    low, high = _range("speeds", speeds, "two speeds in rad/s, the lower one first")
+    require(
+        low > 0.0, "speeds", tuple(speeds), "the lowest must be positive, in rad/s: at rest nothing passes"
+    )
+    problem = Problem.of(source)
+    problem.system.check_speed(high)
+    family = Speeds(problem)
+    task = _task(family, record, low, high, harmonics, points, 1e-6)
+    branches = _branches(task, doublings, several, store, executor, progress)
+    return _dataset(task, branches, "speed", "rad/s", {**state_of(problem.source)})
+
+
+def parameter_map(
+    make: Callable[[float], Application],
+    *,
+    values: tuple[float, float],
+    speed: float,
+    record: Sequence[str],
+    harmonics: int = HARMONICS,
+    points: int = 40,
+    doublings: int = 1,
+    several: bool = False,
+    store: str | os.PathLike[str] | None = None,
+    executor: Executor | None = None,
+    progress: Progress | bool | None = None,
+) -> xarray.Dataset:
+    """Follow all steady motions at one speed over a number that the application is made from.
+
+    Parameters
+    ----------
+    make
+        Application of a value: of a load, a clearance, a preload, the thickness of a layer.
+    values
+        Lowest and highest value.
+    speed
+        Of the shaft, rad/s.
+    record, harmonics, points, doublings, several, store, executor, progress
+        As in `speed_map`; `make` must then be a function that can be pickled.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `speed_map`, with `parameter` in place of speed.
+
+    Raises
+    ------
+    ValueError
+        As `speed_map`, and for a speed of zero.
+    """
+    low, high = _range("values", values, "two values, the lower one first")
+    speed = number("speed", speed, "it must be one finite speed in rad/s")
+    require(speed != 0.0, "speed", speed, "at rest nothing passes; give the speed of the shaft in rad/s")
+    family = Made(make, speed)
+    task = _task(family, record, low, high, harmonics, points, MADE_SLOPE)
+    branches = _branches(task, doublings, several, store, executor, progress)
+    return _dataset(task, branches, "parameter", "", {"speed": speed})
+
+
+def _range(field: str, value: object, meaning: str) -> tuple[float, float]:
+    low, high = vector(field, value, (2,), meaning).tolist()  # type: ignore[arg-type]
+    require(low < high, field, value, f"the first must be below the second: {meaning}")
+    return low, high
+
+
+def _task(
+    family: Family, record: Sequence[str], low: float, high: float, harmonics: int, points: int, slope: float
+) -> Task:
+    record = name_list("record", record)
+    problem, _ = family.at(high)
+    for name in record:
+        kind = channel_of(problem.system, name)[0][0]
+        require(
+            kind in MOTIONS, "record", name, "a map records motions: displacement, velocity, acceleration"
+        )
+    bases = [b.name for b in problem.bases.bases]
+    require(
+        len(bases) == 1,
+        "source",
+        problem.system,
+        f"its motion has the base frequencies {bases}, and a map follows motions of one; leave unbalance, "
+        f"waviness and harmonic loads out, or call steady_state speed by speed",
+    )
+    return Task(
+        family,
+        tuple(record),
+        low,
+        high,
+        (high - low) / whole("points", points, 2),
+        whole("harmonics", harmonics, 1),
+        PER,
+        MOST,
+        LOCATED * (high - low),
+        slope,
+    )
+
+
+def _branches(
+    task: Task,
+    doublings: int,
+    several: bool,
+    store: str | os.PathLike[str] | None,
+    executor: Executor | None,
+    progress: Progress | bool | None,
+) -> list[Branch]:
+    """All branches: sweeps, then states between, then what begins at flips."""
+    doublings = whole("doublings", doublings, 0)
+    files = None if store is None else BranchFiles.of(store, _about(task))
+    branches: list[Branch] = []
+    with told(progress, "search") as tell:
+        rounds: list[list[tuple[Job, tuple[int, Mark] | None]]] = [[(job, None) for job in sweeps(task)]]
+        if several:
+            rounds.append([(job, None) for job in states(task)])
+        at, seen = 0, 0
+        while at < len(rounds):
+            for made in _run(task, rounds[at], branches, files, executor):
+                branches += [b for b in made if not _known(b, branches)]
+                seen += 1
+                if tell is not None:
+                    tell(seen, sum(map(len, rounds)))
+            at += 1
+            if at == len(rounds):
+                level = 2 ** (at - (2 if several else 1))
+                flips = [
+                    (Job("flip", m.point.parameter, origin=f"{k}.{i}"), (b.passages, m))
+                    for k, b in enumerate(branches)
+                    if b.passages == level and level < 2**doublings
+                    for i, m in enumerate(b.marks)
+                    if m.event == "flip"
+                ]
+                if flips:
+                    rounds.append(list(flips))
+    return branches
+
+
+def _run(
+    task: Task,
+    jobs: Sequence[tuple[Job, tuple[int, Mark] | None]],
+    branches: list[Branch],
+    files: BranchFiles | None,
+    executor: Executor | None,
+) -> Iterable[list[Branch]]:
+    """What each job finds, in their order; those that a folder holds are read."""
+    if executor is None:
+        return (_kept(task, job, list(branches), flip, files) for job, flip in jobs)
+    known = tuple(branches)
+    running = [
+        (files.read(job) if files else None) or executor.submit(done, task, job, known, flip)
+        for job, flip in jobs
+    ]
+
+    def ended() -> Iterator[list[Branch]]:
+        for (job, _), future in zip(jobs, running, strict=True):
+            if isinstance(future, list):
+                yield future
+                continue
+            found = future.result()
+            if files is not None:
+                files.write(job, found)
+            yield found
+
+    return ended()
+
+
+def _kept(
+    task: Task, job: Job, branches: list[Branch], flip: tuple[int, Mark] | None, files: BranchFiles | None
+) -> list[Branch]:
+    found = None if files is None else files.read(job)
+    if found is None:
+        found = done(task, job, branches, flip)
+        if files is not None:
+            files.write(job, found)
+    return found
+
+
+def _known(branch: Branch, others: Sequence[Branch]) -> bool:
+    """Whether nearly all of a branch is known: two searches at once may find the same."""
+    from bearingdyn.analysis.steady.branches import known
+
+    points = [m.point for m in branch.marks if m.event != "failed"]
+    hits = sum(known(others, branch.passages, p.parameter, p.z) for p in points)
+    return bool(points) and hits > 0.9 * len(points)
+
+
+def _about(task: Task) -> dict[str, object]:
+    """What tells one map from another."""
+    ends = [task.family.at(p) for p in (task.low, task.high)]
+    return {
+        "systems": [system_hash(problem.receptances.modal[0]) for problem, _ in ends],
+        "speeds": [speed for _, speed in ends],
+        "task": [task.places, task.low, task.high, task.longest, task.harmonics, task.per, task.most],
+    }
+
+
+def _dataset(
+    task: Task, branches: Sequence[Branch], name: str, unit: str, attrs: dict[str, object]
+) -> xarray.Dataset:
+    from bearingdyn.results import dataset, inputs_of
+
+    problem, _ = task.family.at(task.high)
+    channels = [channel_of(problem.system, c) for c in task.places]
+    rate = np.array([MOTIONS.index(channel[0]) for channel, _ in channels])
+    rows = [(k, b.passages, m) for k, b in enumerate(branches) for m in b.marks]
+    most = max((b.passages for b in branches), default=1)
+    count = task.harmonics * most + 1
+    amplitude = np.zeros((len(rows), count, len(channels)), dtype=np.complex128)
+    swing, rms = np.full((2, len(rows), len(channels)), np.nan)
+    for i, (_, passages, mark) in enumerate(rows):
+        lines = task.lines(passages)
+        own, speed = task.family.at(mark.point.parameter)
+        omega = lines.index[:, 0] * float(own.bases.frequencies(speed)[0]) / passages
+        moved = mark.moved * (1j * omega[:, None]) ** rate
+        signal = lines.signals(moved) if np.isfinite(moved).all() else np.full((1, len(channels)), np.nan)
+        swing[i], rms[i] = np.ptp(signal, axis=0), signal.std(axis=0)
+        swing[i][np.isnan(signal).any(axis=0)] = np.nan
+        amplitude[i, :: most // passages] = moved[:count]
+    states = [m.stability for _, _, m in rows]
+
+    def each(value: Callable[[Mark], float]) -> Array:
+        return np.array([value(m) for _, _, m in rows])
+
+    made = dataset(
+        {
+            name: ("point", each(lambda m: m.point.parameter), unit, name),
+            "branch": (
+                "point",
+                np.array([k for k, _, _ in rows], dtype=np.intp),
+                "1",
+                "number of the branch",
+            ),
+            "passages": ("point", np.array([p for _, p, _ in rows], dtype=np.intp), "1", "of a period"),
+            "stable": (
+                "point",
+                np.array([-1 if s is None else int(s.stable) for s in states], dtype=np.intp),
+                "1",
+                "1 stable, 0 not, −1 not computed",
+            ),
+            "multiplier": (
+                "point",
+                np.array([math.nan if s is None else abs(s.largest) for s in states]),
+                "1",
+                "largest Floquet multiplier by size",
+            ),
+            "growth": (
+                "point",
+                np.array([math.nan if s is None else s.growth for s in states]),
+                "1/s",
+                "rate of growth of the fastest departure",
+            ),
+            "event": (
+                "point",
+                np.array([m.event for _, _, m in rows], dtype=np.str_),
+                "",
+                "what is located there",
+            ),
+            "residual": ("point", each(lambda m: m.point.residual), "1", "of the balance, relative"),
+            "peak_to_peak": (("point", "channel"), swing, "", "swing of each channel; units in `unit`"),
+            "rms": (("point", "channel"), rms, "", "about the mean; units in `unit`"),
+            "amplitude": (("point", "order", "channel"), amplitude, "", "complex amplitudes, zero-to-peak"),
+        },
+        {
+            "analysis": "speed map" if name == "speed" else "parameter map",
+            "harmonics": task.harmonics,
+            "failed": sum(m.event == "failed" for _, _, m in rows),
+            **attrs,
+            **inputs_of(problem.system.inputs),
+        },
+        {"channel": (list(task.places), ""), "order": (np.arange(count) / most, "1")},
+    )
+    meaning = {"units": "", "long_name": "unit of each channel"}
+    origins = {"units": "", "long_name": "how each branch was found"}
+    return made.assign_coords(
+        unit=("channel", [u for _, u in channels], meaning),
+        origin=("point", [b.origin for b in branches for _ in b.marks], origins),
+    )

@@ -1,0 +1,297 @@
+"""The steady motion at one speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bearingdyn import core
+from bearingdyn.analysis.core_channels import channel_of
+from bearingdyn.analysis.equilibrium import Equilibrium, state_of
+from bearingdyn.analysis.steady.balance import Balance, Found, newton
+from bearingdyn.analysis.steady.choosing import balanced
+from bearingdyn.analysis.steady.motion import Motion
+from bearingdyn.analysis.steady.problem import Problem
+from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability, floquet, pooled
+from bearingdyn.analysis.steady.torus import Lines
+from bearingdyn.application import Application
+from bearingdyn.checks import name_list, number, positive, require, whole
+from bearingdyn.system import System
+from bearingdyn.types import Complex, Index
+
+if TYPE_CHECKING:
+    import xarray
+
+# harmonics where none are asked for: of the ball pass, or of the highest of several bases
+HARMONICS, SEVERAL = 40, 20
+# samples of a period for its stability, at least
+SAMPLES = 256
+# poles of one state are all kept, what the bearings do not feel as well
+ALL = -1.0
+# multipliers that are kept
+KEPT = 6
+
+
+def steady_state(
+    source: Equilibrium | Application | System,
+    *,
+    speed: float,
+    record: Sequence[str],
+    harmonics: int | None = None,
+    subharmonic: int = 1,
+    start: xarray.Dataset | None = None,
+    stability: bool = True,
+    tolerance: float = 1e-11,
+) -> xarray.Dataset:
+    """Find the steady motion at one speed, and whether it is stable, without marching to it.
+
+    The motion is a sum of lines, Σ Re z_n e^{iω_n t}, whose amplitudes balance at every line; the structure
+    answers with G*(ω) of any law, the balls are pressed in time. Of two steady motions at one speed it finds
+    the one near its start; `speed_map` follows them all.
+
+    Parameters
+    ----------
+    source
+        Equilibrium, whose bearings give the start; an application, whose equilibrium is found first; or a
+        system.
+    speed
+        Of the shaft, rad/s; not zero.
+    record
+        Channels as in `transient`.
+    harmonics
+        Of the ball pass, 1 or more; 40 by default. The motion of a machine with unbalance, waviness, pits,
+        unequal balls or harmonic loads has several base frequencies (shaft, cage, ball spin); its lines up to
+        this harmonic (20 by default) are chosen by how far they would move the bearings, and refined.
+    subharmonic
+        p: the motion may repeat after p ball passages only.
+    start
+        An earlier result on the same application, to begin from.
+    stability
+        Whether multipliers are computed, of a motion with one base.
+    tolerance
+        Of the balance, relative to the largest amplitude.
+
+    Returns
+    -------
+    xarray.Dataset
+        amplitude (line, channel), complex, zero-to-peak, at frequency (line,), Hz, line 0 the mean; index
+        (line, base) how often each base frequency stands in it; record (time, channel) over a period, so that
+        `contact_statistics`, `orbit` and `spectrum` take the result; cut (channel,) what the harmonics next
+        above the last would add; power (part,), W, what each part turns into heat, and supply (source,), W,
+        what feeds it; multipliers (multiplier,), complex; motion (line, coefficient), from which `start` goes
+        on. Attributes: stable (1, 0, or −1 where it was not computed), multiplier (largest size), growth
+        (1/s), loss ("fold", "flip" or "neimark-sacker": what the largest multiplier brings where it leaves
+        the unit circle), residual, energy_balance (what supply and power leave, relative), lines_left (the
+        share of the largest line that was left out).
+
+    Raises
+    ------
+    ValueError
+        Before any work: for a speed of zero or one at which no base frequency is left, for sampled loads, a
+        subharmonic of several bases, an unknown channel, a law without a modulus at rest under a dead load.
+    SolverError
+        Where the balance is not found: names the speed, the line and its residual; `partial` is the nearest
+        state that was.
+
+    References
+    ----------
+    T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989) 149.
+
+    Examples
+    --------
+    >>> import bearingdyn as bd
+    >>> app = bd.Application()
+    >>> app.add("mass", bd.RigidBody(mass=1.0, inertia=(1e-3, 1e-3, 1e-3)))
+    >>> app.ground("mass.centre", stiffness=[1e6] * 6, damping=[20.0] * 6)
+    >>> app.unbalance("mass.centre", 1e-6)
+    >>> ss = bd.steady_state(app, speed=500.0, record=["mass.centre.y"])
+    >>> f"{abs(ss['amplitude'].values[1, 0]):.4e}"  # m: Ω² u/|k − Ω² m + iΩc|
+    '3.3330e-07'
+    """
+    record = name_list("record", record)
+    speed = number(
+        "speed", speed, "it must be one finite speed in rad/s; for a run-up march with bd.transient"
+    )
+    require(
+        speed != 0.0,
+        "speed",
+        speed,
+        "at rest nothing passes and the base frequency is zero; give the speed of the shaft in rad/s, or "
+        "take bd.equilibrium",
+    )
+    subharmonic = whole("subharmonic", subharmonic, 1)
+    positive("tolerance", tolerance)
+    if harmonics is not None:
+        harmonics = whole("harmonics", harmonics, 1)
+    problem = Problem.of(source, subharmonic)
+    problem.system.check_speed(speed)
+    channels = [channel_of(problem.system, name) for name in record]
+    balance, found, left = _found(problem, speed, harmonics, subharmonic, start, tolerance)
+    state = stability_of(problem, balance, found) if stability and found.converged else None
+    result = _dataset(problem, balance, found, record, channels, state, left)
+    if not found.converged:
+        raise _failed(problem, balance, found, result)
+    return result
+
+
+def _found(
+    problem: Problem,
+    speed: float,
+    harmonics: int | None,
+    subharmonic: int,
+    start: xarray.Dataset | None,
+    tolerance: float,
+) -> tuple[Balance, Found, float]:
+    """The balance, its motion, and what share of it the lines left out are."""
+    begun = None if start is None else _begun(problem, start)
+    if len(problem.bases.bases) > 1:
+        return balanced(problem, speed, harmonics or SEVERAL, tolerance, begun)
+    lines = Lines.harmonics((harmonics or HARMONICS) * subharmonic)
+    balance = problem.balance(lines, speed)
+    if begun is not None:
+        own = Lines(begun[0], lines.steps, lines.samples)
+        z = own.moved(begun[1], lines, 1)
+        return balance, newton(balance, z, tolerance=tolerance), math.nan
+    found = newton(balance, problem.standing(lines), tolerance=tolerance)
+    if not found.converged:
+        from bearingdyn.analysis.steady.reaching import reached
+
+        found = reached(problem, lines, speed, tolerance) or found
+    return balance, found, math.nan
+
+
+def _begun(problem: Problem, start: xarray.Dataset) -> tuple[Index, Complex]:
+    """Index and amplitudes of an earlier result; ValueError for one of another application."""
+    require("motion" in start, "start", sorted(map(str, start)), "give a result of steady_state")
+    index, z = np.asarray(start["index"].values, dtype=np.intp), np.asarray(start["motion"].values)
+    names = [b.name for b in problem.bases.bases]
+    same = z.shape[1] == len(problem.rest) and [str(b) for b in start["base"].values] == names
+    require(
+        same,
+        "start",
+        list(map(str, start["base"].values)),
+        f"it must be a motion of the same bearings over the base frequencies {names}",
+    )
+    return index, np.ascontiguousarray(z, dtype=np.complex128)
+
+
+def stability_of(
+    problem: Problem, balance: Balance, found: Found, model: FirstOrder | None = None, samples: int = SAMPLES
+) -> Stability | None:
+    """Multipliers of a motion with one base; None for several."""
+    if len(problem.bases.bases) != 1 or not problem.system.bearings:
+        return None
+    model = model or first_order(problem, balance)
+    lines = balance.lines
+    count = max(samples, 2 * (lines.samples // 2))
+    pressed = balance.press(found.z, lines=Lines(lines.index, lines.steps, count))
+    m = found.z.shape[1]
+    period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
+    K = pooled([a.K for a in pressed.bearings], m)
+    C = pooled([a.C for a in pressed.bearings], m)
+    return floquet(model, balance.speed, period, K, C, KEPT).stability
+
+
+def first_order(problem: Problem, balance: Balance) -> FirstOrder:
+    """The structure as its stability needs it, for speeds up to the balance's."""
+    highest = float(np.abs(balance.omega).max())
+    lowest = float(np.abs(balance.omega[1:]).min())
+    band = (lowest / (20 * np.pi), highest / (2 * np.pi))
+    return FirstOrder.of(problem.system, 2.0 * FOLLOWS * highest, band, felt=ALL)
+
+
+def _failed(problem: Problem, balance: Balance, found: Found, result: xarray.Dataset) -> core.SolverError:
+    n = balance.lines.index[found.line]
+    names = (
+        " ".join(f"{k:+d} × {b.name}" for k, b in zip(n, problem.bases.bases, strict=True) if k) or "the mean"
+    )
+    rpm = balance.speed * 30 / np.pi
+    return core.SolverError(
+        f"no steady motion was found at {balance.speed:g} rad/s ({rpm:g} rpm): line {found.line} ({names}, "
+        f"{balance.omega[found.line] / (2 * np.pi):.4g} Hz) misses its balance by {found.residual:.2g} of "
+        f"the largest amplitude after {found.iterations} iterations; begin from a neighbour with start=, "
+        f"or ask for more harmonics",
+        core.Report(status=core.NO_CONVERGENCE, iterations=found.iterations, residual=found.residual),
+        result,
+    )
+
+
+def _dataset(
+    problem: Problem,
+    balance: Balance,
+    found: Found,
+    record: Sequence[str],
+    channels: Sequence[tuple[tuple[int, object, int, int], str]],
+    state: Stability | None,
+    left: float,
+) -> xarray.Dataset:
+    from bearingdyn.results import dataset, inputs_of
+
+    motion = Motion(balance, found)
+    asked = [c for c, _ in channels]
+    amplitude = motion.amplitudes(asked)  # type: ignore[arg-type]
+    times = motion.times()
+    rows = motion.signals(asked, amplitude, times)  # type: ignore[arg-type]
+    fed, lost = motion.powers()
+    through = sum(abs(v) for v in (*fed.values(), *lost.values()))
+    missed = sum(fed.values()) - sum(lost.values())
+    dt = float(times[1] - times[0]) if len(times) > 1 else 0.0
+    multipliers = np.zeros(0, dtype=np.complex128) if state is None else state.multipliers
+    made = dataset(
+        {
+            "amplitude": (
+                ("line", "channel"),
+                amplitude,
+                "",
+                "complex amplitudes, zero-to-peak; their units are in `unit`",
+            ),
+            "frequency": ("line", balance.omega / (2 * np.pi), "Hz", "frequency of each line"),
+            "index": (("line", "base"), balance.lines.index, "1", "how often each base stands in it"),
+            "base_frequency": (
+                "base",
+                problem.bases.frequencies(balance.speed) / (2 * np.pi),
+                "Hz",
+                "base frequencies",
+            ),
+            "record": (("time", "channel"), rows, "", "channels over time; their units are in `unit`"),
+            "cut": (
+                "channel",
+                motion.beyond(asked),  # type: ignore[arg-type]
+                "",
+                "amplitude of the lines next above the last",
+            ),
+            "power": ("part", np.array(list(lost.values())), "W", "mean power turned into heat"),
+            "supply": ("source", np.array(list(fed.values())), "W", "mean power that feeds the motion"),
+            "multipliers": ("multiplier", multipliers, "1", "Floquet multipliers of a period, largest first"),
+            "motion": (("line", "coefficient"), found.z, "m", "raceway coefficients of all bearings"),
+        },
+        {
+            "analysis": "steady state",
+            "speed": balance.speed,
+            "dt": dt,
+            "decimate": 1,
+            "stable": -1 if state is None else int(state.stable),
+            "multiplier": math.nan if state is None else abs(state.largest),
+            "growth": math.nan if state is None else state.growth,
+            "loss": "" if state is None else state.loss,
+            "residual": found.residual,
+            "iterations": found.iterations,
+            "converged": int(found.converged),
+            "energy_balance": abs(missed) / through if through > 0.0 else 0.0,
+            "lines_left": left,
+            **state_of(problem.source),
+            **inputs_of(problem.system.inputs),
+        },
+        {
+            "channel": (list(record), ""),
+            "base": ([b.name for b in problem.bases.bases], ""),
+            "time": (times, "s"),
+            "part": (list(lost), ""),
+            "source": (list(fed), ""),
+        },
+    )
+    meaning = {"units": "", "long_name": "unit of each channel"}
+    return made.assign_coords(unit=("channel", [unit for _, unit in channels], meaning))

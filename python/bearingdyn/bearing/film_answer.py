@@ -1,0 +1,124 @@
+"""How both lubricated contacts of a ball together answer a small harmonic motion, by load and frequency."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import scipy
+
+from bearingdyn.bearing import ehl
+from bearingdyn.bearing.hertz import PointContact
+from bearingdyn.bearing.lubricant import Lubricant
+from bearingdyn.short_repr import short
+from bearingdyn.types import Array, Complex
+
+_LOADS = 12  # of so many loads the answer is looked up, and splines over ln Q tell that of others
+_Pair: TypeAlias = tuple[ehl.LubricatedContact, ehl.LubricatedContact]
+
+
+@dataclass(frozen=True, eq=False)
+class AnswerUnderLoads:
+    """The dynamic stiffness of balls under given loads.
+
+    Parameters
+    ----------
+    found
+        Both contacts at some loads (n).
+    to_balls
+        (b, n), interpolates from these to the balls.
+    """
+
+    found: tuple[_Pair, ...]
+    to_balls: Array
+
+    __repr__ = short
+
+    def stiffness(self, omega: Array) -> Complex:
+        """Stiffness of each ball over that of its dry contacts, (f, b), at omega (f,), rad/s."""
+        f = np.asarray(omega) / (2 * np.pi)
+        ratios = np.empty((f.size, len(self.found)), dtype=np.complex128)
+        for n, pair in enumerate(self.found):
+            dry = sum(one.dry_stiffness**-1 for one in pair)
+            ratios[:, n] = dry / sum(1 / one.stiffness(f) for one in pair)
+        return ratios @ self.to_balls.T
+
+
+@dataclass(frozen=True)
+class FilmAnswer:
+    """The contacts of a ball and what they run on, from which the table of `ehl` has their answer.
+
+    Parameters
+    ----------
+    inner, outer
+        The contacts.
+    lubricant, temperature
+        Oil and its temperature at the inlet, °C.
+    us
+        Sum of the surface speeds of each contact, m/s.
+    """
+
+    inner: PointContact
+    outer: PointContact
+    lubricant: Lubricant
+    temperature: float
+    us: float
+
+    def loads(self) -> tuple[float, float] | None:
+        """Least and largest load at which the table holds both contacts, N; None where it holds none."""
+        low, high = 0.0, np.inf
+        for contact in (self.inner, self.outer):
+            M, L, D = self._groups(contact)
+            if not ehl.in_table(L, D):
+                return None
+            least, largest = ehl.loads_between(D)
+            # a hair inside, for round-off
+            low, high = max(low, least / M * (1 + 1e-9)), min(high, largest / M * (1 - 1e-9))
+        return (low, high) if low < high else None
+
+    def turning_load(self) -> float:
+        """Load, N, at which both contacts have turned from rigid bodies on a film to Hertz contacts."""
+        groups = (self._groups(contact) for contact in (self.inner, self.outer))
+        return max(ehl.turning_load(D) / M for M, _, D in groups)
+
+    def damping(self, Q: float) -> float:
+        """Damping of a ball at low frequency under a load that the table holds, N s/m."""
+        return in_series(*self._looked_up(Q))
+
+    def under(self, loads: Array) -> AnswerUnderLoads:
+        """The answer of balls under loads (b,), N; those that the table does not hold are taken at its end.
+
+        Raises
+        ------
+        ValueError
+            Where the table holds none.
+        """
+        ends = self.loads()
+        if ends is None:
+            raise ValueError(f"loads is {loads!r}; the table of contacts holds none of these contacts")
+        held = np.log(np.clip(loads, *ends))
+        nodes, to_balls = held, np.eye(held.size)
+        if held.size > _LOADS:
+            nodes = np.linspace(held.min(), held.max() + 1e-9, _LOADS)
+            to_balls = scipy.interpolate.CubicSpline(nodes, np.eye(_LOADS))(held)
+        found = [self._looked_up(float(Q)) for Q in np.exp(nodes)]
+        return AnswerUnderLoads(tuple(found), to_balls)
+
+    def _looked_up(self, Q: float) -> _Pair:
+        inner, outer = (
+            ehl.look_up(contact, self.lubricant, Q, self.us, self.temperature)
+            for contact in (self.inner, self.outer)
+        )
+        return inner, outer
+
+    def _groups(self, contact: PointContact) -> tuple[float, float, float]:
+        """M, L, D under 1 N."""
+        oil = self.lubricant
+        return ehl.scales(contact, 1.0, self.us, oil.viscosity(self.temperature), oil.alpha)
+
+
+def in_series(inner: ehl.LubricatedContact, outer: ehl.LubricatedContact) -> float:
+    """Damping of two contacts under one force at low frequency, N s/m: c = k²(c_i/k_i² + c_o/k_o²)."""
+    k = 1 / (1 / inner.k0 + 1 / outer.k0)
+    return k**2 * (inner.c0 / inner.k0**2 + outer.c0 / outer.k0**2)

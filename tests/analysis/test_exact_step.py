@@ -1,0 +1,261 @@
+"""The exact step: against closed forms, its own limit and Newmark's; and that it behaves as a march must."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bearingdyn import core
+from bearingdyn.analysis import equilibrium, frequency_response, transient, transients
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.exact_step import phi
+from bearingdyn.analysis.march import March
+from bearingdyn.application import Application
+from bearingdyn.material import Payne
+from bearingdyn.parts import RigidBody
+from bearingdyn.results import open_result
+from bearingdyn.system import LoadTerm, System, assemble
+from rotors import RUBBER, friswell, motor, oscillator
+
+SPEED = 500.0  # rad/s
+RECORD = ["shaft.end.y", "shaft.end.y.velocity", "ring.centre.x.velocity", "left.force.y"]
+NONE = np.zeros(0)
+PUSHED = {"block.centre": [2e-6, 1e-6, 0, 0, 0, 0]}  # out of its equilibrium
+
+
+@pytest.fixture(scope="module")
+def state() -> Equilibrium:
+    return equilibrium(motor())
+
+
+def exact(state: Equilibrium | System | Application, **changed: Any) -> Any:
+    asked: dict[str, Any] = {"speed": SPEED, "dt": 1e-5, "steps": 400, "record": RECORD, "progress": False}
+    return transient(state, **asked | changed, method="exact")
+
+
+def loaded(system: System, kind: str, channel: str, sine: str | None = None, **other: Any) -> System:
+    """The system under one load of 1 N at a channel."""
+    row = system.row(channel)
+    term = LoadTerm(
+        kind,
+        other.get("omega", 0.0),
+        row,
+        0 * row if sine is None else system.row(sine),
+        other.get("time", NONE),
+        other.get("value", NONE),
+    )
+    return replace(system, loads=(*system.loads, term))
+
+
+def free_body() -> Application:
+    """2 kg, 1 kg m², held by nothing."""
+    app = Application()
+    app.add("body", RigidBody(2.0, (1.0, 1.0, 1.0)))
+    app.free("body.centre")
+    return app
+
+
+def test_phi_functions_are_their_integrals():
+    """∫₀¹ exp(z(1 − s)) s^(k−1)/(k−1)! ds by Gauss's rule, on both sides of the series' circle."""
+    nodes, share = np.polynomial.legendre.leggauss(60)
+    s = 0.5 * (nodes + 1)
+    z = np.array([0, 1e-9, 1e-3j, -0.3, 0.999j, 1.001j, -2 + 3j, -40, 30j])
+    for k in range(1, 5):
+        each = np.exp(z[:, None] * (1 - s)) * s ** (k - 1) / math.factorial(k - 1)
+        assert np.abs(phi(z, 4)[k] / (each @ (0.5 * share)) - 1).max() < 1e-12
+
+
+@pytest.mark.parametrize("speed", [0.0, 400.0])
+def test_undamped_energy_stays_over_1e5_steps(speed: float):
+    """A rotor with discs, elastic and gyroscopic, without damping: only round-off may change its energy."""
+    first = {"rotor.left": [1e-4, -2e-4, 0, 0, 0, 0]}
+    more: dict[str, Any] = {"speed": speed, "dt": 2e-5, "record": [], "initial": first, "audit": True}
+    begun, ended = (exact(assemble(friswell()), steps=n, **more).attrs for n in (1, 100_000))
+    energies = [a["energy_kinetic"] + a["energy_elastic"] for a in (begun, ended)]
+    assert energies[0] > 0
+    assert abs(energies[1] / energies[0] - 1) < 1e-10
+
+
+def test_a_free_body_moves_as_newton_says():
+    """Nothing holds it: x is the integral of its velocity, under three kinds of force."""
+    system, t = assemble(free_body()), 1e-3 * np.arange(1, 201)
+    more: dict[str, Any] = {"speed": 0.0, "dt": 1e-3, "steps": 200, "record": ["body.centre.y"]}
+    found = exact(loaded(system, "constant", "body.centre.y"), **more)["record"].values[:, 0]
+    np.testing.assert_allclose(found, t**2 / 4, rtol=1e-12)
+    w = 900.0  # 0.9 rad a step
+    found = exact(loaded(system, "harmonic", "body.centre.y", omega=w), **more)["record"].values[:, 0]
+    np.testing.assert_allclose(found, (1 - np.cos(w * t)) / (2 * w**2), atol=1e-12 / w**2)
+    ramp = loaded(system, "sampled", "body.centre.y", time=np.array([0.0, 0.2]), value=np.array([0.0, 1.0]))
+    found = exact(ramp, **more)["record"].values[:, 0]
+    np.testing.assert_allclose(found, t**3 / 12 / 0.2, rtol=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["harmonic", "rotating"])
+def test_a_forced_oscillator_has_its_closed_form(kind: str):
+    """From rest: the forced motion and the free one that starts it, to 1e-12 whatever the step."""
+    m, c, k, w = 2.0, 40.0, 5e5, 300.0
+    system = loaded(assemble(oscillator(m, c, k)), kind, "body.centre.x", "body.centre.y", omega=w)
+    dt = 2e-3  # 0.6 rad of the load, 1 rad of the body
+    found = exact(system, speed=w, dt=dt, steps=100, record=["body.centre.x", "body.centre.y"])[
+        "record"
+    ].values
+    t = dt * np.arange(1, 101)
+    size = w**2 if kind == "rotating" else 1.0
+    s = np.roots([m, c, k])
+    for column, phase in enumerate((1.0, -1j)):  # cos along x, sin along y
+        forced = phase * size / (k - m * w**2 + 1j * w * c)
+        free = np.linalg.solve([[1, 1], s], [-forced.real, -(1j * w * forced).real])
+        x = (forced * np.exp(1j * w * t)).real + (np.exp(t[:, None] * s) @ free).real
+        assert np.abs(found[:, column] - x).max() < 1e-12 * np.abs(x).max()
+
+
+def test_a_layered_system_settles_to_its_frequency_response(state: Equilibrium):
+    """Branches, dashpots and gyroscopic forces, at steps a tenth of the load's period."""
+    w, dt = 2 * math.pi * 2000.0, 5e-5
+    linear = loaded(state.linearised(), "harmonic", "shaft.end.y", omega=w)
+    linear = replace(linear, loads=linear.loads[-1:])
+    places = ["shaft.end.y", "ring.centre.x", "block.centre.y"]
+    found = exact(linear, speed=300.0, dt=dt, steps=10, settle=200_000, record=places)["record"]
+    amplitude = 2 * (found.values * np.exp(-1j * w * found["time"].values)[:, None]).mean(axis=0)
+    steady = frequency_response(linear, [2000.0], ["shaft.end.y"], places, speed=300.0)["response"].values[
+        0, :, 0
+    ]
+    # what is left of the ring-down after 10 s, and a period of ten samples
+    assert np.abs(amplitude - steady).max() < 1e-9 * np.abs(steady).max()
+
+
+def test_order_of_the_step(state: Equilibrium, capsys: pytest.CaptureFixture[str]):
+    """Bearings are held as a parabola: third order; against a march at 1/32 of the step, from rest."""
+
+    def march(k: int) -> np.ndarray:
+        return exact(state, dt=1.6e-5 / k, steps=250 * k, decimate=k, filter=False)["record"].values
+
+    fine = march(32)
+    steps = [1, 2, 4]
+    error = [np.sqrt(np.mean((march(k) - fine) ** 2, axis=0)) / np.std(fine, axis=0) for k in steps]
+    orders = np.log2(np.array(error[:-1]) / np.array(error[1:]))
+    with capsys.disabled():
+        print(f"\norder of the exact step: {np.round(orders, 2).tolist()}; error {np.max(error, axis=1)}")
+    assert orders.min() > 2.5
+
+
+def test_newmark_tends_to_the_exact_march(state: Equilibrium):
+    """Two schemes without a line in common: Newmark's, extrapolated in its step, is the other."""
+
+    def newmark(k: int) -> np.ndarray:
+        found = transient(
+            state,
+            speed=SPEED,
+            dt=1.6e-6 / k,
+            steps=1000 * k,
+            record=RECORD,
+            decimate=10 * k,
+            filter=False,
+            progress=False,
+            initial=PUSHED,
+        )
+        return found["record"].values
+
+    coarse, fine = newmark(8), newmark(16)
+    limit = fine + (fine - coarse) / 3
+    found = exact(state, dt=1.6e-6, steps=1000, decimate=10, filter=False, initial=PUSHED)["record"].values
+    size = np.std(limit, axis=0)
+    assert (np.sqrt(np.mean((coarse - limit) ** 2, axis=0)) / size).max() > 5e-4
+    assert (np.sqrt(np.mean((found - limit) ** 2, axis=0)) / size).max() < 2e-4
+
+
+def test_channels_say_what_the_state_holds(state: Equilibrium):
+    """Rows are read off the modes during a march; x, v and a are made of them at its end."""
+    names = [
+        f"{place}{rate}"
+        for place in ("shaft.end.y", "ring.centre.x", "block.centre.z")
+        for rate in ("", ".velocity", ".acceleration")
+    ]
+    found = exact(state, record=names, steps=50)
+    march = March.of(state, speed=SPEED, dt=1e-5, steps=1, method="exact")
+    model = march.model([])
+    _, x, v, a, _ = model.unpack(found["state"].values)
+    rows = np.array([march.modal.row(n) for n in ("shaft.end.y", "ring.centre.x", "block.centre.z")])
+    expected = np.array([rows @ x, rows @ v, rows @ a]).T.ravel()
+    np.testing.assert_allclose(
+        found["record"].values[-1], expected, rtol=1e-9, atol=1e-11 * np.abs(expected).max()
+    )
+    # and a is the rate of v
+    both = exact(state, record=names, steps=50, dt=1e-7, resume=found)["record"].values
+    rate = np.gradient(both[:, 1::3], 1e-7, axis=0)
+    np.testing.assert_allclose(both[5:-5, 2::3], rate[5:-5], rtol=1e-3, atol=1e-4 * np.abs(rate).max())
+
+
+def test_resume_stream_and_threads_repeat_every_bit(state: Equilibrium, tmp_path: Any):
+    whole = exact(state, steps=500)
+    first = exact(state, steps=123)
+    second = exact(state, steps=377, resume=first)
+    np.testing.assert_array_equal(whole["record"].values[123:], second["record"].values)
+    np.testing.assert_array_equal(whole["state"].values, second["state"].values)
+    path = tmp_path / "run.bd"
+    streamed = exact(state, steps=500, stream=path)
+    np.testing.assert_array_equal(whole["record"].values, streamed["record"].values)
+    np.testing.assert_array_equal(whole["record"].values, open_result(path)["record"].values)
+    case = {"source": state, "speed": SPEED, "dt": 1e-5, "steps": 500, "record": RECORD, "method": "exact"}
+    for run in transients([case, case], threads=2):
+        np.testing.assert_array_equal(whole["state"].values, run["state"].values)
+
+
+def test_instruction_sets_give_the_same_bits(state: Equilibrium):
+    runs = []
+    for isa in ("base", "avx2", "avx512"):
+        try:
+            scheme = core.Scheme(isa=isa)
+        except ValueError:  # not on this machine
+            continue
+        runs.append(exact(state, scheme=scheme)["state"].values)
+    assert runs
+    for run in runs[1:]:
+        np.testing.assert_array_equal(runs[0], run)
+
+
+def test_the_audit_closes(state: Equilibrium):
+    """Work and energy of a march from rest, integrated by the trapezoid: second order in the step."""
+
+    def open_share(dt: float) -> float:
+        e = exact(state, dt=dt, steps=round(4e-3 / dt), record=[], audit=True).attrs
+        work = (
+            e["energy_load"]
+            + e["energy_turning"]
+            - sum(e[f"energy_{n}"] for n in ("linear", "branch", "contact", "softening"))
+        )
+        begun = exact(state, dt=dt, steps=0, record=[], audit=True).attrs
+        held = [
+            sum(a[f"energy_{n}"] for n in ("kinetic", "elastic", "stored", "indentation")) for a in (begun, e)
+        ]
+        return abs(work - (held[1] - held[0])) / e["energy_throughput"]
+
+    coarse, fine = open_share(1e-5), open_share(2.5e-6)
+    assert coarse < 0.02
+    assert fine < coarse / 8
+
+
+def test_what_it_cannot_do_is_named(state: Equilibrium):
+    with pytest.raises(ValueError, match=r"method is 'exact'.*100 to 200 rad/s.*newmark.*run-up"):
+        exact(state, speed=([0.0, 1.0], [100.0, 200.0]))
+    with pytest.raises(ValueError, match=r"method is 'Exact'.*newmark"):
+        transient(state, speed=0.0, dt=1e-5, steps=1, record=[], method="Exact")
+    law = Payne(D=2.0344e6, gamma_c=3.588e-3, m=0.4817, Lm=0.1663e6, gamma_l=3.132e-3)
+    with pytest.raises(ValueError, match=r"method is 'exact'.*'layer' softens.*newmark"):
+        exact(equilibrium(motor(RUBBER.with_payne(law))))
+    other = transient(state, speed=SPEED, dt=1e-5, steps=1, record=RECORD)
+    with pytest.raises(ValueError, match=r"resume.*method='newmark'.*'exact'"):
+        exact(state, resume=other)
+    with pytest.raises(ValueError, match=r"resume.*method='exact'.*'newmark'"):
+        transient(state, speed=SPEED, dt=1e-5, steps=1, record=RECORD, resume=exact(state, steps=1))
+
+
+def test_check_step_says_what_is_left(state: Equilibrium):
+    found = exact(state, steps=100, check_step=True)
+    assert "third order" in found.attrs["step_error_made"]
+    newmark = transient(state, speed=SPEED, dt=1e-5, steps=100, record=RECORD, check_step=True)
+    assert (found.attrs["step_error"] < newmark.attrs["step_error"] / 3).all()
