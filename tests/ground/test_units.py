@@ -107,8 +107,9 @@ def test_every_analysis_that_takes_a_speed_takes_rpm() -> None:
         if inspect.isfunction(made):
             known = inspect.signature(made).parameters
             takes = {"speed", "speeds"} & known.keys()
-            # a table over (load, speed) for other programs, which take rad/s
-            assert not takes or "rpm" in known or name == "stiffness_table", name
+            # a table for other programs, which take rad/s, and what one speed's cages are
+            plain = ("stiffness_table", "cage_ratios", "with_loaded_cages")
+            assert not takes or "rpm" in known or name in plain, name
 
 
 def test_rpm_and_rad_per_second_give_the_same_numbers_bit_for_bit() -> None:
