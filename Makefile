@@ -13,7 +13,8 @@ export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 # What the installed package and the C tests are made from. The lists are kept in files that change only when a list
 # does, so that a removed file counts as a change too.
 SOURCES := $(sort $(shell find csrc python -type f \( -name '*.[ch]' -o -name '*.py' -o -name '*.pyi' -o -name py.typed \
-             -o -name '*.csv' -o -name meson.build \)) meson.build meson.options pyproject.toml)
+             -o -name '*.csv' -o -name '*.json' -o -name '*.toml' \
+             -o -name meson.build \)) meson.build meson.options pyproject.toml)
 C_TESTS := $(sort $(wildcard tests/c/*))
 C_FILES  = $(wildcard csrc/*.[ch] csrc/binding/*.[ch] tests/c/*.[ch])
 
@@ -104,6 +105,21 @@ verify: $(VENV)/package $(VENV)/test $(VENV)/docs
 docs: $(VENV)/package $(VENV)/docs
 	$(PY) -m sphinx -W --keep-going -n -q -d $(BUILD)/doctrees docs $(BUILD)/docs
 	@echo open $(BUILD)/docs/index.html
+
+# A source archive that needs no git, a wheel built from it, and the wheel tested in an empty environment, where no
+# compiler is found: published cases, the ten lines of a ready machine, its drawing and its model file.
+.PHONY: wheel
+DIST := $(BUILD)/dist
+wheel: $(VENV)/tools
+	rm -rf $(DIST) && mkdir -p $(DIST)/source $(DIST)/empty
+	$(PY) tests/make_sdist.py $(DIST)
+	tar -xzf $(DIST)/bearingdyn-*.tar.gz -C $(DIST)/source --strip-components=1
+	cd $(DIST)/source && $(CURDIR)/$(PY) -m pip --disable-pip-version-check --quiet wheel --no-deps \
+	  --no-build-isolation --wheel-dir .. .
+	$(PYTHON) -m venv $(DIST)/venv
+	$(DIST)/venv/bin/python -m pip --disable-pip-version-check --quiet install $(DIST)/bearingdyn-*.whl
+	cd $(DIST)/empty && CC=/nonexistent PATH=$(CURDIR)/$(DIST)/venv/bin $(CURDIR)/$(DIST)/venv/bin/python \
+	  $(CURDIR)/tests/wheel_trial.py
 
 clean:
 	rm -rf $(VENV) $(BUILD) out docs/_static .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -12,10 +12,12 @@ from importlib import import_module
 SUBPACKAGES = {
     "bearing": "bearing",
     "catalogue": "bearing.catalogue",
+    "examples": "examples",
     "material": "material",
     "plot": "plot",
     "sound": "sound",
     "study": "study",
+    "units": "units",
 }
 # public names by what they are about, with the room of each; the stub beside this file says the same
 PUBLIC = {
@@ -167,6 +169,9 @@ PUBLIC = {
             "sound_power",
             "write_wav",
         ),
+    },
+    "model": {
+        "model": ("Analysis", "Model", "read_model", "write_model"),
     },
     "result": {
         "results": (

@@ -1,8 +1,10 @@
 from bearingdyn import bearing as bearing
+from bearingdyn import examples as examples
 from bearingdyn import material as material
 from bearingdyn import plot as plot
 from bearingdyn import sound as sound
 from bearingdyn import study as study
+from bearingdyn import units as units
 from bearingdyn.analysis import (
     Equilibrium,
     OperatingPoint,
@@ -105,6 +107,10 @@ from bearingdyn.material import (
     read_strain_sweep,
     sample_dma_path,
 )
+from bearingdyn.model import Analysis as Analysis
+from bearingdyn.model import Model as Model
+from bearingdyn.model import read_model as read_model
+from bearingdyn.model import write_model as write_model
 from bearingdyn.parts import (
     BoreShape,
     Cylinder,

@@ -192,3 +192,39 @@ def one_of(field: str, value: object, choices: Sequence[object]) -> None:
         value,
         f"it must be {' or '.join(repr(c) for c in choices)}",
     )
+
+
+def one_speed(speed: Any, rpm: Any, default: float | None = None, what: str = "speed") -> Any:
+    """Check that a speed is given once: in rad/s as `speed`, or in revolutions a minute as `rpm`.
+
+    Parameters
+    ----------
+    speed, rpm
+        A number, several, or (times in s, speeds); None where it is not given.
+    default
+        rad/s, where neither is; None where one must be.
+    what
+        Name of the argument in rad/s.
+
+    Returns
+    -------
+    Any
+        In rad/s, as it was given.
+
+    Raises
+    ------
+    ValueError
+        For both, for none, and for an `rpm` that is no number.
+    """
+    if rpm is None:
+        remedy = "give it in rad/s, or rpm= in revolutions a minute"
+        require(speed is not None or default is not None, what, speed, remedy)
+        return default if speed is None else speed
+    if speed is not None:
+        raise ValueError(f"rpm is {rpm!r}; it must be left out, as {what} is given too: give one of them")
+    remedy = "it must be finite, in revolutions a minute"
+    if isinstance(rpm, tuple) and len(rpm) == 2 and np.ndim(rpm[1]) > 0:
+        return rpm[0], numbers("rpm", rpm[1], remedy) * (math.pi / 30)
+    if np.ndim(rpm) > 0:
+        return numbers("rpm", rpm, remedy) * (math.pi / 30)
+    return number("rpm", rpm, remedy) * (math.pi / 30)

@@ -9,15 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn import examples
 from bearingdyn.analysis import equilibrium, frequency_response, transient
 from bearingdyn.application import Application
-from bearingdyn.bearing.catalogue import bearing
 from bearingdyn.material import Maxwell, fit_maxwell, master_curve, read_dma, sample_dma_path
-from bearingdyn.parts import Housing, Layer, RigidBody, Section, Shaft
 from bearingdyn.results import save
 
-RING = (0.0170, 0.0200, 0.014)  # outer ring of the 6203: groove radius, outside radius, width, m
-THICKNESS, WIDTH = 0.004, 0.014  # of the layer, m
 SPEED = 3000 * math.pi / 30  # rad/s
 FORCE, HOUSING = "shaft.middle.y", "left_housing.top.y"
 FREQUENCY = np.linspace(20.0, 5000.0, 1000)
@@ -27,35 +24,7 @@ DT, STEPS, SETTLE = 2.5e-6, 40_000, 200_000
 
 def motor(rubber: Maxwell | None) -> Application:
     """The demo's motor: a shaft in two 6203 bearings, each in a pedestal, with a layer of rubber or none."""
-    app = Application()
-    app.add(
-        "shaft",
-        Shaft(
-            [Section(0.02, 0.017), Section(0.16, 0.030), Section(0.02, 0.017)],
-            seats={"left": 0.01, "middle": 0.10, "right": 0.19},
-            damping=0.005,
-            f_max=10e3,
-        ),
-    )
-    app.free("shaft.middle")
-    bore = RING[1] + (0.0 if rubber is None else THICKNESS)
-    for side in ("left", "right"):
-        ring, house = f"{side}_ring", f"{side}_housing"
-        app.add(ring, RigidBody.ring(*RING))
-        app.add(house, Housing(0.09, 0.12, 0.02, 2 * bore, 0.07, damping=0.01, f_max=10e3, element_size=0.02))
-        app.ground(f"{house}.feet")
-        if rubber is None:
-            app.connect(f"{ring}.centre", f"{house}.bore")
-        else:
-            app.add(f"{side}_layer", Layer(RING[1], bore, WIDTH, rubber))
-            app.connect(f"{ring}.centre", f"{side}_layer.inner")
-            app.connect(f"{side}_layer.outer", f"{house}.bore")
-        app.bearing(
-            side, bearing("6203", clearance=8e-6, damping=30.0), inner=f"shaft.{side}", outer=f"{ring}.centre"
-        )
-    app.load("shaft.middle", (0.0, -1000.0, 100.0, 0.0, 0.0, 0.0))
-    app.unbalance("shaft.middle", 2e-6)
-    return app
+    return examples.motor(layers=rubber is not None, material=rubber)
 
 
 def demo(folder: Path, tell: Callable[[str], object] = lambda _: None) -> dict[str, Any]:

@@ -76,6 +76,8 @@ class Magnitude:
 
 _MM, _UM, _NM = Slip("mm", 1e-3), Slip("µm", 1e-6), Slip("nm", 1e-9)
 _MPA, _GPA, _KPA = Slip("MPa", 1e6), Slip("GPa", 1e9), Slip("kPa", 1e3)
+# a factor typed twice, as in 30 * mm * mm
+_TWICE = Slip("mm, converted twice", 1e3)
 _LENGTHS, _STRESSES = (_MM, _UM), (_MPA, _GPA, _KPA)
 _DEGREES = (Slip("degrees", math.pi / 180),)
 _CELSIUS = (Slip("kelvin", 1.0, -273.15), Slip("°F", 5 / 9, -160 / 9))
@@ -149,9 +151,19 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             False,
         ),
         # ------------------------------------------------------------- geometry
-        "length": Magnitude("m", (1e-8, 10.0), (1e-6, 10.0), "a part of a machine", _LENGTHS),
-        "shaft length": Magnitude("m", (1e-8, 100.0), (1e-6, 100.0), "a ship's line of shafts", _LENGTHS),
-        "shaft diameter": Magnitude("m", (1e-8, 5.0), (1e-6, 5.0), "the hub of a turbine", _LENGTHS),
+        "length": Magnitude(
+            "m",
+            (1e-8, 10.0),
+            (2e-4, 10.0),
+            "a part of a machine; the smallest ball bearing is 1.5 mm across",
+            (*_LENGTHS, _TWICE),
+        ),
+        "shaft length": Magnitude(
+            "m", (1e-8, 100.0), (2e-5, 100.0), "a ship's line of shafts", (*_LENGTHS, _TWICE)
+        ),
+        "shaft diameter": Magnitude(
+            "m", (1e-8, 5.0), (1e-4, 5.0), "a watch's pivot to the hub of a turbine", (*_LENGTHS, _TWICE)
+        ),
         "solid length": Magnitude(
             "m", (1e-8, 100.0), (1e-6, 100.0), "of a mesh that read_mesh was told is that large", _LENGTHS
         ),

@@ -31,9 +31,9 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 
 # A room may import the rooms of earlier rows, and nothing beside or after it. "" is bearingdyn/__init__.py.
 ORDER: tuple[tuple[str, ...], ...] = (
-    ("progress", "short_repr", "types"),
+    ("pictures", "progress", "short_repr", "types"),
     ("checks", "core", "fingerprint", "notice"),
-    ("magnitude", "writing"),
+    ("magnitude", "units", "writing"),
     ("material",),
     ("bearing", "fem"),
     ("cms",),
@@ -44,7 +44,8 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("results",),
     ("analysis",),
     ("sound",),
-    ("plot", "study"),
+    ("model", "plot", "study"),
+    ("examples",),
     ("",),
     ("check", "demo"),
     ("cli",),
@@ -53,6 +54,9 @@ ROW = {room: row for row, rooms in enumerate(ORDER) for room in rooms}
 
 # Drawing is the end of the line: only these may reach it, and only inside a function.
 MAY_DRAW = {"", "cli", "demo", "study"}
+
+# Objects that show themselves go by one door, which names the room as a text when it is asked.
+BY_NAME = {"pictures"}
 
 # Third-party packages a module may load when it is imported; the rest is imported inside functions.
 LOADED_AT_IMPORT = {"numpy", "scipy"}
@@ -135,6 +139,15 @@ def test_nothing_imports_plot(module: str) -> None:
         if room(i.target) == "plot" and room(module) != "plot" and not (i.late and room(module) in MAY_DRAW)
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def test_only_one_door_reaches_plot_by_name() -> None:
+    asks = {
+        module.partition(".")[2]
+        for module, path in MODULES.items()
+        if re.search(r"""import_module\(\s*f?["'][^"']*plot""", path.read_text(encoding="utf-8"))
+    }
+    assert asks == BY_NAME
 
 
 # A room is entered by its own name; (module, what it reaches behind a façade): the reason.

@@ -31,11 +31,12 @@ from bearingdyn.bearing import (
     ratings_of,
 )
 from bearingdyn.bearing import catalogue as listed
-from bearingdyn.checks import instance, items, meant, named, nonnegative, positive, require
+from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
 from bearingdyn.magnitude import plausible
 from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.parts import RigidBody
 from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -105,10 +106,11 @@ _ROWS: dict[str, dict[str, tuple[str, str, float, str]]] = {
 _MEANING = {name: row for group in _ROWS.values() for name, row in group.items()}
 
 
+@takes(speed="rad/s", temperature="°C")
 def bearing_sheet(
     eq: Equilibrium,
     *,
-    speed: float = 0.0,
+    speed: float | None = None,
     oil: Lubricant | None = None,
     temperature: float | Mapping[str, float] = 40.0,
     contamination: float | str = "normal cleanliness",
@@ -120,6 +122,7 @@ def bearing_sheet(
     friction_model: FrictionModel = "palmgren",
     supply: Supply = "oil bath",
     duty: Sequence[tuple[Equilibrium, float, float, float]] = (),
+    rpm: float | None = None,
 ) -> xarray.Dataset:
     """Everything that is asked of the bearings of an equilibrium, all of them at once.
 
@@ -128,7 +131,7 @@ def bearing_sheet(
     eq
         The static state; balls between flexible rings count as well.
     speed
-        Of the shaft, rad/s; 0: what needs a speed is NaN.
+        Of the shaft, rad/s; 0, the default: what needs a speed is NaN.
     oil
         Of all bearings; None: what needs an oil is NaN.
     temperature
@@ -146,6 +149,8 @@ def bearing_sheet(
     duty
         Phases (equilibrium, speed, temperature, share of the time) of a duty cycle, each of the same
         bearings; their life is by Palmgren and Miner, modified where there is an oil.
+    rpm
+        The speed in revolutions a minute, instead of `speed`.
 
     Returns
     -------
@@ -173,7 +178,7 @@ def bearing_sheet(
     """
     instance("eq", eq, Equilibrium, "it must be an equilibrium: bd.equilibrium(app)")
     hung = _hung(eq)
-    omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
+    omega = plausible("speed", "speed", one_speed(speed, rpm, 0.0), "it must be a finite speed in rad/s")
     if oil is not None:
         instance("oil", oil, Lubricant, "give a bd.bearing.Lubricant")
     sigma = plausible("roughness", "roughness", nonnegative("roughness", roughness))

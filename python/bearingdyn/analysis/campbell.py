@@ -13,9 +13,10 @@ from bearingdyn.analysis.mode_directions import directions
 from bearingdyn.analysis.mode_whirl import whirl
 from bearingdyn.analysis.modes import modes
 from bearingdyn.application import Application
-from bearingdyn.checks import numbers, truth, whole
+from bearingdyn.checks import numbers, one_speed, truth, whole
 from bearingdyn.system import System, system_of
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -27,13 +28,15 @@ MARGIN = 12
 OCTAVE = 0.1
 
 
+@takes(speeds="rad/s")
 def campbell(
     source: Equilibrium | Application | System,
-    speeds: ArrayLike,
+    speeds: ArrayLike | None = None,
     count: int = 12,
     *,
     damped: bool = True,
     modulus: str = "relaxed",
+    rpm: ArrayLike | None = None,
 ) -> xarray.Dataset:
     """Find the Campbell diagram: the modes at each speed, followed from speed to speed by their shapes.
 
@@ -51,6 +54,8 @@ def campbell(
         How many modes: the lowest ones at the lowest speed.
     damped, modulus
         As in `modes`.
+    rpm
+        The speeds in revolutions a minute, instead of `speeds`.
 
     Returns
     -------
@@ -66,7 +71,9 @@ def campbell(
     ValueError
         For speeds that are not finite, a count below 1, and as `modes`.
     """
-    given = numbers("speeds", speeds, "speeds must be one or more finite values, in rad/s")
+    given = numbers(
+        "speeds", one_speed(speeds, rpm, what="speeds"), "speeds must be one or more finite values, in rad/s"
+    )
     count, damped = whole("count", count, 1), truth("damped", damped)
     if not isinstance(source, Equilibrium):
         source = system_of("source", source)

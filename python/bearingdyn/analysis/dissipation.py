@@ -14,9 +14,11 @@ from bearingdyn.analysis.core_channels import CoreChannel
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.application import Application
+from bearingdyn.checks import one_speed
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System, factor
 from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -42,16 +44,18 @@ class Sink:
         return [(kind, None, bearing, index)]
 
 
+@takes(speed=("s", "rad/s"), dt="s", memory="s")
 def dissipation(
     source: Equilibrium | Application,
     *,
-    speed: float | tuple[ArrayLike, ArrayLike],
+    speed: float | tuple[ArrayLike, ArrayLike] | None = None,
     dt: float,
     steps: int,
     settle: int = 0,
     scheme: core.Scheme | None = None,
     memory: float | None = None,
     progress: Progress | bool | None = None,
+    rpm: float | tuple[ArrayLike, ArrayLike] | None = None,
 ) -> xarray.Dataset:
     """Find what an application dissipates: march as `transient`, and sum what becomes heat, and where.
 
@@ -66,7 +70,7 @@ def dissipation(
     ----------
     source
         Equilibrium, or an application, whose equilibrium is found first.
-    speed, dt, steps, settle, scheme, memory, progress
+    speed, dt, steps, settle, scheme, memory, progress, rpm
         As in `transient`; at least one step.
 
     Returns
@@ -90,7 +94,7 @@ def dissipation(
         )
     march = March.of(
         source,
-        speed=speed,
+        speed=one_speed(speed, rpm),
         dt=dt,
         steps=steps,
         settle=settle,

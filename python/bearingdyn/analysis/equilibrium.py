@@ -24,8 +24,10 @@ from bearingdyn.magnitude import plausible
 from bearingdyn.material import warn_beyond
 from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
+from bearingdyn.pictures import picture
 from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 PARTED = 1e-9
 """Load, N, below which a ball is not pressed: what a search leaves where nothing pushes, and no weight is."""
@@ -77,6 +79,9 @@ class Equilibrium:
         """Shear modulus of each layer in this state, Pa, by part."""
         G = self.system.static_moduli(self.modulus if self.after is None else self.after)
         return {t.part: value for t, value in zip(self.system.layers, G, strict=True)}
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __repr__(self) -> str:
         """One line; the matrices are in `system`."""
@@ -156,6 +161,7 @@ class Equilibrium:
         )
 
 
+@takes(angle="rad", after="s")
 def equilibrium(
     app: Application | System,
     angle: float = 0.0,

@@ -14,12 +14,13 @@ from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, request
 from bearingdyn.analysis.linearised import Contacts, linear
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, softening_layers, warn_of_strain
 from bearingdyn.application import QUANTITIES, RATES, Application
-from bearingdyn.checks import name_list, numbers, one_of, positive, require
+from bearingdyn.checks import name_list, numbers, one_of, one_speed, positive, require
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import warn_beyond
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -34,17 +35,19 @@ def frequencies(frequency: ArrayLike) -> Array:
     return found
 
 
+@takes(frequency="Hz", speed="rad/s")
 def frequency_response(
     source: Equilibrium | Application | System,
     frequency: ArrayLike,
     inputs: Sequence[str],
     outputs: Sequence[str],
     *,
-    speed: float = 0.0,
+    speed: float | None = None,
     quantity: str = "displacement",
     amplitude: float | Sequence[float] | Mapping[str, float] | None = None,
     contacts: Contacts = "film",
     progress: Progress | bool | None = None,
+    rpm: float | None = None,
 ) -> xarray.Dataset:
     """Complex response at `outputs` to unit harmonic forces or ground motions at `inputs`, zero-to-peak.
 
@@ -63,7 +66,7 @@ def frequency_response(
         "ground.block.feet.y", which the ground bears where it holds "block.feet" (with moments θx, θy, θz);
         and "layer.inner.force.y", which part "layer" exerts on everything joined to its interface "inner".
     speed
-        rad/s of the shaft, for gyroscopic forces; it is not the excitation frequency.
+        rad/s of the shaft, for gyroscopic forces, at rest by default; it is not the excitation frequency.
     quantity
         "displacement", "velocity" or "acceleration", of motions.
     amplitude
@@ -78,6 +81,8 @@ def frequency_response(
     progress
         True for a bar, False for none, or a function called with (frequencies done, in all); None for a bar
         where standard error is a terminal.
+    rpm
+        The speed in revolutions a minute, instead of `speed`.
 
     Returns
     -------
@@ -123,6 +128,7 @@ def frequency_response(
     inputs, outputs = name_list("inputs", inputs, least=1), name_list("outputs", outputs, least=1)
     one_of("quantity", quantity, QUANTITIES)
     state = linear(source, contacts)
+    speed = one_speed(speed, rpm, 0.0)
     state.system.check_speed(speed)
     given = [Input.of(state.system, name) for name in inputs]
     wanted = [Output.of(state.system, name) for name in outputs]

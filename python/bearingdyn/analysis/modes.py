@@ -11,9 +11,10 @@ from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.film_modes import film_modes
 from bearingdyn.analysis.linearised import Contacts, linear
 from bearingdyn.application import Application
-from bearingdyn.checks import number, one_of, truth, whole
+from bearingdyn.checks import number, one_of, one_speed, truth, whole
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -23,14 +24,16 @@ if TYPE_CHECKING:
 REAL = 1e-9
 
 
+@takes(speed="rad/s")
 def modes(
     source: Equilibrium | Application | System,
     count: int | None = None,
     *,
-    speed: float = 0.0,
+    speed: float | None = None,
     damped: bool = False,
     modulus: str = "relaxed",
     contacts: Contacts = "film",
+    rpm: float | None = None,
 ) -> xarray.Dataset:
     """Natural modes about an equilibrium, or of an application without bearings.
 
@@ -41,7 +44,7 @@ def modes(
     count
         How many modes, the lowest first; None for all.
     speed
-        rad/s of the shaft, for gyroscopic forces and, in damped modes, damping that turns.
+        rad/s of the shaft, for gyroscopic forces and, in damped modes, damping that turns; 0 by default.
     damped
         False: only masses, stiffnesses and gyroscopic forces act. True: C, G, K, N and every Maxwell branch
         act, each branch as a state, so that the eigenvalues solve the frequency-dependent problem exactly.
@@ -51,6 +54,8 @@ def modes(
         How lubricated bearings act in damped modes: "film", by the stiffness and damping that their films
         have at the frequency of each mode, good to the first order in its damping ratio; "viscous", by those
         of low frequency, as a march does. In undamped modes they have their static stiffness.
+    rpm
+        The speed in revolutions a minute, instead of `speed`.
 
     Returns
     -------
@@ -82,7 +87,7 @@ def modes(
     """
     if count is not None:
         count = whole("count", count, 0)
-    damped, speed = truth("damped", damped), number("speed", speed, "it must be a speed in rad/s")
+    damped, speed = truth("damped", damped), number("speed", one_speed(speed, rpm, 0.0))
     one_of("contacts", contacts, ("film", "viscous"))
     system = source.linearised() if isinstance(source, Equilibrium) else linear(source).system
     system.check_speed(speed)

@@ -29,10 +29,11 @@ from bearingdyn.bearing import (
     friction,
     ratings_of,
 )
-from bearingdyn.checks import instance, meant, named, positive, require, vector, whole
+from bearingdyn.checks import instance, meant, named, one_speed, positive, require, vector, whole
 from bearingdyn.magnitude import plausible
 from bearingdyn.parts import Layer
 from bearingdyn.system import System, system_of
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -158,10 +159,11 @@ def estimated_network(app: Application, ambient: float = 20.0) -> ThermalNetwork
     return network
 
 
+@takes(speed="rad/s", ambient="°C", assembled_at="°C")
 def operating_point(
     app: Application,
     *,
-    speed: float,
+    speed: float | None = None,
     oil: Lubricant,
     ambient: float = 20.0,
     network: ThermalNetwork | None = None,
@@ -172,6 +174,7 @@ def operating_point(
     assembled_at: float = 20.0,
     tolerance: float = 0.01,
     rounds: int = 200,
+    rpm: float | None = None,
 ) -> OperatingPoint:
     """The warm running state: temperatures, viscosities, clearances and layers that agree with their heat.
 
@@ -200,6 +203,8 @@ def operating_point(
         K, within which temperatures must repeat.
     rounds
         At most.
+    rpm
+        The speed in revolutions a minute, instead of `speed`.
 
     Raises
     ------
@@ -219,7 +224,7 @@ def operating_point(
     """
     instance("app", app, Application, "it must be an Application (bd.Application())")
     instance("oil", oil, Lubricant, "give a bd.bearing.Lubricant")
-    omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
+    omega = plausible("speed", "speed", one_speed(speed, rpm), "it must be a finite speed in rad/s")
     cold = plausible("temperature", "assembled_at", assembled_at, "it must be one finite number, in °C")
     still = positive("tolerance", tolerance, "it must be positive, in K")
     most = whole("rounds", rounds, 1, 100_000)

@@ -20,24 +20,27 @@ from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.analysis.part_velocities import part_velocities, surface_of
 from bearingdyn.application import Application
-from bearingdyn.checks import name_list, positive
+from bearingdyn.checks import name_list, one_speed, positive
 from bearingdyn.progress import Progress
 from bearingdyn.system import System
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
 
 
+@takes(frequency="Hz", speed="rad/s")
 def radiated_power(
     source: Equilibrium | Application | System,
     frequency: ArrayLike,
     inputs: Sequence[str],
     surfaces: Sequence[str],
     *,
-    speed: float = 0.0,
+    speed: float | None = None,
     density: float = 1.204,
     sound_speed: float = 343.2,
     progress: Progress | bool | None = None,
+    rpm: float | None = None,
 ) -> xarray.Dataset:
     """Equivalent radiated power of surfaces ("housing.outside") under unit harmonic forces at `inputs`.
 
@@ -56,7 +59,7 @@ def radiated_power(
         As in `frequency_response`, rad/s.
     density, sound_speed
         Of the medium, kg/m³ and m/s; those of air at 20 °C.
-    progress
+    progress, rpm
         As in `frequency_response`.
 
     Returns
@@ -75,6 +78,7 @@ def radiated_power(
     inputs, surfaces = name_list("inputs", inputs, least=1), name_list("surfaces", surfaces, "surfaces", 1)
     density, sound_speed = positive("density", density), positive("sound_speed", sound_speed)
     state = linear(source)
+    speed = one_speed(speed, rpm, 0.0)
     state.system.check_speed(speed)
     found = [surface_of(state.system, name) for name in surfaces]
     given = [Input.of(state.system, name) for name in inputs]

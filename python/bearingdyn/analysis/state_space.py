@@ -20,10 +20,11 @@ from bearingdyn.analysis.frequency_response import frequencies
 from bearingdyn.analysis.inputs_outputs import Input, Output
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import QUANTITIES, Application
-from bearingdyn.checks import name_list, one_of, require
+from bearingdyn.checks import name_list, one_of, one_speed, require
 from bearingdyn.material import Maxwell
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,13 +77,15 @@ class StateSpace:
         return control.ss(self.A, self.B, self.C, self.D, **plain)
 
 
+@takes(speed="rad/s")
 def state_space(
     source: Equilibrium | Application | System,
     inputs: Sequence[str],
     outputs: Sequence[str],
     *,
-    speed: float = 0.0,
+    speed: float | None = None,
     quantity: str = "displacement",
+    rpm: float | None = None,
 ) -> StateSpace:
     """Linear model in state space about an equilibrium, whose transfer function is the frequency response.
 
@@ -96,9 +99,11 @@ def state_space(
     outputs
         Channels of motions, and forces of bearings, "left.force.y".
     speed
-        Of the shaft, rad/s.
+        Of the shaft, rad/s; at rest by default.
     quantity
         "displacement", "velocity" or "acceleration", of motions.
+    rpm
+        The speed in revolutions a minute, instead of `speed`.
 
     Returns
     -------
@@ -123,6 +128,7 @@ def state_space(
     one_of("quantity", quantity, QUANTITIES)
     state = linear(source)
     system = state.system
+    speed = one_speed(speed, rpm, 0.0)
     system.check_speed(speed)
     for layer in system.layers:
         maxwell = isinstance(layer.material, Maxwell)

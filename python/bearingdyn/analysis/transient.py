@@ -17,10 +17,11 @@ from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.step_size import step_error_made
 from bearingdyn.application import Application
-from bearingdyn.checks import instance, items, name_list, named, number, whole
+from bearingdyn.checks import instance, items, name_list, named, number, one_speed, whole
 from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import System
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -28,10 +29,11 @@ if TYPE_CHECKING:
     from bearingdyn.analysis.steady import Approaches
 
 
+@takes(speed=("s", "rad/s"), dt="s", memory="s")
 def transient(
     source: Equilibrium | Application | System,
     *,
-    speed: float | tuple[ArrayLike, ArrayLike],
+    speed: float | tuple[ArrayLike, ArrayLike] | None = None,
     dt: float,
     steps: int,
     record: Sequence[str],
@@ -48,6 +50,7 @@ def transient(
     memory: float | None = None,
     method: str = "newmark",
     progress: Progress | bool | None = None,
+    rpm: float | tuple[ArrayLike, ArrayLike] | None = None,
 ) -> xarray.Dataset:
     """Find a transient: march an application from its equilibrium, at constant speed or through a run-up.
 
@@ -123,6 +126,8 @@ def transient(
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
+    rpm
+        The speed in revolutions a minute, instead of `speed`: one number, or (times in s, rpm).
 
     Returns
     -------
@@ -181,7 +186,7 @@ def transient(
         raise ValueError("resume and initial both set the state at the start; give one of them")
     march = March.of(
         source,
-        speed=speed,
+        speed=one_speed(speed, rpm),
         dt=dt,
         steps=steps,
         settle=settle,

@@ -13,19 +13,22 @@ from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, request
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, warn_of_strain
 from bearingdyn.application import QUANTITIES, Application
-from bearingdyn.checks import name_list, numbers, one_of
+from bearingdyn.checks import name_list, numbers, one_of, one_speed
 from bearingdyn.system import System
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
 
 
+@takes(speeds="rad/s")
 def unbalance_response(
     source: Equilibrium | Application | System,
-    speeds: ArrayLike,
+    speeds: ArrayLike | None,
     outputs: Sequence[str],
     *,
     quantity: str = "displacement",
+    rpm: ArrayLike | None = None,
 ) -> xarray.Dataset:
     """Synchronous response to all unbalances of an application, with the gyroscopic forces of each speed.
 
@@ -35,11 +38,13 @@ def unbalance_response(
         Equilibrium, whose bearings are linearised; or an application or system without bearings. Its
         unbalances are those of `Application.unbalance`, at their phases.
     speeds
-        (s,) rad/s of the shaft, ≥ 0; the response has this frequency.
+        (s,) rad/s of the shaft, ≥ 0; the response has this frequency. None where `rpm` is given.
     outputs
         Channels of motions and forces, as in `frequency_response`.
     quantity
         "displacement", "velocity" or "acceleration", of motions.
+    rpm
+        The speeds in revolutions a minute, instead of `speeds`.
 
     Returns
     -------
@@ -62,7 +67,10 @@ def unbalance_response(
         Where a layer's strain leaves the sweep its law of softening comes from.
     """
     given = numbers(
-        "speeds", speeds, "speeds must be one or more finite values of zero or more, in rad/s", 0.0
+        "speeds",
+        one_speed(speeds, rpm, what="speeds"),
+        "speeds must be one or more finite values of zero or more, in rad/s",
+        0.0,
     )
     outputs = name_list("outputs", outputs, least=1)
     one_of("quantity", quantity, QUANTITIES)

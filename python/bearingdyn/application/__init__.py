@@ -4,10 +4,19 @@ from bearingdyn.application.application import Application
 from bearingdyn.application.channel import COMPONENTS, GROUND, QUANTITIES, RATES, Channel
 from bearingdyn.application.free_motions import arm
 from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
-from bearingdyn.application.loads import ConstantLoad, CoreLoad, HarmonicLoad, Load, SampledLoad, Unbalance
+from bearingdyn.application.loads import (
+    ConstantLoad,
+    CoreLoad,
+    DirectedLoad,
+    HarmonicLoad,
+    Load,
+    SampledLoad,
+    Unbalance,
+)
 from bearingdyn.application.part import Part
 from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.application.plan import Plan
+from bearingdyn.application.summary import loose_motions
 
 __all__ = [
     "COMPONENTS",
@@ -22,6 +31,7 @@ __all__ = [
     "Connection",
     "ConstantLoad",
     "CoreLoad",
+    "DirectedLoad",
     "HarmonicLoad",
     "Load",
     "LooseJoint",
@@ -32,4 +42,5 @@ __all__ = [
     "Support",
     "Unbalance",
     "arm",
+    "loose_motions",
 ]

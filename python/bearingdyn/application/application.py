@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,17 @@ from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, RowSet
 from bearingdyn.checks import require, truth
 from bearingdyn.magnitude import plausible
+from bearingdyn.pictures import picture
 from bearingdyn.types import Array
+from bearingdyn.units import takes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# units of six numbers, along the axes and about them
+STIFFNESS = ("N/m",) * 3 + ("N m/rad",) * 3
+DAMPING = ("N s/m",) * 3 + ("N m s/rad",) * 3
+OFFSET, LOAD = ("m",) * 3 + ("rad",) * 3, ("N",) * 3 + ("N m",) * 3
 
 
 class Application:
@@ -54,9 +64,47 @@ class Application:
         """The summary, or that there is nothing yet."""
         return self.summary() if self.plan.parts else "<Application without parts>"
 
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
+
     def summary(self) -> str:
         """What is connected to what, masses, loads, and which motions nothing holds: read it first."""
         return summary(self.plan)
+
+    def draw(self, ax: Axes | None = None, *, table: bool = True) -> Axes:
+        """Draw the machine before anything is solved: its section, to scale; see `bd.plot.draw`.
+
+        Parameters
+        ----------
+        ax
+            Axes to draw into, without a parts list; None: those of a new sheet.
+        table
+            Whether a new sheet has the parts list.
+
+        Returns
+        -------
+        Axes
+            The axes of the section.
+
+        Raises
+        ------
+        ValueError
+            For an application without parts.
+        """
+        axes: Axes = picture("draw", self, ax, table=table)
+        return axes
+
+    def scene(self) -> Any:
+        """The machine in three dimensions, a pyvista.MultiBlock; see `bd.plot.scene`.
+
+        Raises
+        ------
+        ImportError
+            Without pyvista.
+        ValueError
+            Where no part has a surface.
+        """
+        return picture("scene", self)
 
     def names(self) -> list[str]:
         """All interfaces and points, "part.name"."""
@@ -139,6 +187,7 @@ class Application:
             check_connection((first, second), (self.plan.faces(first), self.plan.faces(second)))
         self.plan.connections.append(joint)
 
+    @takes(stiffness=STIFFNESS, damping=DAMPING, offset=OFFSET)
     def ground(
         self,
         interface: str,
@@ -169,6 +218,7 @@ class Application:
             raise ValueError(f"{place} is grounded already; give stiffness and damping in one call")
         self.plan.supports[place] = Support(place, *(cast(Array, v) for v in (stiffness, damping, offset)))
 
+    @takes(stiffness=STIFFNESS, damping=DAMPING, offset=OFFSET)
     def spring(
         self,
         a: str,
@@ -213,6 +263,7 @@ class Application:
             self.plan.interface(place)
         self.plan.free_interfaces.add(place)
 
+    @takes(offset="m")
     def bearing(
         self,
         name: str,
@@ -310,6 +361,7 @@ class Application:
             raise ValueError(f"fit {name!r}: {ring} is in use already; give each its own")
         self.plan.fits[name] = joint
 
+    @takes(vector=LOAD, frequency="Hz", phase="rad", time="s")
     def load(
         self,
         where: str,
@@ -351,6 +403,7 @@ class Application:
             raise ValueError(f"load at {where}: the point has no rotation, so its moment must be zero")
         self.plan.loads.append(load)
 
+    @takes(moment="kg m", phase="rad")
     def unbalance(self, where: str, moment: float, phase: float = 0.0) -> None:
         """Apply an unbalance, which turns with the shaft.
 
@@ -372,6 +425,7 @@ class Application:
         self.plan.rows(place)
         self.plan.loads.append(Unbalance(place, moment, phase))
 
+    @takes(acceleration="m/s²")
     def gravity(self, acceleration: ArrayLike) -> None:
         """Give every part its weight.
 
@@ -389,6 +443,7 @@ class Application:
             raise ValueError("gravity is given already; one acceleration holds for all parts")
         self.plan.loads.append(in_time(GRAVITY, acceleration))
 
+    @takes(acceleration="m/s²", frequency="Hz", phase="rad", time="s")
     def base_motion(
         self,
         acceleration: ArrayLike,
@@ -418,6 +473,7 @@ class Application:
         """
         self.plan.loads.append(in_time(GROUND, acceleration, frequency, phase, time, value))
 
+    @takes(T="°C")
     def temperature(self, part: str, T: float) -> None:
         """Put a part's viscoelastic materials at a temperature, by the shift law of each.
 

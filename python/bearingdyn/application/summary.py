@@ -39,10 +39,15 @@ def summary(plan: Plan) -> str:
     lines.append("loads")
     lines += [f"  {load.where}: {load.kind} {load.size}" for load in plan.loads]
     lines.append("free motions")
+    lines += [f"  {motion}" for motion in loose_motions(plan)] or ["  none"]
+    return "\n".join(lines)
+
+
+def loose_motions(plan: Plan) -> list[str]:
+    """Motions that nothing holds, each in words: the summary's last lines."""
     shapes = {name: plan.rigid_shapes(name) for name in plan.parts}
     motions = free_motions(shapes, _constraints(plan))
-    lines += ["  " + ", ".join(f"{part} {c}" for part, c in motion) for motion in motions] or ["  none"]
-    return "\n".join(lines)
+    return [", ".join(f"{part} {c}" for part, c in motion) for motion in motions]
 
 
 def _offset(offset: Array | None) -> str:

@@ -30,10 +30,12 @@ from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, runs_off, shoulder
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
-from bearingdyn.checks import nonnegative, number, positive, require, vector, whole
+from bearingdyn.checks import nonnegative, number, one_speed, positive, require, vector, whole
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.pictures import picture
 from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 _Response: TypeAlias = tuple[Array, Array, Array, Array]
 _MOTION = "(x, y, z, θx, θy, θz) of the inner ring relative to the outer ring"
@@ -58,6 +60,19 @@ def _changed(given: _Frozen, **values: object) -> _Frozen:
     return made
 
 
+@takes(
+    Dw="m",
+    Dpw="m",
+    clearance="m",
+    contact_angle="rad",
+    film="m",
+    damping="N s/m",
+    kappa="N/m^1.5",
+    angle0="rad",
+    oversize="m",
+    arm="m",
+    boundary="m",
+)
 @dataclass(frozen=True, init=False)
 class BallBearing:
     """Single-row ball bearing with rigid rings.
@@ -149,6 +164,9 @@ class BallBearing:
     boundary: tuple[float, float, float] | None
     lubrication: OilSupply | None
     overrides: Overrides
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __repr__(self) -> str:
         """One line: the geometry, and what is not usual."""
@@ -342,17 +360,24 @@ class BallBearing:
         Q = min(c.load_at_pressure(STATIC_PRESSURE) for c in (self.inner_contact, self.outer_contact))
         return self.Z * Q * math.cos(self.contact_angle or 0.0) / 5
 
-    def frequencies(self, speed: float, contact_angle: float | None = None) -> Frequencies:
-        """Cage, ball-pass and ball-spin frequencies, Hz, at the shaft speed in rad/s, in pure rolling.
+    @takes(speed="rad/s", contact_angle="rad")
+    def frequencies(
+        self, speed: float | None = None, contact_angle: float | None = None, *, rpm: float | None = None
+    ) -> Frequencies:
+        """Cage, ball-pass and ball-spin frequencies, Hz, at a speed of the shaft, in pure rolling.
 
         Which ring turns with the shaft is said by `turning`.
 
         Parameters
         ----------
+        speed
+            rad/s.
         contact_angle
             Of the loaded state, rad; None: the nominal one, 0 if a clearance is given.
+        rpm
+            The speed in revolutions a minute, instead of `speed`.
         """
-        plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
+        speed = plausible("speed", "speed", one_speed(speed, rpm), "it must be a finite speed in rad/s")
         check_speed_value("speed", speed, self.Dpw)
         rings = [ratio * speed for ratio in self.ring_speeds]
         if contact_angle is None:

@@ -23,6 +23,7 @@ from bearingdyn.bearing.rating.standard import Ratings, iso_ratings, static_fact
 from bearingdyn.checks import number, positive, require
 from bearingdyn.magnitude import plausible
 from bearingdyn.notice import PassedOver, warn
+from bearingdyn.units import takes
 
 Kind = Literal["deep groove", "angular contact"]
 
@@ -297,6 +298,7 @@ def series_of(bearing: BallBearing) -> str | None:
     return None
 
 
+@takes(clearance="m")
 def bearing(
     designation: str | int, *, clearance: float | None = None, balls: int | None = None, **keywords: Any
 ) -> BallBearing:

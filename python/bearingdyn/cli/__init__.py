@@ -1,4 +1,4 @@
-"""The command line: `bearingdyn fit`, `show`, `bearing`, `check`, `demo` and `version`.
+"""The command line: `bearingdyn fit`, `show`, `bearing`, `run`, `check`, `demo` and `version`.
 
 Results go to standard output; progress, and warnings and errors of one line each, to standard error. The exit
 code is 0, 1 where a check does not hold, 2 for a command or input that cannot be used, 130 after Ctrl-C.
@@ -17,6 +17,7 @@ from bearingdyn.cli.bearing import run_bearing
 from bearingdyn.cli.check_demo_version import run_check, run_demo, run_version
 from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, LAW, T_REF, run_fit
 from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
+from bearingdyn.cli.run_model import run_model
 from bearingdyn.cli.show import run_show
 from bearingdyn.results import versions
 
@@ -28,6 +29,8 @@ examples:
   bearingdyn show result.nc
   bearingdyn bearing 6205/C3 --radial 2000 --axial 300 --rpm 3000 --oil VG32 --temperature 70
   bearingdyn check
+  bearingdyn check motor.toml
+  bearingdyn run motor.toml --out motor.nc --set thickness=0.003
   bearingdyn demo --out demo
 
 Every command takes --json and --help. Exit codes: 0 good, 1 a check does not hold, 2 a command or input
@@ -200,13 +203,26 @@ def _parser() -> argparse.ArgumentParser:
         "--friction", choices=("palmgren", "four-term"), default="palmgren", help="model (default palmgren)"
     )
     sheet.add_argument("--html", metavar="FILE", help="also write the sheet there as one page")
-    add(
+    check = add(
         "check",
         run_check,
         "the installed package against published numbers and closed forms",
         "Compute some thirty cases with a published value or a closed form, in a few seconds. The exit code "
-        "is 1 where one does not hold.",
+        "is 1 where one does not hold. With a model file: read and join it, and say what it is.",
     )
+    check.add_argument("model", nargs="?", help="model file (TOML) to check instead of the package")
+    run = add(
+        "run",
+        run_model,
+        "every analysis that a model file asks for",
+        "Read a model (TOML), find its equilibrium, do its analyses, and write their results to one file.",
+    )
+    run.add_argument("model", help="model file (TOML)")
+    run.add_argument("--out", metavar="FILE", help="result file (default: the model's name with .nc)")
+    for command in (check, run):
+        command.add_argument(
+            "--set", nargs="+", default=[], metavar="NAME=VALUE", help="values of the model's parameters"
+        )
     demo = add(
         "demo",
         run_demo,

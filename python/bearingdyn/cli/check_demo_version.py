@@ -15,7 +15,11 @@ from bearingdyn.cli.outcome import FAILED, GOOD
 
 
 def run_check(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The command `bearingdyn check`: a row for each case; the code says whether all hold."""
+    """The command `bearingdyn check`: a row for each case; the code says whether all hold. Or of a model."""
+    if arguments.model is not None:
+        from bearingdyn.cli.run_model import check_model
+
+        return check_model(arguments)
     from bearingdyn.check import check
 
     found = check(lambda done, total: _tell(f"check {done} of {total}"))

@@ -18,8 +18,10 @@ from bearingdyn.checks import number, positive
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 
+@takes(length="m", d_outer="m", d_inner="m")
 @dataclass(frozen=True)
 class Section:
     """A section of a beam: a length of shaft of constant circular cross-section.

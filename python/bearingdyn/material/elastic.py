@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 from bearingdyn.checks import number, positive
 from bearingdyn.magnitude import check_density, check_waves, plausible
+from bearingdyn.units import takes
 
 
+@takes(E="Pa", density="kg/m³")
 @dataclass(frozen=True)
 class Elastic:
     """Linear elastic, isotropic material.

@@ -19,7 +19,9 @@ from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
 from bearingdyn.notice import warn
+from bearingdyn.pictures import picture
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 _ROUNDING = 1.001  # of the edges of a band
 
@@ -37,6 +39,7 @@ def _branches(name: str, values: ArrayLike) -> Array:
     return array
 
 
+@takes(G0="Pa", G="Pa", tau="s", eta0="Pa s", K="Pa", density="kg/m³", temperature="°C", band="Hz")
 @dataclass(frozen=True, init=False, eq=False)
 class Maxwell(Retunable, Softening):
     """The generalised Maxwell model, viscoelastic in shear, elastic in volume.
@@ -106,6 +109,9 @@ class Maxwell(Retunable, Softening):
     fit: FitReport | None = field(repr=False)
     low_end: LowEnd | None = field(repr=False)
     payne: Payne | None = field(repr=False)
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __repr__(self) -> str:
         """One line: moduli, times, and where it is good."""

@@ -14,6 +14,7 @@ from bearingdyn.parts.node_set import NodeSet, at_radius
 from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
 from bearingdyn.parts.prestress import Prestress
+from bearingdyn.parts.profile import HasProfile, Matter, Profile, cut
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
@@ -36,11 +37,13 @@ __all__ = [
     "FlexibleBearing",
     "FlexibleRing",
     "Groove",
+    "HasProfile",
     "HasRoundFaces",
     "Housing",
     "Imported",
     "Layer",
     "Line",
+    "Matter",
     "MeshNodes",
     "NodeSet",
     "ORing",
@@ -48,6 +51,7 @@ __all__ = [
     "Outlined",
     "Patch",
     "Prestress",
+    "Profile",
     "Region",
     "Revolved",
     "RevolvedModes",
@@ -66,6 +70,7 @@ __all__ = [
     "ViscoelasticSolid",
     "Where",
     "at_radius",
+    "cut",
     "damping_sample",
     "quadrilaterals",
     "specimen_factor",

@@ -8,8 +8,10 @@ from bearingdyn.checks import instance, nonnegative, number, positive
 from bearingdyn.fem import Section
 from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.units import takes
 
 
+@takes(z="m", mass="kg", Id="kg m²", Ip="kg m²")
 @dataclass(frozen=True)
 class Disc:
     """A rigid disc on a shaft.
@@ -44,6 +46,7 @@ class Disc:
         check_gyration("Disc Id", self.Id, self.mass)
 
     @classmethod
+    @takes(z="m", d_outer="m", width="m", d_inner="m")
     def cylinder(
         cls, z: float, d_outer: float, width: float, d_inner: float = 0.0, material: Elastic = STEEL
     ) -> Disc:

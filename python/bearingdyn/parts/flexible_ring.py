@@ -20,12 +20,14 @@ from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import HIGHEST, Cylinder, Face, Footprint, Groove, Line, Where
 from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
 from bearingdyn.parts.ring_support import RingBed, RingPoints, held_by
 from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 F_HEARD = 6e3  # Hz, up to which a ring's receptances are right unless f_max says otherwise
 # of the ball's diameter, the height of shoulders of deep groove bearings, and of angular contact ones
@@ -36,6 +38,7 @@ NEGLIGIBLE = 1e-9  # of the largest folded compliance
 UNDER = (0.15, 0.45)  # of the ring's height: lines of the mesh under the balls
 
 
+@takes(r_inner="m", r_outer="m", width="m", arm="m", groove="m", groove_radius="m", f_max="Hz")
 @dataclass(frozen=True)
 class FlexibleRing:
     """A flexible outer ring, not turning, whose "raceway" carries the balls of one bearing.
@@ -416,6 +419,10 @@ class FlexibleRing:
         bottom = np.sqrt(radius**2 - z**2) - math.sqrt(radius**2 - track**2)
         share = (self.r_outer - mesh.r) / (self.r_outer - self.r_inner)
         return replace(mesh, r=mesh.r + np.maximum(share, 0.0) * bottom)
+
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it; see Revolved.profile."""
+        return self.body.profile()
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""

@@ -15,12 +15,15 @@ from bearingdyn.fem import block_with_bore
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.profile import Profile, rectangle
 from bearingdyn.parts.solid import RigidSurface, Solid
 from bearingdyn.short_repr import short
+from bearingdyn.units import takes
 
 ELEMENTS = 300  # aimed at by the default element size: 4000 to 10000 coordinates, a second or so
 
 
+@takes(width="m", height="m")
 @dataclass(frozen=True)
 class Feet:
     """The feet of a housing, on which it stands: two strips along z.
@@ -47,6 +50,16 @@ class Feet:
         nonnegative("Feet height", self.height, "it must be 0 or a height in m")
 
 
+@takes(
+    width="m",
+    height="m",
+    length="m",
+    bore_diameter="m",
+    bore_height="m",
+    f_max="Hz",
+    points="m",
+    element_size="m",
+)
 @dataclass(frozen=True)
 class Housing:
     """A housing: a block with a round bore through it along z, of three-dimensional finite elements.
@@ -164,6 +177,12 @@ class Housing:
     def outline(self) -> Outline:
         """Its surface; see Solid.outline."""
         return self.body.outline()
+
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it: the walls above and below the bore."""
+        z, r = (-0.5 * self.length, 0.5 * self.length), 0.5 * self.bore_diameter
+        walls = ((r, self.height - self.axis), (-self.axis, -r))
+        return [Profile(rectangle(z, wall), "metal") for wall in walls]
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""

@@ -19,14 +19,17 @@ from bearingdyn.fem import (
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
 from bearingdyn.parts.strain import Strain
 from bearingdyn.types import Array, Complex
+from bearingdyn.units import takes
 
 
+@takes(r_inner="m", r_outer="m", width="m", moduli="Pa", recess="m")
 @dataclass(frozen=True)
 class Layer:
     """A layer: a rubber ring bonded to a rigid body inside ("inner") and outside ("outer"), its ends free.
@@ -239,6 +242,10 @@ class Layer:
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""
         return self.body.outline()
+
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it; see Revolved.profile."""
+        return self.body.profile()
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""

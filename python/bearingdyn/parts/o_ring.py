@@ -21,11 +21,13 @@ from bearingdyn.parts.regions import Patch, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import MeshNodes
 from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.units import takes
 
 HALF = math.pi / 4  # half of the angle, rad, of the evenly divided arcs on which it comes to touch
 ACROSS = 16  # elements on each of those arcs, which ends of contact lie between
 
 
+@takes(radius="m", cord="m", moduli="Pa")
 @dataclass(frozen=True)
 class ORing:
     """A rubber ring of round section, "inner" on a shaft and "outer" in a bore.

@@ -45,6 +45,7 @@ from bearingdyn.magnitude import plausible
 from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
 from bearingdyn.parts.outline import Outline, azimuths, revolved
 from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
+from bearingdyn.parts.profile import Matter, Profile, loops, mirrored
 from bearingdyn.parts.raceway_shapes import Order, PortShapes, port_shapes
 from bearingdyn.parts.regions import Patch, Region, is_rubber
 from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_boundaries
@@ -714,6 +715,22 @@ class Revolved:
                 mesh.r[face.nodes], mesh.z[face.nodes], mesh.r[around], face.reference
             )
         return known
+
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it: the section of each region, above the axis and below."""
+        mesh = self.mesh
+        faces = self._boundaries.faces
+        origin = next(iter(faces.values())).reference if faces else 0.0
+        shown = []
+        for k, region in enumerate(self.regions):
+            own = replace(
+                mesh, elements=mesh.elements[mesh.region == k], region=mesh.region[mesh.region == k]
+            )
+            sides = own.outline_sides
+            matter: Matter = "metal" if isinstance(region.material, Elastic) else "rubber"
+            for loop in loops(np.vstack([sides[:, :2], sides[:, 1:]])):
+                shown += mirrored(np.stack([mesh.z[loop] - origin, mesh.r[loop]], axis=-1), matter)
+        return shown
 
     def outline(self) -> Outline:
         """Its surface, revolved.

@@ -13,8 +13,12 @@ from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, box, carried, cylinder
+from bearingdyn.parts.profile import Profile, mirrored, rectangle
+from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 
+@takes(mass="kg", inertia="kg m²", measures="m")
 @dataclass(frozen=True)
 class RigidBody:
     """A rigid body with one interface, "centre", at its centre of mass.
@@ -70,6 +74,7 @@ class RigidBody:
         object.__setattr__(self, "inertia", inertia)
 
     @classmethod
+    @takes(r_inner="m", r_outer="m", width="m")
     def ring(
         cls,
         r_inner: float,
@@ -124,14 +129,25 @@ class RigidBody:
             faces=self.round_faces(),
         )
 
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it: the ring of its measures, or the box of its mass and inertia."""
+        if self.measures is not None:
+            r_inner, r_outer, width = self.measures
+            return mirrored(rectangle((-0.5 * width, 0.5 * width), (r_inner, r_outer)), "metal")
+        _, height, length = self._box()
+        return [Profile(rectangle((-0.5 * length, 0.5 * length), (-0.5 * height, 0.5 * height)), "body")]
+
+    def _box(self) -> Array:
+        """Sides (3,), m, of the box of evenly spread mass that has its mass and inertia."""
+        # I_x = m (b² + c²)/12, and so on
+        moments = np.array(self.inertia)
+        return np.asarray(np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments) / self.mass, 0.0)))
+
     def outline(self) -> Outline:
         """The ring of its measures, or the box of evenly spread mass that has its mass and inertia."""
         if self.measures is not None:
             r_inner, r_outer, width = self.measures
             points, faces = cylinder(r_inner, r_outer, (-0.5 * width, 0.5 * width))
         else:
-            # I_x = m (b² + c²)/12, and so on
-            moments = np.array(self.inertia)
-            sides = np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments) / self.mass, 0.0))
-            points, faces = box(sides)
+            points, faces = box(self._box())
         return Outline(points, faces, carried(np.eye(6), points))

@@ -11,11 +11,14 @@ from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.regions import Region
 from bearingdyn.parts.revolved import Revolved, RevolvedModes
 from bearingdyn.parts.revolved_faces import Cylinder
+from bearingdyn.units import takes
 
 
+@takes(r_inner="m", r_outer="m", width="m", f_max="Hz")
 @dataclass(frozen=True)
 class Ring:
     """An elastic ring of rectangular section, not turning; its faces "inner" and "outer" are rigid.
@@ -77,6 +80,10 @@ class Ring:
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""
         return self.body.outline()
+
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it; see Revolved.profile."""
+        return self.body.profile()
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, against which an application checks the neighbours."""

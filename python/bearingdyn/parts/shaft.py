@@ -29,14 +29,17 @@ from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
+from bearingdyn.parts.profile import Profile, rectangle
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
+from bearingdyn.units import takes
 
 KINDS: tuple[Literal["shaft", "bore"], ...] = ("shaft", "bore")
 _SAME_SEAT = 0.01  # of the radius: a taper or a relief, no shoulder
 ELEMENTS_PER_WAVE = 30  # error of a bending frequency: 1.3e-3 at most at f_max, 3.3e-4 at half of it
 
 
+@takes(seats="m", points="m", f_max="Hz", element_length="m")
 @dataclass(frozen=True)
 class Shaft:
     """A flexible shaft along z, from z = 0 upward, turning about z.
@@ -191,6 +194,20 @@ class Shaft:
                 found.append(RoundFace(kind, own, (z[0] - place, z[1] - place), room, beside=True, at=place))
         return tuple(found)
 
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it: its outside, step by step, and its discs; bores are hidden."""
+        ends = np.cumsum([0.0, *(s.length for s in self.sections)])
+        start = next(iter(self.seats.values()))
+        shown = [
+            Profile(rectangle((a - start, b - start), (-0.5 * s.d_outer, 0.5 * s.d_outer)), "shaft")
+            for s, (a, b) in zip(self.sections, itertools.pairwise(ends.tolist()), strict=True)
+        ]
+        for disc in self.discs:
+            radius, half = _cylinder_of(disc)
+            z = (disc.z - start - half, disc.z - start + half)
+            shown.append(Profile(rectangle(z, (-radius, radius)), "shaft"))
+        return shown
+
     def full_model(self) -> FullModel:
         """The unreduced equations: sparse matrices, six coordinates at each of `nodes`."""
         z, sections = self.nodes()
@@ -244,8 +261,7 @@ class Shaft:
         points, faces, used = revolved(0.5 * d_at, z[nodes], np.stack([line, np.roll(line, -1)], axis=-1))
         drawn = [(points, faces, np.repeat(nodes[used], len(points) // used.size))]
         for disc in self.discs:
-            radius = math.sqrt(2.0 * disc.Ip / disc.mass)
-            half = 0.5 * math.sqrt(max(12.0 * disc.Id / disc.mass - 3.0 * radius**2, 0.0))
+            radius, half = _cylinder_of(disc)
             node = int(np.argmin(np.abs(z - disc.z)))
             points, faces = cylinder(0.0, radius, (disc.z - half, disc.z + half))
             drawn.append((points, faces, np.full(len(points), node)))
@@ -254,6 +270,12 @@ class Shaft:
         faces = np.concatenate([each[1] + start for each, start in zip(drawn, starts, strict=False)])
         arms = points - z[owner, None] * np.array([0.0, 0.0, 1.0])
         return Outline(points, faces, carried(motion[owner], arms))
+
+
+def _cylinder_of(disc: Disc) -> tuple[float, float]:
+    """Radius and half the width, m, of the solid cylinder that has a disc's mass and moments."""
+    radius = math.sqrt(2.0 * disc.Ip / disc.mass)
+    return radius, 0.5 * math.sqrt(max(12.0 * disc.Id / disc.mass - 3.0 * radius**2, 0.0))
 
 
 def _radius(section: Section, kind: str) -> float:

@@ -12,6 +12,7 @@ from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.fem import NoBalance
 from bearingdyn.notice import MeshDependent, warn
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.profile import Profile
 from bearingdyn.short_repr import short
 from bearingdyn.types import Complex
 
@@ -27,6 +28,8 @@ class _Part(Protocol):
     def superelement(self) -> Superelement: ...
 
     def outline(self) -> Outline: ...
+
+    def profile(self) -> list[Profile]: ...
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]: ...
 
@@ -108,6 +111,10 @@ class Squeezed:
     def outline(self) -> Outline:
         """Its deformed surface."""
         return self.part.outline()
+
+    def profile(self) -> list[Profile]:
+        """What the plane x = 0 shows of it, deformed."""
+        return self.part.profile()
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, where they are now."""

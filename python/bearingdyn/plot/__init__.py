@@ -10,6 +10,7 @@ from bearingdyn.plot.bearing_spectrum import bearing_spectrum
 from bearingdyn.plot.bearing_stiffness import bearing_stiffness
 from bearingdyn.plot.campbell import campbell
 from bearingdyn.plot.contact_damping import contact_damping
+from bearingdyn.plot.drawing import draw, scene
 from bearingdyn.plot.film import film
 from bearingdyn.plot.film_map import film_map
 from bearingdyn.plot.frequency_response import frequency_response
@@ -21,6 +22,7 @@ from bearingdyn.plot.mode_geometry import mode_geometry, mode_scene
 from bearingdyn.plot.mode_shape import mode_shape
 from bearingdyn.plot.orbit import orbit
 from bearingdyn.plot.orders import order_spectrum, orders
+from bearingdyn.plot.page import as_html
 from bearingdyn.plot.ring_shape import ring_shape
 from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.speed_map import speed_map, speed_waterfall
@@ -31,6 +33,7 @@ from bearingdyn.plot.unbalance_response import unbalance_response
 from bearingdyn.plot.waterfall import waterfall
 
 __all__ = [
+    "as_html",
     "ball_loads",
     "bearing_spectrum",
     "bearing_stiffness",
@@ -38,6 +41,7 @@ __all__ = [
     "causality",
     "cole_cole",
     "contact_damping",
+    "draw",
     "film",
     "film_map",
     "frequency_response",
@@ -52,6 +56,7 @@ __all__ = [
     "order_spectrum",
     "orders",
     "ring_shape",
+    "scene",
     "shifts",
     "spectrum",
     "spectrum_of",

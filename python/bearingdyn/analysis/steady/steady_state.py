@@ -18,9 +18,10 @@ from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability, floquet, pooled
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
-from bearingdyn.checks import name_list, number, positive, require, whole
+from bearingdyn.checks import name_list, number, one_speed, positive, require, whole
 from bearingdyn.system import System
 from bearingdyn.types import Complex, Index
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -35,16 +36,18 @@ ALL = -1.0
 KEPT = 6
 
 
+@takes(speed="rad/s")
 def steady_state(
     source: Equilibrium | Application | System,
     *,
-    speed: float,
+    speed: float | None = None,
     record: Sequence[str],
     harmonics: int | None = None,
     subharmonic: int = 1,
     start: xarray.Dataset | None = None,
     stability: bool = True,
     tolerance: float = 1e-11,
+    rpm: float | None = None,
 ) -> xarray.Dataset:
     """Find the steady motion at one speed, and whether it is stable, without marching to it.
 
@@ -73,6 +76,8 @@ def steady_state(
         Whether multipliers are computed, of a motion with one base.
     tolerance
         Of the balance, relative to the largest amplitude.
+    rpm
+        The speed in revolutions a minute, instead of `speed`.
 
     Returns
     -------
@@ -113,7 +118,9 @@ def steady_state(
     """
     record = name_list("record", record)
     speed = number(
-        "speed", speed, "it must be one finite speed in rad/s; for a run-up march with bd.transient"
+        "speed",
+        one_speed(speed, rpm),
+        "it must be one finite speed in rad/s; for a run-up march with bd.transient",
     )
     require(
         speed != 0.0,

@@ -1,0 +1,117 @@
+"""Values as they are written in a model: numbers, "30 mm", "= 2 * gap + 3 * mm", and grids."""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from bearingdyn import units
+from bearingdyn.checks import meant, require, whole
+from bearingdyn.types import Array
+
+_TWO: dict[type, Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+_QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s+(\S.*?)\s*$")
+
+
+def evaluate(text: str, names: Mapping[str, Any]) -> Any:
+    """The value of an expression of numbers, parameters, units and + - * / **.
+
+    Raises
+    ------
+    ValueError
+        For a name that is no parameter and no unit, and for anything else than arithmetic.
+    """
+    factors = {name: value for name, value in vars(units).items() if isinstance(value, float)}
+    known = {**factors, "pi": math.pi, **names}
+
+    def of(node: ast.AST) -> Any:
+        if isinstance(node, ast.Expression):
+            return of(node.body)
+        if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+            return node.value
+        if isinstance(node, ast.Name):
+            if node.id not in known:
+                raise ValueError(f"{text!r} names {node.id!r}; {meant(node.id, [*names, 'mm', 'rpm', 'pi'])}")
+            return known[node.id]
+        if isinstance(node, ast.BinOp) and type(node.op) in _TWO:
+            left, right = of(node.left), of(node.right)
+            numbers = all(isinstance(x, int | float) and not isinstance(x, bool) for x in (left, right))
+            require(numbers, "expression", text, "it may hold numbers, parameters and units only")
+            try:
+                found = _TWO[type(node.op)](float(left), float(right))
+            except (ArithmeticError, ValueError):
+                raise ValueError(f"{text!r} has no value; one of its steps is no number") from None
+            require(isinstance(found, float), "expression", text, "it must be a real number")
+            return found
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
+            inner = of(node.operand)
+            return -inner if isinstance(node.op, ast.USub) else inner
+        raise ValueError(f"{text!r} is no arithmetic; write numbers, parameters, units and + - * / **")
+
+    try:
+        tree = ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, RecursionError, MemoryError):
+        raise ValueError(
+            f"{text!r} is no arithmetic; write numbers, parameters, units and + - * / **"
+        ) from None
+    return of(tree)
+
+
+def quantity(text: str, unit: str) -> float | None:
+    """The value in SI of a text such as "30 mm", where one in this unit is wanted; None if it is none.
+
+    Raises
+    ------
+    ValueError
+        For a unit of something else, or one typed twice.
+    """
+    found = _QUANTITY.match(text)
+    if found is None:
+        return None
+    number, given = float(found[1]), found[2]
+    if unit == units.CELSIUS:
+        require(given in ("°C", "K"), "unit", given, "it must be °C or K")
+        return number - units.KELVIN if given == "K" else number
+    own = units.read(given)
+    if not own.alike(units.read(unit)):
+        raise ValueError(
+            f"{text!r} is in {given}; it must be in {unit or 'no unit'}, or one that measures the same"
+        )
+    return number * own.factor
+
+
+def grid(value: Mapping[str, Any]) -> Array:
+    """Numbers between two ends: {from = 10, to = 3000, count = 600, spacing = "log"}.
+
+    Raises
+    ------
+    ValueError
+        For ends or a count that make none.
+    """
+    unknown = set(value) - {"from", "to", "count", "spacing"}
+    if unknown:
+        raise ValueError(f"{min(unknown)!r} is unknown; a grid has from, to, count and spacing")
+    for name in ("from", "to", "count"):
+        if name not in value:
+            raise ValueError(f"{name} is missing; a grid has from, to, count and spacing")
+    count = whole("count", value["count"], 1, 10_000_000)
+    low, high = (float(value[k]) for k in ("from", "to"))
+    spacing = value.get("spacing", "linear")
+    require(spacing in ("linear", "log"), "spacing", spacing, 'it must be "linear" or "log"')
+    require(math.isfinite(low) and math.isfinite(high), "from", low, "both ends must be finite")
+    if spacing == "log":
+        require(min(low, high) > 0, "from", low, "the ends of a log grid must be positive")
+        return np.geomspace(low, high, count)
+    return np.linspace(low, high, count)

@@ -1,0 +1,261 @@
+"""How objects show themselves in a notebook: a drawing or a curve as SVG, and tables; HTML, no scripts."""
+
+from __future__ import annotations
+
+import io
+import math
+import warnings
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bearingdyn.analysis import Equilibrium, static_summary
+from bearingdyn.application import GRAVITY, GROUND, Application, loose_motions
+from bearingdyn.bearing import BallBearing
+from bearingdyn.checks import instance
+from bearingdyn.material import Maxwell
+from bearingdyn.plot.drawing.bearing_section import draw_bearing
+from bearingdyn.plot.drawing.loads import course, value
+from bearingdyn.plot.drawing.sheet import draw
+from bearingdyn.plot.drawing.words import bearing_words, parts_list
+from bearingdyn.plot.frame import finish, style
+from bearingdyn.units import mm
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+CELL = "padding:2px 10px 2px 0;text-align:left;vertical-align:top;border:none"
+HEAD = f"{CELL};opacity:.65;font-weight:normal"
+
+
+def svg(figure: Figure, told: str) -> str:
+    """A figure as an SVG element with a text for those who do not see it; the figure is closed."""
+    import matplotlib
+    import matplotlib.pyplot as plt
+
+    held = io.StringIO()
+    settings: Any = matplotlib.rcParams
+    # the same drawing gives the same text, and text stays text
+    before = {key: settings[key] for key in ("svg.hashsalt", "svg.fonttype")}
+    settings.update({"svg.hashsalt": "bearingdyn", "svg.fonttype": "path"})
+    try:
+        figure.savefig(held, format="svg", facecolor="white", metadata={"Date": None})
+    finally:
+        settings.update(before)
+        plt.close(figure)
+    text = held.getvalue()
+    text = text[text.index("<svg") :]
+    said = f'<svg role="img" aria-label="{escape(told, True)}" style="max-width:100%;height:auto"'
+    return text.replace("<svg", said, 1)
+
+
+def rows(heads: Sequence[str], cells: Iterable[Sequence[str]]) -> str:
+    """A table; "" where it has no rows."""
+    body = "".join(
+        "<tr>" + "".join(f'<td style="{CELL}">{escape(c)}</td>' for c in row) + "</tr>" for row in cells
+    )
+    if not body:
+        return ""
+    top = "".join(f'<th style="{HEAD}">{escape(h)}</th>' for h in heads)
+    return f'<table style="border-collapse:collapse;margin:.3em 0"><tr>{top}</tr>{body}</table>'
+
+
+def box(title: str, *blocks: str) -> str:
+    """What an object shows: a title and blocks below it."""
+    return f'<div class="bearingdyn"><div><strong>{escape(title)}</strong></div>{"".join(blocks)}</div>'
+
+
+def as_html(thing: Application | BallBearing | Maxwell | Equilibrium) -> str:
+    """What an object shows in a notebook, as HTML.
+
+    Parameters
+    ----------
+    thing
+        An application, a bearing, a Maxwell model or an equilibrium.
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
+    makers: dict[type, Any] = {
+        Application: application_html,
+        BallBearing: bearing_html,
+        Maxwell: maxwell_html,
+        Equilibrium: equilibrium_html,
+    }
+    instance("thing", thing, tuple(makers), "give an application, a bearing, a Maxwell model, an equilibrium")
+    page: str = next(make for kind, make in makers.items() if isinstance(thing, kind))(thing)
+    return page
+
+
+def application_html(app: Application) -> str:
+    """An application: drawing, parts, joints, loads, and what is to be warned of."""
+    plan = app.plan
+    if not plan.parts:
+        return box("Application without parts")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
+        picture = svg(draw(app, table=False).figure, "section of the machine along its shaft")  # type: ignore[arg-type]
+    numbered = [(str(k), *row) for k, row in enumerate(parts_list(plan).values(), 1)]
+    return box(
+        f"Application of {len(plan.parts)} parts and {len(plan.bearings)} bearings",
+        picture,
+        rows(("no.", "name", "what, lengths in mm", "mass"), numbered),
+        rows(("joint", "with", "how"), _joints(app)),
+        rows(("load at", "what"), _loads(app)),
+        _warned(app, [str(w.message) for w in caught]),
+    )
+
+
+def _joints(app: Application) -> list[tuple[str, str, str]]:
+    plan = app.plan
+    found = [(str(c.a), str(c.b), "rigid") for c in plan.connections]
+    found += [
+        (str(s.interface), "ground", "rigid" if s.rigid else "springs and dampers")
+        for s in plan.supports.values()
+    ]
+    found += [(str(s.a), str(s.b), "springs and dampers") for s in plan.springs]
+    found += [(str(b.inner), str(b.outer), f"bearing {b.name}") for b in plan.bearings.values()]
+    found += [(str(f.ring), str(f.bore), f"loose fit {f.name}") for f in plan.fits.values()]
+    return found + [(str(place), "", "free") for place in sorted(plan.free_interfaces)]
+
+
+def _loads(app: Application) -> list[tuple[str, str]]:
+    found = []
+    for load in app.plan.loads:
+        vector = getattr(load, "vector", None)
+        if vector is None:
+            found.append((str(load.where), f"unbalance {1e6 * load.moment:.4g} g mm"))  # type: ignore[attr-defined]
+            continue
+        of_all = load.where in (GRAVITY, GROUND)
+        units = ("m/s²",) * 3 if of_all else ("N",) * 3 + ("N m",) * 3
+        names = ("x", "y", "z", "about x", "about y", "about z")
+        told = [
+            f"{value(float(x), unit)} {name}"
+            for x, unit, name in zip(vector, units, names, strict=False)
+            if x
+        ]
+        found.append((str(load.where), ", ".join(told) + course(load)))
+    return found
+
+
+def _warned(app: Application, told: list[str]) -> str:
+    """What is to be warned of: what the assembly refuses, and what nothing holds."""
+    notes = list(dict.fromkeys(told))
+    try:
+        app.plan.check_joints()
+    except ValueError as error:
+        notes.append(str(error))
+    notes += [f"nothing holds: {motion}" for motion in loose_motions(app.plan)]
+    items = "".join(f"<li>{escape(note)}</li>" for note in notes)
+    return f'<ul style="margin:.3em 0;color:#a3541b">{items}</ul>' if items else ""
+
+
+def bearing_html(bearing: BallBearing) -> str:
+    """A bearing: its section, and what follows from its geometry."""
+    figure, ax = _figure(2.6, 2.6)
+    ax.set_aspect("equal")
+    ax.axis("off")
+    bore, outside, width = draw_bearing(ax, bearing, np.zeros(2))
+    ax.plot([-0.8 * width, 0.8 * width], [0, 0], color="0.3", linewidth=0.6, linestyle=(0, (14, 3, 2, 3)))
+    ax.autoscale_view()
+    g = bearing.geometry
+    measures = f"{2 * bore:.4g}, {2 * outside:.4g}, {width:.4g} mm"
+    told = [
+        ("bore, outside, width", measures if bearing.boundary else "not known"),
+        ("balls", f"{bearing.Z} of Ø{bearing.Dw / mm:.5g} mm on Ø{bearing.Dpw / mm:.5g} mm"),
+        ("grooves", f"{bearing.fi:g} inside, {bearing.fo:g} outside"),
+        ("free contact angle", f"{math.degrees(g.alpha0):.2f}°"),
+        ("κ of a ball", f"{bearing.kappa:.4g} N/m^1.5"),
+        ("cage, of the speed", f"{bearing.cage_ratio:.4f}"),
+        ("static rating by 4.2 GPa", f"{bearing.static_rating / 1e3:.4g} kN"),
+    ]
+    return box(bearing_words(bearing), svg(figure, "section of the bearing"), rows(("", ""), told))
+
+
+def maxwell_html(material: Maxwell) -> str:
+    """A Maxwell model: its modulus over frequency, where it is known, and its branches."""
+    times = material.tau if material.tau.size else np.array([1.0])
+    low, high = 0.01 / (2 * np.pi * times.max()), 100.0 / (2 * np.pi * times.min())
+    if material.band is not None:
+        low, high = min(low, material.band[0] / 3), max(high, 3 * material.band[1])
+    f = np.geomspace(low, high, 200)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the picture shows the band itself
+        G = np.asarray(material.complex_modulus(2 * np.pi * f))
+    with style():
+        figure, ax = _figure(5.6, 2.8)
+        ax.loglog(f, G.real / 1e6, label="storage G′")
+        ax.loglog(f, np.maximum(G.imag, 1e-12) / 1e6, "--", label="loss G″")
+        if material.band is not None:
+            ax.axvspan(*material.band, color="#f2b632", alpha=0.18, linewidth=0, label="band of the data")
+        ax.set_xlabel("frequency, Hz")
+        ax.set_ylabel("MPa")
+        ax.set_ylim(bottom=0.5 * min(float(G.real.min()), float(np.quantile(G.imag, 0.1)) or 1e3) / 1e6)
+        finish(ax, legend=True)
+    at = "" if material.temperature is None else f" at {material.temperature:g} °C"
+    facts = [
+        ("relaxed modulus G0", f"{material.G0 / 1e6:.4g} MPa"),
+        ("at once", f"{(material.G0 + material.G.sum()) / 1e6:.4g} MPa"),
+        ("bulk modulus K", f"{material.K / 1e9:.4g} GPa"),
+        ("density", f"{material.density:g} kg/m³"),
+    ]
+    if material.law is not None:
+        facts.append(("shift law", type(material.law).__name__))
+    if material.fit is not None:
+        fit = material.fit
+        told = f"{fit.points} points, storage within {100 * fit.storage_rms:.2g} % rms"
+        facts.append(("fit", f"{told}, from {fit.covered[0]:.4g} to {fit.covered[1]:.4g} Hz"))
+    branches = [(f"{tau:.4g}", f"{G / 1e6:.4g}") for G, tau in zip(material.G, material.tau, strict=True)]
+    return box(
+        f"Maxwell model of rubber{at}",
+        svg(figure, "storage and loss modulus over frequency"),
+        rows(("", ""), facts),
+        rows(("τ, s", "G, MPa"), branches),
+    )
+
+
+def equilibrium_html(eq: Equilibrium) -> str:
+    """An equilibrium: how far places move, and what the bearings bear."""
+    layers: list[tuple[str, ...]] = []
+    if eq.system.layers:
+        found = static_summary(eq)
+        for name in found["layer"].values:
+            one = found.sel(layer=name)
+            x, low, high = (1e6 * float(one[k]) for k in ("deflection", "deflection_low", "deflection_high"))
+            doubt = "" if low == high else f"{low:.4g} to {high:.4g}"
+            strain = float(one["strain"])
+            layers.append(
+                (
+                    str(name),
+                    f"{x:.4g}",
+                    doubt,
+                    "" if math.isnan(strain) else f"{100 * strain:.3g} %",
+                    f"{float(one['modulus']) / 1e6:.4g}",
+                )
+            )
+    moved = []
+    for name in eq.system.outputs:
+        u = eq.displacement(name)
+        # what is a picometre is round-off
+        moved.append((name, *(f"{1e6 * x:.4g}" if abs(x) > 1e-12 else "0" for x in u[:3])))
+    borne = []
+    for name, state in eq.bearings.items():
+        loads = state.loads
+        pressed = int(np.count_nonzero(loads > 1e-9))
+        borne.append((name, f"{pressed} of {loads.size}", f"{loads.max():.4g}" if loads.size else ""))
+    return box(
+        repr(eq).strip("<>"),
+        rows(("bearing", "balls pressed", "heaviest ball, N"), borne),
+        rows(("place", "x, µm", "y, µm", "z, µm"), moved),
+        rows(("layer", "deflection, µm", "by its data", "strain", "modulus, MPa"), layers),
+    )
+
+
+def _figure(width: float, height: float) -> Any:
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(figsize=(width, height), layout="constrained")
