@@ -13,10 +13,10 @@ HERE = Path(__file__).resolve().parents[1] / "python" / "bearingdyn" / "examples
 def models(*names: str) -> dict[str, Model]:
     """The machines with what their files ask of them; all of them, where none is named."""
     asked = {
-        "motor": ("A small motor with rubber layers", "shaft.middle.y", "left_housing.top.y", 60.0),
+        "motor": ("A small motor with rubber layers", "shaft.middle.y", "left_housing.top.y", None),
         "fan": ("An overhung fan on rubber feet", "shaft.wheel.y", "shaft.middle.y", None),
         "spindle": ("A grinding spindle, preloaded", "shaft.nose.y", "shaft.front.y", None),
-        "pump": ("A pump with one layered bearing", "shaft.impeller.y", "front_housing.top.y", 60.0),
+        "pump": ("A pump with one layered bearing", "shaft.impeller.y", "front_housing.top.y", None),
     }
     found = {}
     for name, (title, force, seen, after) in asked.items():
