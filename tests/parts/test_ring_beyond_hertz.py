@@ -177,46 +177,6 @@ def test_receptances_in_rubber_are_right_up_to_f_max(rubber: str) -> None:
             assert 0.5 * got[n] < told < 2.0 * got[n]
 
 
-@cache
-def lines(speed: float, steps: int) -> np.ndarray:
-    """Amplitudes, µm, of the first ball-pass lines of the outside below, on a bed of 3e9 N/m³ under 500 N."""
-    bed = RingBed(3e9, damping=3e-5)
-    ring = replace(RING, outside=bed, order=10, outputs={"below": (SIZE[1], 0.0, -0.5 * math.pi)})
-    app = bd.Application()
-    app.add("rotor", RigidBody(2.0, (0.01, 0.01, 0.005)))
-    app.ground("rotor.centre", stiffness=(0, 0, 1e4, 1e4, 1e4, 1.0), damping=(500, 500, 500, 1, 1, 0.1))
-    app.add("ring", ring)
-    app.ground("ring.outer")
-    bearing = replace(B6305, angle0=-0.5 * math.pi)
-    app.bearing("b", bearing, inner="rotor.centre", outer="ring.raceway")
-    app.load("rotor.centre", (0.0, -500.0, 0.0, 0.0, 0.0, 0.0))
-    eq = bd.equilibrium(app)
-    passage = 2 * math.pi / (bearing.Z * bearing.cage_ratio * speed)
-    dt, settle = passage / steps, math.ceil(0.05 / passage)
-    periods = 4
-    run = bd.transient(
-        eq,
-        speed=speed,
-        dt=dt,
-        steps=periods * steps,
-        record=["ring.below.y"],
-        settle=settle * steps,
-        filter=False,
-    )
-    y = run["record"].values[-periods * steps :, 0]
-    return 2e6 * np.abs(np.fft.rfft(y))[periods : 5 * periods : periods] / y.size
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("speed", "steps", "wanted"),
-    [(20.0, 10000, (2.7831, 0.1822, 0.0318, 0.0459)), (300.0, 2000, (3.198, 0.5615))],
-)
-def test_lines_of_the_outside_on_a_bed(speed: float, steps: int, wanted: tuple[float, ...]) -> None:
-    # an independent march; the issue's 1 %
-    np.testing.assert_allclose(lines(speed, steps)[: len(wanted)], wanted, rtol=0.01)
-
-
 def test_the_bed_carries_the_load_that_the_race_takes() -> None:
     stiffness, load = 1e10, (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)
     brg = FlexibleBearing(B6305, replace(RING, outside=RingBed(stiffness), f_max=0.0))

@@ -131,7 +131,7 @@ class FlexibleBearing:
         ValueError
             For a ring whose outside is kept round, or in rubber.
         """
-        if "outside" not in self._element.raceways:
+        if "outside" not in self.ring.body.grooves:
             raise ValueError(
                 f"ring.outside is {self.ring.outside!r}; its outside does not move by orders: "
                 f"give the ring a RingBed or RingPoints"
@@ -143,8 +143,13 @@ class FlexibleBearing:
         rest = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
         K = element.stiffness().real[np.ix_(rest, rest)]
         x = np.linalg.solve(K, element.raceways["raceway"].rows[:, rest].T @ g)
-        found = element.raceways[name]
-        z = found.rows[:, rest] @ x
+        # the ring's own coordinates come first; what stands around it moves its outside only through them
+        found = self.ring.body.superelement().raceways[name]
+        z = (
+            found.rows @ x[: found.rows.shape[1]]
+            if name == "outside"
+            else element.raceways[name].rows[:, rest] @ x
+        )
         return np.stack([waves(found.series, psi, axial) @ z for axial in (0, 1)], axis=-1)
 
     def force(self, q: ArrayLike, angle: float = 0.0) -> Array:

@@ -469,7 +469,7 @@ class FlexibleRing:
         """The free ring between its supports and the rigid interface "outer" on which they stand."""
         outside = element.raceways["outside"]
         K, C = held_by(self._supports, outside.rows, outside.series, self.r_outer, self.width)
-        wide = _wider(element, 6, "raceway", "outside")
+        wide = _wider(element, 6, "raceway")
         return replace(
             wide,
             K=wide.K + K,
