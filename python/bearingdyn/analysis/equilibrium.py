@@ -331,7 +331,13 @@ def _turned(system: System, angle: float) -> tuple[BearingTerm, ...]:
 
 
 def state_of(source: object) -> dict[str, str]:
-    """Attribute of a result that says which state of the layers its equilibrium has."""
+    """Attribute of a result that says which state of the layers its equilibrium has.
+
+    Parameters
+    ----------
+    source
+        What the result was computed from.
+    """
     layered = isinstance(source, Equilibrium) and source.system.layers
     return {"layers": source.layers} if isinstance(source, Equilibrium) and layered else {}
 

@@ -27,7 +27,13 @@ if TYPE_CHECKING:
 
 
 def frequencies(frequency: ArrayLike) -> Array:
-    """Frequencies (f,), Hz, of a frequency response; ValueError for none, a negative or a non-finite one."""
+    """Frequencies (f,), Hz, of a frequency response; ValueError for none, a negative or a non-finite one.
+
+    Parameters
+    ----------
+    frequency
+        Hz.
+    """
     found = numbers(
         "frequency", frequency, "frequency must be one or more finite values of zero or more, in Hz", 0.0
     )

@@ -69,6 +69,13 @@ def part_velocities(
 def surface_of(system: System, name: str) -> tuple[PartTerm, Surface]:
     """A radiating surface by its name, and the part it is of.
 
+    Parameters
+    ----------
+    system
+        The system.
+    name
+        Part and surface, "housing.outside".
+
     Raises
     ------
     ValueError

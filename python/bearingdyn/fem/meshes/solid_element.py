@@ -259,5 +259,11 @@ def bubble_gradient(kind: SolidElement, X: Array) -> Array:
 
 
 def face_points(nodes: int) -> tuple[Array, Array]:
-    """Integration points (q, 2) of a solid element's face of 6, 8 or 9 nodes, and weights."""
+    """Integration points (q, 2) of a solid element's face, and weights.
+
+    Parameters
+    ----------
+    nodes
+        Of the face: 6, 8 or 9.
+    """
     return simplex_points(2) if nodes == 6 else gauss(3, 2)
