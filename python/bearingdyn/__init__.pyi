@@ -157,6 +157,7 @@ __version__: str
 __all__ = [
     "MM_TONNE",
     "STEEL",
+    "Analysis",
     "Application",
     "BallBearing",
     "BoreShape",
@@ -184,6 +185,7 @@ __all__ = [
     "MasterCurve",
     "Maxwell",
     "MeshNodes",
+    "Model",
     "MooneyRivlin",
     "NeoHooke",
     "NodeSet",
@@ -253,6 +255,7 @@ __all__ = [
     "read_dma",
     "read_matrices",
     "read_mesh",
+    "read_model",
     "read_nodes",
     "read_strain_sweep",
     "reduction_error",
@@ -277,5 +280,6 @@ __all__ = [
     "unbalance_response",
     "waterfall",
     "with_loaded_cages",
+    "write_model",
     "write_wav",
 ]
