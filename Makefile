@@ -43,7 +43,7 @@ demo: $(VENV)/package
 test: ctest pytest
 
 pytest: $(VENV)/package $(VENV)/test
-	$(PY) -m pytest
+	$(PY) -m pytest -n auto --dist loadfile
 
 ctest: $(BUILD)/ctest/build.ninja
 	meson compile -C $(BUILD)/ctest

@@ -278,21 +278,24 @@ double *bd_py_state_of(PyObject *keep, const bd_model *model, PyObject *object, 
     return state;
 }
 
-PyDoc_STRVAR(model_unpack_doc, "unpack(state) -> t, x, v, a, energy\n\n"
-                               "energy: a dict of ENERGIES, J.");
+PyDoc_STRVAR(model_unpack_doc,
+             "unpack(state, exact=False) -> t, x, v, a, energy\n\n"
+             "exact: whether the modes of exact steps may follow. energy: a dict of "
+             "ENERGIES, J.");
 
 static PyObject *model_unpack(PyObject *object, PyObject *args)
 {
     const bd_model *model = bd_py_model_of(object);
     PyObject *state_in, *result = NULL;
     double t;
-    if (!PyArg_ParseTuple(args, "O:unpack", &state_in))
+    int exact = 0;
+    if (!PyArg_ParseTuple(args, "O|p:unpack", &state_in, &exact))
         return NULL;
     PyObject *keep = PyList_New(0);
     if (!keep)
         return NULL;
     PyObject *x = NULL, *v = NULL, *a = NULL, *energy = NULL;
-    double *state = bd_py_state_of(keep, model, state_in, -1);
+    double *state = bd_py_state_of(keep, model, state_in, exact ? -1 : 0);
     if (state) {
         x = bd_py_new_array(1, bd_model_size(model), 0);
         v = bd_py_new_array(1, bd_model_size(model), 0);

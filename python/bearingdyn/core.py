@@ -494,7 +494,7 @@ def time_of(model: Model, state: Array) -> float:
     model, state
         The state, and the model it is of.
     """
-    return float(model.unpack(state)[0])
+    return float(model.unpack(state, True)[0])
 
 
 def energies(model: Model, state: Array) -> dict[str, float]:
@@ -505,4 +505,4 @@ def energies(model: Model, state: Array) -> dict[str, float]:
     model, state
         The state, and the model it is of.
     """
-    return model.unpack(state)[4]
+    return model.unpack(state, True)[4]

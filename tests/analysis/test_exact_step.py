@@ -178,7 +178,7 @@ def test_channels_say_what_the_state_holds(state: Equilibrium):
     found = exact(state, record=names, steps=50)
     march = March.of(state, speed=SPEED, dt=1e-5, steps=1, method="exact")
     model = march.model([])
-    _, x, v, a, _ = model.unpack(found["state"].values)
+    _, x, v, a, _ = model.unpack(found["state"].values, True)
     rows = np.array([march.modal.row(n) for n in ("shaft.end.y", "ring.centre.x", "block.centre.z")])
     expected = np.array([rows @ x, rows @ v, rows @ a]).T.ravel()
     np.testing.assert_allclose(

@@ -47,7 +47,7 @@ def motor(layers: bool = True, material: Maxwell | None = None) -> Application:
     >>> import bearingdyn as bd
     >>> state = bd.equilibrium(bd.examples.motor(layers=False))
     >>> print(f"{state.displacement('shaft.middle')[1] * 1e6:.0f} µm")
-    -23 µm
+    -30 µm
     """
     app = Application()
     app.add(

@@ -460,10 +460,12 @@ class FlexibleRing:
         With a bearing, what orders beyond the carried ones add at its balls are coordinates of their own,
         springs with so little mass that they follow at once.
         """
-        element = replace(self.body.superelement(), faces=self.round_faces())
+        element = self.body.superelement()
         if self._supports:
             element = self._upon_supports(element)
-        return element if self.bearing is None else self._with_folded(element)
+        if self.bearing is not None:
+            element = self._with_folded(element)
+        return replace(element, faces=self.round_faces())
 
     def _upon_supports(self, element: Superelement) -> Superelement:
         """The free ring between its supports and the rigid interface "outer" on which they stand."""

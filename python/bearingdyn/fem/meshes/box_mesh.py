@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -9,6 +11,7 @@ from bearingdyn.fem.meshes.patches import with_kind
 from bearingdyn.fem.meshes.solid_element import HEX20
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, second_order
 from bearingdyn.magnitude import plausible
+from bearingdyn.types import Array
 
 SIDES = ("x-", "x+", "y-", "y+", "z-", "z+")
 
@@ -34,6 +37,19 @@ def box_mesh(x: ArrayLike, y: ArrayLike, z: ArrayLike, element: str = "hex20") -
             raise ValueError(f"{name} is {v.tolist()}; it must be two grid lines or more, rising, m")
         for x_k in (v[0], v[-1]):
             plausible("length", name, x_k)
+    return bricks(lines, element)
+
+
+def bricks(lines: Sequence[Array], element: str = "hex20") -> SolidMesh:
+    """The box of `box_mesh` between three sets of rising lines of any unit.
+
+    Parameters
+    ----------
+    lines
+        Three of (n,), each rising.
+    element
+        As in `box_mesh`.
+    """
     shape = tuple(v.size for v in lines)
     p = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
     i = np.arange(len(p)).reshape(shape)

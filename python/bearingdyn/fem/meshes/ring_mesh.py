@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from bearingdyn.checks import positive
-from bearingdyn.fem.meshes.box_mesh import box_mesh
+from bearingdyn.fem.meshes.box_mesh import bricks
 from bearingdyn.fem.meshes.grid_lines import crowded
 from bearingdyn.fem.meshes.patches import angles_of, revolved, with_kind
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
@@ -66,7 +66,7 @@ def ring_mesh(
         [crowded(a, b, n)[:-1] for (a, b), n in zip(itertools.pairwise(radii), steps, strict=True)]
         + [np.array([radii[-1]])]
     )
-    flat = box_mesh(r, np.linspace(start, end, around + 1), crowded(-0.5 * width, 0.5 * width, along))
+    flat = bricks([r, np.linspace(start, end, around + 1), crowded(-0.5 * width, 0.5 * width, along)])
     flat = with_kind(flat, element)
     middle = flat.points[flat.elements[:, :8], 0].mean(axis=1)
     layer = np.searchsorted(radii, middle) - 1
