@@ -192,7 +192,7 @@ def test_a_constant_damping_answers_alike_either_way() -> None:
 
 @pytest.mark.parametrize("call", [frequency_response, modes])
 def test_unknown_contacts_are_named(axial: Equilibrium, call: object) -> None:
-    arguments = ([1.0], [], []) if call is frequency_response else ()
+    arguments = ([1.0], ["mass.centre.z"], ["mass.centre.z"]) if call is frequency_response else ()
     with pytest.raises(ValueError, match="contacts is 'oil'"):
         call(axial, *arguments, contacts="oil")  # type: ignore[operator]
 

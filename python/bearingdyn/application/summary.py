@@ -44,7 +44,13 @@ def summary(plan: Plan) -> str:
 
 
 def loose_motions(plan: Plan) -> list[str]:
-    """Motions that nothing holds, each in words: the summary's last lines."""
+    """Motions that nothing holds, each in words: the summary's last lines.
+
+    Parameters
+    ----------
+    plan
+        Of the application.
+    """
     shapes = {name: plan.rigid_shapes(name) for name in plan.parts}
     motions = free_motions(shapes, _constraints(plan))
     return [", ".join(f"{part} {c}" for part, c in motion) for motion in motions]

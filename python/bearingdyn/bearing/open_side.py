@@ -34,6 +34,13 @@ times as much radial load as thrust, and contact angles of 4°."""
 def shoulder(open_side: OpenSide, contact_angle: float | None) -> int:
     """Which side is open: +1, −1: axial load on the inner ring is borne towards +z, −z only; 0: both ways.
 
+    Parameters
+    ----------
+    open_side
+        As of a `BallBearing`: "-z", "+z", None for none, or "auto", which the contact angle decides.
+    contact_angle
+        rad; zero or None leaves no side open where "auto" is said.
+
     Raises
     ------
     ValueError

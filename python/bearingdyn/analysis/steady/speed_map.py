@@ -31,11 +31,12 @@ from bearingdyn.analysis.steady.branches import (
 from bearingdyn.analysis.steady.motion import MOTIONS
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.application import Application
-from bearingdyn.checks import name_list, number, require, vector, whole
+from bearingdyn.checks import name_list, number, one_speed, require, vector, whole
 from bearingdyn.notice import OutsideBand
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System
 from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
@@ -48,10 +49,11 @@ LOCATED = 1e-6
 MADE_SLOPE = 1e-4
 
 
+@takes(speeds="rad/s")
 def speed_map(
     source: Equilibrium | Application | System,
     *,
-    speeds: tuple[float, float],
+    speeds: tuple[float, float] | None = None,
     record: Sequence[str],
     harmonics: int = HARMONICS,
     points: int = 100,
@@ -60,6 +62,7 @@ def speed_map(
     store: str | os.PathLike[str] | None = None,
     executor: Executor | None = None,
     progress: Progress | bool | None = None,
+    rpm: tuple[float, float] | None = None,
 ) -> xarray.Dataset:
     """Follow all steady motions over a range of speeds, with their stability.
 
@@ -91,6 +94,8 @@ def speed_map(
         Searches run in it, as in a process pool or Dask's; what two of them both found is kept once.
     progress
         True for a bar, False for none, or a function called with (searches done, in all).
+    rpm
+        The speeds in revolutions a minute, instead of `speeds`.
 
     Returns
     -------
@@ -110,10 +115,9 @@ def speed_map(
     ----------
     E. L. Allgower and K. Georg, Introduction to Numerical Continuation Methods, SIAM 2003.
     """
+    speeds = one_speed(speeds, rpm, what="speeds")
     low, high = _range("speeds", speeds, "two speeds in rad/s, the lower one first")
-    require(
-        low > 0.0, "speeds", tuple(speeds), "the lowest must be positive, in rad/s: at rest nothing passes"
-    )
+    require(low > 0.0, "speeds", (low, high), "the lowest must be positive, in rad/s: at rest nothing passes")
     problem = Problem.of(source)
     problem.system.check_speed(high)
     family = Speeds(problem)
@@ -123,11 +127,12 @@ def speed_map(
     return _dataset(task, branches, "speed", "rad/s", {**state_of(problem.source)})
 
 
+@takes(speed="rad/s")
 def parameter_map(
     make: Callable[[float], Application],
     *,
     values: tuple[float, float],
-    speed: float,
+    speed: float | None = None,
     record: Sequence[str],
     harmonics: int = HARMONICS,
     points: int = 40,
@@ -136,6 +141,7 @@ def parameter_map(
     store: str | os.PathLike[str] | None = None,
     executor: Executor | None = None,
     progress: Progress | bool | None = None,
+    rpm: float | None = None,
 ) -> xarray.Dataset:
     """Follow all steady motions at one speed over a number that the application is made from.
 
@@ -149,6 +155,8 @@ def parameter_map(
         Of the shaft, rad/s.
     record, harmonics, points, doublings, several, store, executor, progress
         As in `speed_map`; `make` must then be a function that can be pickled.
+    rpm
+        The speed in revolutions a minute, instead of `speed`.
 
     Returns
     -------
@@ -160,8 +168,9 @@ def parameter_map(
     ValueError
         As `speed_map`, and for a speed of zero.
     """
+    require(callable(make), "make", make, "it must be a function of one number that returns an Application")
     low, high = _range("values", values, "two values, the lower one first")
-    speed = number("speed", speed, "it must be one finite speed in rad/s")
+    speed = number("speed", one_speed(speed, rpm), "it must be one finite speed in rad/s")
     require(speed != 0.0, "speed", speed, "at rest nothing passes; give the speed of the shaft in rad/s")
     family = Made(make, speed)
     task = _task(family, record, low, high, harmonics, points, MADE_SLOPE)
