@@ -12,7 +12,7 @@ import xarray
 
 import bearingdyn as bd
 from bearingdyn import plot
-from bearingdyn.bearing import Lubricant, Pair, Walther, load_distribution
+from bearingdyn.bearing import Lubricant, Pair, Walther, ehl, load_distribution
 
 BALL = bd.BallBearing(9, 7.94e-3, 39.04e-3, 0.52, 0.53, clearance=10e-6)
 RUBBER = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
@@ -34,7 +34,20 @@ def good() -> dict[str, dict[str, object]]:
     curve, y = bd.master_curve(dma), "r.centre.y"
     oil = Lubricant(Walther.iso_vg(32))
     study = xarray.Dataset({"m": ("case", [1.0, 2.0]), "n": ("case", [2.0, 1.0])})
+    ball = bd.catalogue.bearing("6305", clearance=10e-6)
+    ring = bd.FlexibleRing.of(ball, outside=bd.RingBed(1e11), f_max=0.0)
+    solved = ehl.solve(BALL.inner_contact, oil, 100.0, 5.9, 60.0, accuracy=0.1)
+    steady = xarray.Dataset(
+        {
+            "peak_to_peak": (("point", "channel"), [[1e-6], [2e-6]]), "stable": ("point", [1, 0]),
+            "branch": ("point", [0, 0]), "passages": ("point", [1, 1]), "event": ("point", ["", "fold"]),
+            "amplitude": (("point", "channel", "order"), np.full((2, 1, 3), 1e-6 + 0j)),
+            "passage_frequency": ("point", [50.0, 60.0]), "speed": ("point", [100.0, 120.0]),
+        },
+        {"channel": [y], "order": [0.0, 1.0, 2.0], "unit": ("channel", ["m"])},
+    )  # fmt: skip
     return {
+        "as_html": {"thing": BALL},
         "ball_loads": {"loads": np.arange(9.0)},
         "bearing_spectrum": {"datasets": {"a": bd.spectrum(run, y)}, "bearing": BALL, "speed": 10.0},
         "bearing_stiffness": {
@@ -42,11 +55,14 @@ def good() -> dict[str, dict[str, object]]:
         },
         "campbell": {"data": bd.campbell(eq, [0.0, 10.0], 3)},
         "causality": {"dma": dma},
+        "contact_damping": {"contacts": {"a": solved}, "frequency": frequency},
+        "draw": {"app": app},
         "cole_cole": {"data": dma},
         "film": {
             "bearing": BALL, "lubricant": oil, "temperatures": [40.0, 60.0], "speeds": [100.0, 200.0],
             "load": (0, -400.0, 0, 0, 0, 0),
         },
+        "film_map": {"contact": solved},
         "frequency_response": {
             "datasets": bd.frequency_response(eq, frequency, [y], [y]), "output": y, "input": y,
         },
@@ -59,9 +75,13 @@ def good() -> dict[str, dict[str, object]]:
         "orbit": {"datasets": {"a": bd.orbit(run, "r.centre.x", y)}},
         "order_spectrum": {"datasets": {"a": bd.order_spectrum(run, y, 5.0)}},
         "orders": {"data": bd.track_orders(run, y, [1.0])},
+        "ring_shape": {"bearing": bd.FlexibleBearing(ball, ring), "load": (0, -300.0, 0, 0, 0, 0)},
+        "scene": {"app": app},
         "shifts": {"curve": curve},
         "spectrum": {"datasets": {"a": bd.spectrum(run, y)}},
         "spectrum_of": {"materials": {"a": RUBBER}},
+        "speed_map": {"data": steady},
+        "speed_waterfall": {"data": steady},
         "time": {"datasets": {"a": run}},
         "trade_off": {"study": study, "x": "m", "y": "n"},
         "unbalance_response": {"datasets": {"a": bd.unbalance_response(app, [10.0, 20.0], [y])}, "output": y},

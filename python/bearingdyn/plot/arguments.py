@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import ParamSpec, TypeVar
 
 import numpy as np
@@ -48,8 +48,9 @@ def figure(**given: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:
         @functools.wraps(draw)
         def drawn(*args: P.args, **kwargs: P.kwargs) -> R:
             bound = signature.bind(*args, **kwargs).arguments
-            for name in checks.keys() & bound.keys():
-                checks[name](name, bound[name])
+            for name in bound:
+                if name in checks:
+                    checks[name](name, bound[name])
             return draw(*args, **kwargs)
 
         return drawn
@@ -66,7 +67,7 @@ def several(*kinds: type, maker: str) -> Check:
     """An argument that maps labels to objects of one of the kinds, as `maker` gives them."""
 
     def check(name: str, value: object) -> None:
-        for label, each in some(_by_label(name, value, maker)).items():
+        for label, each in _by_label(name, value, maker).items():
             instance(f"{name}[{label!r}]", each, kinds, f"it must be {maker}")
 
     return check
@@ -83,7 +84,7 @@ def results(maker: str, *holding: str, alone: bool = False) -> Check:
     def check(name: str, value: object) -> None:
         if alone and hasattr(value, "data_vars"):
             return table(name, value, holding, maker)
-        for label, each in some(_by_label(name, value, f"the result of `{maker}`")).items():
+        for label, each in _by_label(name, value, f"the result of `{maker}`").items():
             table(f"{name}[{label!r}]", each, holding, maker)
         return None
 
@@ -95,14 +96,31 @@ def maybe(check: Check) -> Check:
     return lambda name, value: None if value is None else check(name, value)
 
 
-def row(remedy: str) -> Check:
-    """An argument that is one or more finite numbers."""
+def row(remedy: str, *, alone: bool = False, empty: bool = False) -> Check:
+    """An argument that is a list of finite numbers; or one number, where `alone`, or none, where `empty`."""
 
     def check(name: str, value: object) -> None:
-        require(isinstance(value, np.ndarray | Sequence), name, value, remedy)
+        if empty and isinstance(value, list | tuple | np.ndarray) and len(value) == 0:
+            return
         numbers(name, value, remedy)  # type: ignore[arg-type]
+        require(alone or np.ndim(value) > 0, name, value, remedy)  # type: ignore[arg-type]
 
     return check
+
+
+def names(what: str) -> Check:
+    """An argument that is a list of names; a mapping is none."""
+
+    def check(name: str, value: object) -> None:
+        require(not isinstance(value, Mapping), name, value, f"it must be a list of {what}, each a text")
+        name_list(name, value, what)
+
+    return check
+
+
+def text(name: str, value: object) -> None:
+    """An argument that is a name."""
+    instance(name, value, str, "it must be a name, as a text")
 
 
 def frequencies(name: str, value: object) -> None:
@@ -117,7 +135,7 @@ def _by_label(name: str, value: object, maker: str) -> Mapping[str, object]:
     labelled: Mapping[str, object] = value  # type: ignore[assignment]
     if not hasattr(value, "data_vars"):
         require(all(isinstance(label, str) for label in labelled), name, value, remedy)
-    return labelled
+    return some(labelled, name)
 
 
 def _axes(name: str, value: object) -> None:
@@ -125,31 +143,27 @@ def _axes(name: str, value: object) -> None:
     require(known, name, value, "it must be axes of matplotlib, or None for those of a new figure")
 
 
-def _text(name: str, value: object) -> None:
-    instance(name, value, str, "it must be a name, as a text")
-
-
 COMMON: Mapping[str, Check] = {
     "about_mean": truth,
     "angle": number,
     "ax": _axes,
-    "axis": _text,
+    "axis": text,
     "bearing": one(BallBearing, maker="a bd.BallBearing(…)"),
-    "channels": maybe(name_list),
-    "colour": maybe(_text),
-    "component": _text,
+    "channels": maybe(names("channels")),
+    "colour": maybe(text),
+    "component": text,
     "contact_angle": maybe(number),
     "direction": lambda name, value: vector(name, value, (6,), "of force and moment"),  # type: ignore[arg-type]
     "f_max": maybe(lambda name, value: positive(name, value, "it must be positive, in Hz, or None")),
     "frequency": row("it must be frequencies in Hz"),
     "harmonics": lambda name, value: whole(name, value, 1),
-    "input": _text,
+    "input": text,
     "load": lambda name, value: vector(name, value, (6,), "of force and moment"),  # type: ignore[arg-type]
     "lubricant": one(Lubricant, maker="a bearing.Lubricant(…)"),
     "mode": lambda name, value: whole(name, value, 0),
-    "orders": row("it must be orders of the speed"),
-    "output": _text,
-    "parts": maybe(lambda name, value: name_list(name, value, "parts")),
+    "orders": row("it must be orders of the speed", empty=True),
+    "output": text,
+    "parts": maybe(names("parts")),
     "phase": truth,
     "roughness": maybe(lambda name, value: two(name, value, "it must be those of race and ball, m")),
     "scale": maybe(positive),
@@ -157,10 +171,10 @@ COMMON: Mapping[str, Check] = {
     "speed": number,
     "speeds": row("it must be speeds in rad/s"),
     "starvation": nonnegative,
-    "temperatures": row("it must be temperatures in °C"),
-    "wanted": maybe(row("it must be orders that were tracked, or None for all")),
+    "temperatures": row("it must be temperatures in °C", alone=True),
+    "wanted": maybe(row("it must be orders that were tracked, or None for all", alone=True)),
     "waviness": truth,
-    "x": _text,
-    "y": _text,
+    "x": text,
+    "y": text,
 }
 """Arguments that mean the same in every figure."""

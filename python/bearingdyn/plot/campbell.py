@@ -22,7 +22,7 @@ ROOM = 1.12  # above the highest mode of a Campbell diagram, for the names of th
 NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, points
 
 
-@figure(data=result("bd.campbell", "speed", "frequency", "mac"))
+@figure(data=result("bd.campbell", "speed", "frequency", "whirl", "eigenvalue"))
 def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes | None = None) -> Axes:
     """Campbell diagram of a result of `bd.campbell` over the speed, in rpm; modes told apart by their motion.
 
@@ -71,8 +71,9 @@ def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes 
         top = float(frequency.max(initial=0.0)) * ROOM
         for each in orders:
             ax.plot(rpm, each * rpm / 60, color="0.6", linewidth=0.7)
-            end = min(float(rpm[-1]), 60 * top / each)
-            inside = "bottom" if end < 60 * top / each else "top"  # where it leaves to the right, or above
+            leaves = 60 * top / each if each > 0 else np.inf  # order 0 never does
+            end = min(float(rpm[-1]), leaves)
+            inside = "bottom" if end < leaves else "top"  # where it leaves to the right, or above
             ax.annotate(
                 f"{each:g}×", (end, each * end / 60), xytext=(-4.0, 0.0), textcoords="offset points",
                 ha="right", va=inside, color="0.35",
@@ -80,7 +81,7 @@ def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes 
         ax.set_ylim(0.0, top)
         ax.set_xlim(float(rpm[0]), float(rpm[-1]))
         swinging = np.abs(data["eigenvalue"].values[order].imag) > 0
-        _ring(ax, np.concatenate([_crossings(rpm, frequency, swinging, each) for each in orders or (0.0,)]))
+        _ring(ax, np.concatenate([_crossings(rpm, frequency, swinging, each) for each in [*orders] or [0.0]]))
         ax.set_xlabel("speed, rpm")
         ax.set_ylabel("natural frequency, Hz")
         finish(ax, "Campbell diagram", legend=True)

@@ -10,12 +10,14 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import ehl
 from bearingdyn.checks import require
-from bearingdyn.plot.frame import colour, finish, halve, new_axes, some, style
+from bearingdyn.plot.arguments import figure, several
+from bearingdyn.plot.frame import colour, finish, halve, new_axes, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+@figure(contacts=several(ehl.LubricatedContact, maker="what bearing.ehl.solve or look_up returns"))
 def contact_damping(
     contacts: Mapping[str, ehl.LubricatedContact], frequency: ArrayLike, ax: Axes | None = None
 ) -> Axes:
@@ -46,14 +48,10 @@ def contact_damping(
     f = np.asarray(frequency, dtype=np.float64)
     rising = f.ndim == 1 and f.size > 1 and bool((f > 0).all() and (np.diff(f) > 0).all())
     require(rising, "frequency", frequency, "give two or more positive frequencies that increase, in Hz")
-    given = some(contacts)
-    for label, one in given.items():
-        known = isinstance(one, ehl.LubricatedContact)
-        require(known, f"contacts[{label!r}]", one, "give what bearing.ehl.solve or look_up returns")
     with style():
         ax = ax or new_axes(height=4.6)
         lower = halve(ax)
-        for k, (label, one) in enumerate(given.items()):
+        for k, (label, one) in enumerate(contacts.items()):
             answer = one.stiffness(f)
             c = answer.imag / (2 * np.pi * f)
             ax.semilogx(f, c, color=colour(k), label=label)

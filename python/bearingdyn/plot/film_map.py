@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from bearingdyn.bearing import ehl
-from bearingdyn.checks import one_of, require
+from bearingdyn.checks import one_of
+from bearingdyn.plot.arguments import figure, one
 from bearingdyn.plot.frame import GREY, finish, new_axes, style
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ SHOWN = 1.6  # half the picture, over the dry contact's semi-axes
 RANGE = 1.6  # thickest film told apart, over that at the centre
 
 
+@figure(contact=one(ehl.SolvedContact, maker="what bearing.ehl.solve returns: the table has no maps"))
 def film_map(
     contact: ehl.SolvedContact, ax: Axes | None = None, *, quantity: Literal["film", "pressure"] = "film"
 ) -> Axes:
@@ -43,8 +45,6 @@ def film_map(
     ValueError
         For anything but a solved contact, and an unknown quantity.
     """
-    solved = isinstance(contact, ehl.SolvedContact)
-    require(solved, "contact", contact, "give what bearing.ehl.solve returns: the table has no maps")
     one_of("quantity", quantity, ("film", "pressure"))
     b, a = contact.contact.semi_axes(contact.F)
     if quantity == "film":

@@ -190,12 +190,16 @@ def is_result(datasets: object) -> bool:
     return hasattr(datasets, "data_vars")
 
 
-def some(datasets: Mapping[str, Any]) -> Mapping[str, Any]:
+def some(datasets: Mapping[str, Any], name: str = "datasets") -> Mapping[str, Any]:
     """The results a figure shows, by label; ValueError if there are none, or one without a label."""
     if is_result(datasets):
-        raise ValueError('this is a result without a label; give results by label, such as {"run": result}')
+        raise ValueError(
+            f'{name} is a result without a label; give results by label, such as {{"run": result}}'
+        )
     if not datasets:
-        raise ValueError("there is nothing to draw; give at least one result with its label")
+        raise ValueError(
+            f"{name} is empty, there is nothing to draw; give at least one result with its label"
+        )
     return datasets
 
 

@@ -101,12 +101,14 @@ def orders(
         For a result without tracked orders, or an order that was not tracked.
     """
     if "order" not in data.coords or "speed" not in data:
-        raise ValueError("this result has no tracked orders; make it with bd.track_orders")
+        raise ValueError("data is a result without tracked orders; make it with bd.track_orders")
     known = data["order"].values
     chosen = known if wanted is None else np.atleast_1d(np.asarray(wanted, dtype=np.float64))
     for order in chosen:
         if not (known == order).any():
-            raise ValueError(f"order {order:g} was not tracked; it must be one of {known.tolist()}")
+            raise ValueError(
+                f"wanted is {wanted!r}; order {order:g} was not tracked, it must be one of {known.tolist()}"
+            )
     speed = np.asarray(data["speed"].values) * RPM
     one_way = speed.size > 1 and bool((np.diff(speed) > 0).all() or (np.diff(speed) < 0).all())
     across = speed if one_way else data["time"].values

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import instance
 from bearingdyn.parts import FlexibleBearing
+from bearingdyn.plot.arguments import figure, one
 from bearingdyn.plot.frame import COLOURS, GREY, finish, new_axes, style
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ _DEEPEST = 0.25  # of the race's radius, to which the largest motion is drawn
 _LONGEST = 0.45  # the same of the largest ball load
 
 
+@figure(bearing=one(FlexibleBearing, maker="a bd.FlexibleBearing(…)"))
 def ring_shape(bearing: FlexibleBearing, load: ArrayLike, angle: float = 0.0, ax: Axes | None = None) -> Axes:
     """Draw the race of a bearing's outer ring under a load, its motion magnified, and the loads of the balls.
 
@@ -42,7 +43,6 @@ def ring_shape(bearing: FlexibleBearing, load: ArrayLike, angle: float = 0.0, ax
     ValueError
         For anything but a FlexibleBearing, or a load that has no equilibrium.
     """
-    instance("bearing", bearing, FlexibleBearing, "it must be a bd.FlexibleBearing(…)")
     q = bearing.displacement(load, angle)
     loads = bearing.ball_loads(q, angle)
     psi = np.linspace(0.0, 2.0 * np.pi, 721)

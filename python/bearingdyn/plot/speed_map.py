@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.checks import require
+from bearingdyn.plot.arguments import figure, maybe, result, text
 from bearingdyn.plot.frame import RPM, colour, engineering, finish, new_axes, style
 from bearingdyn.types import Array, Index
 
@@ -19,8 +20,11 @@ if TYPE_CHECKING:
 EVENTS = {"fold": ("o", 1), "flip": ("D", 3), "neimark-sacker": ("s", 2), "failed": ("x", 5)}
 # dB below the largest line, where a waterfall of harmonics begins to show anything
 DEPTH = 80.0
+HELD = ("channel", "unit", "peak_to_peak", "stable", "branch", "passages", "event")
+LINES = ("channel", "speed", "peak_to_peak", "stable", "amplitude", "passage_frequency", "order")
 
 
+@figure(data=result("bd.speed_map", *HELD), channel=maybe(text))
 def speed_map(data: xarray.Dataset, channel: str | None = None, ax: Axes | None = None) -> Axes:
     """All branches of a map: peak to peak of a channel over speed, stable ones drawn full, others dashed.
 
@@ -81,6 +85,7 @@ def speed_map(data: xarray.Dataset, channel: str | None = None, ax: Axes | None 
     return ax
 
 
+@figure(data=result("bd.speed_map", *LINES), channel=maybe(text))
 def speed_waterfall(data: xarray.Dataset, channel: str | None = None, ax: Axes | None = None) -> Axes:
     """Lines of the stable motions of a map over speed and frequency, in dB of the largest.
 
@@ -106,7 +111,6 @@ def speed_waterfall(data: xarray.Dataset, channel: str | None = None, ax: Axes |
         For a channel that the map does not hold, and for a map over something else than speed.
     """
     channel, at, name = _chosen(data, channel)
-    require("speed" in data, "data", sorted(map(str, data)), "it must be a result of bd.speed_map")
     keep = (data["stable"].values == 1) & np.isfinite(data["peak_to_peak"].sel(channel=channel).values)
     size = np.abs(data["amplitude"].sel(channel=channel).values[keep][:, 1:])
     passage = data["passage_frequency"].values[keep]

@@ -78,7 +78,7 @@ def time(
         [str(c) for c in first["channel"].values] if channels is None else name_list("channels", channels)
     )
     if not wanted:
-        raise ValueError("there is no channel to draw; name one or more")
+        raise ValueError(f"channels is {channels!r}, there is no channel to draw; name one or more")
     units: dict[str, list[str]] = {}
     for label, data in marches.items():
         known = [str(c) for c in data["channel"].values]

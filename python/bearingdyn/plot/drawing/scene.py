@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.application import Application
-from bearingdyn.checks import instance
 from bearingdyn.parts import Outlined
+from bearingdyn.plot.arguments import figure, one
 from bearingdyn.plot.drawing.machine import placed
 from bearingdyn.types import Array
 
 
+@figure(app=one(Application, maker="an Application (bd.Application())"))
 def scene(app: Application) -> Any:
     """A machine as a pyvista.MultiBlock, a block for each part and each bearing's balls; `.plot()` shows it.
 
@@ -41,7 +42,6 @@ def scene(app: Application) -> Any:
         raise ImportError(
             "app.scene() needs pyvista: pip install bearingdyn[scene]; app.draw() draws without"
         ) from None
-    instance("app", app, Application, "it must be an Application (bd.Application())")
     places = app.plan.positions()
     blocks = pyvista.MultiBlock()
     for name, element in app.plan.parts.items():

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.application import GROUND, Application, DirectedLoad, Place
-from bearingdyn.checks import instance
+from bearingdyn.checks import truth
+from bearingdyn.plot.arguments import figure, one
 from bearingdyn.plot.drawing.bearing_section import draw_bearing, fine
 from bearingdyn.plot.drawing.loads import draw_load
 from bearingdyn.plot.drawing.machine import Machine, machine, surface
@@ -32,6 +33,7 @@ TEXT = 8.0  # points
 LINE = 0.17  # inches from one line of the parts list to the next
 
 
+@figure(app=one(Application, maker="an Application (bd.Application())"), table=truth)
 def draw(app: Application, ax: Axes | None = None, *, table: bool = True) -> Axes:
     """Draw a machine before anything is solved: the section along its shaft, to scale, in mm.
 
@@ -58,7 +60,6 @@ def draw(app: Application, ax: Axes | None = None, *, table: bool = True) -> Axe
     ValueError
         For an application without parts.
     """
-    instance("app", app, Application, "it must be an Application (bd.Application())")
     shown = machine(app.plan)
     if not app.plan.parts:
         raise ValueError("the application has no parts; there is nothing to draw: add some with app.add")
