@@ -118,6 +118,7 @@ def radiated_power(story: Story) -> Any:
         ax.set_yscale("log")
         ax.set_xlim(100.0, float(frequency[-1]))
         _fit_height(ax)
+        ax.set_ylim(bottom=0.1 * ax.get_ylim()[0])  # room for the words below the curves
         band = (float(motor.AUDIBLE[0]), float(motor.AUDIBLE[-1]))
         ax.axvspan(*band, color="0.93", zorder=0, linewidth=0)
         ax.set_xlabel("frequency, Hz")

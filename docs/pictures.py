@@ -1,0 +1,76 @@
+"""Pictures of the guide, each made by the public functions that its page explains, written as PNG."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import bearingdyn as bd
+
+
+def drawing(path: Path) -> None:
+    """The guide's page on models: a ready motor as it is drawn."""
+    ax = bd.examples.motor().draw()
+    ax.figure.savefig(path, dpi=110)
+    plt.close(ax.figure)
+
+
+def squeezed(path: Path) -> None:
+    """The rings of the guide's page on squeeze: bonded with recessed ends, and slid in without friction."""
+    rubber = bd.Maxwell(G0=1e6, G=[1e6, 2e6], tau=[1e-3, 1e-4], K=2e9, density=1150.0)
+    figure, axes = plt.subplots(1, 2, figsize=(10, 3.2), layout="constrained")
+    for ax, recess, how, squeeze in ((axes[0], 1.2e-3, "bonded", 0.05), (axes[1], 0.0, "slip", 0.10)):
+        ring = bd.Layer(r_inner=0.020, r_outer=0.024, width=0.012, material=rubber, recess=recess)
+        bd.plot.squeezed_section(ring.assembled(squeeze=squeeze, inside=how, outside=how), ax=ax)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def ring(path: Path) -> None:
+    """The race of a 6305 whose ring stands on four feet, under 3 kN."""
+    bearing = bd.catalogue.bearing("6305", clearance=10e-6)
+    feet = bd.RingPoints([k * math.pi / 4 for k in (1, 3, 5, 7)], stiffness=2e8)
+    ring = bd.FlexibleRing.of(bearing, outside=(feet, bd.RingBed(1e7)), f_max=0.0)
+    ax = bd.plot.ring_shape(bd.FlexibleBearing(bearing, ring), (0, -3000, 0, 0, 0, 0), -0.5 * math.pi)
+    ax.figure.savefig(path, dpi=110)
+    plt.close(ax.figure)
+
+
+def sound(path: Path) -> None:
+    """The guide's page on sound: a plate-like housing, its sound power and its equivalent radiated power."""
+    housing = bd.Housing(0.16, 0.20, 0.03, 0.078, bore_height=0.12, damping=0.01, f_max=3000.0)
+    app = bd.Application()
+    app.add("housing", housing.superelement())
+    app.ground("housing.feet")
+    app.free("housing.bore")
+    f = np.geomspace(100.0, 2000.0, 300)
+    found = bd.sound_power(app, f, ["housing.bore.z"], ["housing.outside"])
+    figure, ax = plt.subplots(figsize=(7, 3.4), layout="constrained")
+    for name, label in (("equivalent_radiated_power", "equivalent radiated power"), ("power", "sound power")):
+        ax.semilogx(f, bd.sound.level(found[name].values[:, 0], "power"), label=label)
+    ax.set_xlabel("frequency, Hz")
+    ax.set_ylabel("level, dB re 1 pW, force 1 N at the bore")
+    ax.legend(frameon=False)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def steady(path: Path) -> None:
+    """The rotor of the guide's page on steady motions: its branches over speed."""
+    app = bd.Application()
+    app.add("rotor", bd.RigidBody(mass=20.0, inertia=(0.1, 0.1, 0.1)))
+    app.ground("rotor.centre", stiffness=(0, 0, 1e7, 1e5, 1e5, 1e5), damping=(200, 200, 1e4, 50, 50, 50))
+    race = {"Z": 8, "Dw": 11.9e-3, "Dpw": 52e-3, "fi": 0.52, "fo": 0.52, "cage_ratio": 40.1 / 104.0}
+    jis_6306 = bd.BallBearing(**race, clearance=40e-6, kappa=13.34e9)
+    app.bearing("ball", jis_6306, inner="rotor.centre", outer="ground")
+    app.load("rotor.centre", (196.0, 0, 0, 0, 0, 0))
+    speeds = (4000 * np.pi / 30, 6500 * np.pi / 30)
+    found = bd.speed_map(
+        app, speeds=speeds, record=["rotor.centre.x"], several=False, doublings=0, progress=False
+    )
+    ax = bd.plot.speed_map(found)
+    ax.figure.savefig(path, dpi=110)
+    plt.close(ax.figure)
