@@ -242,6 +242,8 @@ def test_the_audit_closes(state: Equilibrium):
 def test_what_it_cannot_do_is_named(state: Equilibrium):
     with pytest.raises(ValueError, match=r"method is 'exact'.*100 to 200 rad/s.*newmark.*run-up"):
         exact(state, speed=([0.0, 1.0], [100.0, 200.0]))
+    level = exact(state, speed=([0.0, 1.0], [SPEED, SPEED]), steps=5)
+    np.testing.assert_array_equal(level["record"].values, exact(state, steps=5)["record"].values)
     with pytest.raises(ValueError, match=r"method is 'Exact'.*newmark"):
         transient(state, speed=0.0, dt=1e-5, steps=1, record=[], method="Exact")
     law = Payne(D=2.0344e6, gamma_c=3.588e-3, m=0.4817, Lm=0.1663e6, gamma_l=3.132e-3)

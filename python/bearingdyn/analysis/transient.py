@@ -184,9 +184,10 @@ def transient(
         )
     if resume is not None and initial:
         raise ValueError("resume and initial both set the state at the start; give one of them")
+    speed = one_speed(speed, rpm)
     march = March.of(
         source,
-        speed=one_speed(speed, rpm),
+        speed=speed,
         dt=dt,
         steps=steps,
         settle=settle,
