@@ -232,9 +232,9 @@ def test_an_unstable_motion_leaves_at_the_rate_found():
 
 
 def passage(eq, speed: float, state: np.ndarray, first: float) -> tuple[np.ndarray, np.ndarray]:
-    """State (x, y, ẋ, ẏ) of the rotor one passage on, and its derivative, by Hertz's law and a Runge-Kutta rule.
+    """State (x, y, ẋ, ẏ) of the rotor one passage on, and its derivative, by Hertz's law and Runge-Kutta.
 
-    Written from the figures of the rotor alone: 20 kg, 200 N s/m, 196 N along x, eight balls of 13.34e9 N/m^1.5
+    Written from the rotor's figures alone: 20 kg, 200 N s/m, 196 N along x, eight balls of 13.34e9 N/m^1.5
     with 20 µm a side; first: azimuth of a ball, rad.
     """
     cage = 40.1 / 104.0 * speed
@@ -281,7 +281,7 @@ def test_multipliers_are_those_of_an_integration_of_its_own(way):
 
 
 def filmed() -> Application:
-    """The rotor of the reference page on films whose damping grows with the load from nothing to 2000 N s/m."""
+    """The rotor of the reference page on films whose damping grows with the load up to 2000 N s/m."""
     w = np.linspace(0.0, 1.0, 65)
     film = FilmDamping(5e-6, 2000.0 * w**2 * (3 - 2 * w))
     return rotors.held_jis_rotor(damping=film)
@@ -453,7 +453,6 @@ def test_a_law_without_branches_moves_as_its_modulus_says():
     assert other.attrs["energy_balance"] <= 1e-8
     # its stability is that of a Maxwell model fitted to 2 %
     sizes = [np.sort(np.abs(s["multipliers"].values)) for s in (own, other)]
-    print("law multipliers", np.abs(sizes[0] - sizes[1]).max(), sizes[0])
     np.testing.assert_allclose(*sizes, rtol=0, atol=1e-3)
     # of another law it is another motion
     stiff = steady_state(
