@@ -7,13 +7,12 @@ Times are of the processor, the least of a few.
 
 from __future__ import annotations
 
-import argparse
-import json
 import sys
 import time
 from collections.abc import Callable
 
 import numpy as np
+from printing import printed
 
 from bearingdyn.bearing import ehl
 
@@ -52,17 +51,5 @@ def measure() -> dict[str, float | int]:
     return result
 
 
-def main() -> int:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    options = parser.parse_args()
-    result = measure()
-    print(json.dumps(result) if options.json else "\n".join(f"{k:>40}: {v}" for k, v in result.items()))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(printed(__doc__, measure))

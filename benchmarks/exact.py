@@ -12,8 +12,6 @@ to 9.4 kHz.
 
 from __future__ import annotations
 
-import argparse
-import json
 import sys
 import time
 from pathlib import Path
@@ -24,6 +22,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples"))
 
 import motor
+from printing import printed
 
 import bearingdyn as bd
 from bearingdyn.analysis.core_channels import channel_of
@@ -121,17 +120,5 @@ def measure() -> dict[str, Any]:
     }
 
 
-def main() -> int:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    options = parser.parse_args()
-    result = measure()
-    print(json.dumps(result) if options.json else "\n".join(f"{k:>28}: {v}" for k, v in result.items()))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(printed(__doc__, measure))

@@ -51,10 +51,9 @@ static void place_row(const bd_model *model, const double *from, double *to)
 }
 
 /* Where the caller's stress r of branch i of layer l lies. */
-static void place_stresses(const bd_model *model, const double *from, size_t n_stress, double *to,
-                           const size_t *starts)
+static void place_stresses(const bd_model *model, const double *from, const size_t *starts,
+                           double *to)
 {
-    (void)n_stress;
     for (int l = 0; l < model->n_layers; l++) {
         const bd_layer *layer = &model->layers[l];
         for (int i = 0; i < layer->n_branches; i++)
@@ -265,8 +264,7 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
         place_row(model, data->X + j * (size_t)model->n, exact->X + j * padded);
         place_row(model, data->V + j * (size_t)model->n, exact->V + j * padded);
         place_row(model, data->A + j * (size_t)model->n, exact->A + j * padded);
-        place_stresses(model, data->S + j * stresses, stresses, exact->S + j * model->n_stress,
-                       starts);
+        place_stresses(model, data->S + j * stresses, starts, exact->S + j * model->n_stress);
     }
     free(starts);
     place_bearings(model, data, exact);

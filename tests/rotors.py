@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bearingdyn.application import Application
-from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing import BallBearing, FilmDamping
 from bearingdyn.fem import Section
 from bearingdyn.material import Elastic, Maxwell
 from bearingdyn.parts import Disc, Layer, RigidBody, Shaft
@@ -87,21 +87,22 @@ def friswell() -> Application:
     return app
 
 
-def jis_rotor(r_inner: float = 40.1e-3, r_outer: float = 63.9e-3, clearance: float = 20e-6) -> Application:
-    """A rigid rotor on one JIS 6306, loaded along x; radii of the raceways and radial clearance a side, m."""
-    app = _jis_rotor(r_inner, r_outer, clearance)
+def jis_rotor() -> Application:
+    """A rigid rotor on one JIS 6306, loaded along x."""
+    app = _jis_rotor()
     app.ground("rotor.centre", damping=(200, 200, 200, 0.1, 0.1, 0.1))
     return app
 
 
-def held_jis_rotor(clearance: float = 20e-6) -> Application:
-    """The same, moving in its plane alone: what is not x or y is held and damped."""
-    app = _jis_rotor(40.1e-3, 63.9e-3, clearance)
+def held_jis_rotor(clearance: float = 20e-6, damping: float | FilmDamping = 0.0) -> Application:
+    """The same, moving in its plane alone: what is not x or y is held and damped; clearance a side, m."""
+    app = _jis_rotor(clearance, damping)
     app.ground("rotor.centre", stiffness=(0, 0, 1e7, 1e5, 1e5, 1e5), damping=(200, 200, 1e4, 50, 50, 50))
     return app
 
 
-def _jis_rotor(r_inner: float, r_outer: float, clearance: float) -> Application:
+def _jis_rotor(clearance: float = 20e-6, damping: float | FilmDamping = 0.0) -> Application:
+    r_inner, r_outer = 40.1e-3, 63.9e-3  # raceways
     app = Application()
     app.add("rotor", RigidBody(20.0, (0.1, 0.1, 0.1)))
     bearing = BallBearing(
@@ -111,6 +112,7 @@ def _jis_rotor(r_inner: float, r_outer: float, clearance: float) -> Application:
         0.52,
         0.52,
         clearance=2 * clearance,
+        damping=damping,
         kappa=13.34e9,
         cage_ratio=r_inner / (r_inner + r_outer),
     )

@@ -19,7 +19,7 @@ from bearingdyn.material import Payne
 from bearingdyn.parts import RigidBody
 from bearingdyn.results import open_result
 from bearingdyn.system import LoadTerm, System, assemble
-from rotors import RUBBER, friswell, motor, oscillator
+from rotors import BEARING, RUBBER, friswell, motor, oscillator
 
 SPEED = 500.0  # rad/s
 RECORD = ["shaft.end.y", "shaft.end.y.velocity", "ring.centre.x.velocity", "left.force.y"]
@@ -143,6 +143,32 @@ def test_order_of_the_step(state: Equilibrium, capsys: pytest.CaptureFixture[str
     assert orders.min() > 2.5
 
 
+def test_a_mass_that_balls_alone_hold_grows_by_the_fourth_power_of_the_step():
+    """Nothing damps it: (ωΔt)⁴/48 a step, from the parabola's own error, as the docstring says."""
+    app = Application()
+    app.add("body", RigidBody(0.1, (0.01,) * 3))
+    app.ground("body.centre", stiffness=(1e2, 1e2, 1e2, 1e4, 1e4, 1e4))
+    app.bearing("left", replace(BEARING, damping=0.0, clearance=-20e-6), inner="body.centre", outer="ground")
+    still = equilibrium(app)
+    w = math.sqrt(still.bearings["left"].K[0, 0] / 0.1)
+    steps = 400
+    for turn in (0.3, 0.4):  # rad a step
+        found = exact(
+            still,
+            speed=0.0,
+            dt=turn / w,
+            steps=steps,
+            record=["body.centre.x"],
+            initial={"body.centre": [1e-9, 0, 0, 0, 0, 0]},
+        )
+        x = found["record"].values[:, 0]
+        x = x - still.x @ still.system.row("body.centre.x")
+        part = steps // 4
+        rate = math.log(np.abs(x[-part:]).max() / np.abs(x[:part]).max()) / (steps - part)
+        # the next power of the step
+        assert rate == pytest.approx(turn**4 / 48, rel=0.15)
+
+
 def test_newmark_tends_to_the_exact_march(state: Equilibrium):
     """Two schemes without a line in common: Newmark's, extrapolated in its step, is the other."""
 
@@ -242,6 +268,8 @@ def test_the_audit_closes(state: Equilibrium):
 def test_what_it_cannot_do_is_named(state: Equilibrium):
     with pytest.raises(ValueError, match=r"method is 'exact'.*100 to 200 rad/s.*newmark.*run-up"):
         exact(state, speed=([0.0, 1.0], [100.0, 200.0]))
+    level = exact(state, speed=([0.0, 1.0], [SPEED, SPEED]), steps=5)
+    np.testing.assert_array_equal(level["record"].values, exact(state, steps=5)["record"].values)
     with pytest.raises(ValueError, match=r"method is 'Exact'.*newmark"):
         transient(state, speed=0.0, dt=1e-5, steps=1, record=[], method="Exact")
     law = Payne(D=2.0344e6, gamma_c=3.588e-3, m=0.4817, Lm=0.1663e6, gamma_l=3.132e-3)

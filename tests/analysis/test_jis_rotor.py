@@ -22,7 +22,7 @@ SETTLE = 5.0
 
 @pytest.fixture(scope="module")
 def rotor() -> Equilibrium:
-    return equilibrium(jis_rotor(R_INNER, R_OUTER))
+    return equilibrium(jis_rotor())
 
 
 def motion(rotor: Equilibrium, rpm: float) -> tuple[int, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 
 import matplotlib as mpl
 import numpy as np
@@ -20,6 +21,8 @@ from bearingdyn import plot
 from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_state, transient
 from bearingdyn.analysis.steady import branches as tracing
 from bearingdyn.application import Application
+from bearingdyn.material import FractionalZener
+from bearingdyn.system import assemble
 
 RPM = math.pi / 30
 RECORD = ["rotor.centre.x", "rotor.centre.y"]
@@ -88,6 +91,25 @@ def test_periods_double_at_a_flip_to_what_marches_find() -> None:
     assert (data["stable"].values[~twice & beyond] == 0).all()
 
 
+def test_several_states_find_motions_that_neither_end_leads_to() -> None:
+    """From 4900 to 5100 rpm both ends stand on the lower branch; the upper one and one between hang apart."""
+    ends = made(4900, 5100, points=6)
+    assert set(ends["branch"].values) == {0}
+    data = made(4900, 5100, points=6, several=True)
+    found = {}
+    for branch in np.unique(data["branch"].values):
+        keep = data["branch"].values == branch
+        at = np.abs(data["speed"].values[keep] / RPM - 5000.0) < 1.0
+        for size, stable in zip(
+            data["peak_to_peak"].values[keep, 0][at], data["stable"].values[keep][at], strict=True
+        ):
+            found[round(1e6 * float(size), 1)] = int(stable)
+    # 1.008 and 10.0257 µm, §3.6 and §4.4, are stable; twelve harmonics give three digits
+    assert found == {1.0: 1, 10.0: 1, 9.6: 0}
+    # the one between is unstable down to the fold at 5229 rpm, and flips back at 5037 (the guide's map)
+    assert events(data, "flip") == pytest.approx([5037.0], abs=1.0)
+
+
 @pytest.mark.slow
 def test_the_upper_branch_ends_where_the_reference_page_says() -> None:
     data = made(3000, 5400, points=60, harmonics=24)
@@ -106,6 +128,25 @@ def test_a_store_gives_the_same_map_again_without_work(tmp_path, monkeypatch, hy
     xarray.testing.assert_identical(first, again)
     with pytest.raises(TypeError):  # another range is another map
         made(5251, 5300, points=3, store=tmp_path)
+
+
+def test_a_store_tells_laws_apart(tmp_path) -> None:
+    """Laws without branches, too: each has a file of its own."""
+    app = rotors.motor()
+    system = assemble(app)
+    counts = []
+    for tau in (1e-4, 2e-4):
+        law = FractionalZener(1e6, 6e6, tau, 0.7, K=2e9, density=1200.0)
+        layers = tuple(replace(t, material=law) for t in system.layers)
+        speed_map(
+            replace(system, layers=layers),
+            speeds=(600.0, 610.0),
+            record=["shaft.end.y"],
+            **{**QUICK, "points": 2, "harmonics": 6},
+            store=tmp_path,
+        )
+        counts.append(len(list(tmp_path.iterdir())))
+    assert counts[1] == 2 * counts[0]
 
 
 @pytest.mark.slow
@@ -162,7 +203,7 @@ def test_a_march_can_be_asked_whether_its_motion_is_the_only_one() -> None:
     """§3.6 and §4.4: 1.008 µm after a run-up, 10.0257 µm after a coast-down, at 5000 rpm."""
     eq = equilibrium(rotors.held_jis_rotor())
     asked = {"dt": 1e-5, "steps": 10, "record": RECORD[:1], "check_unique": True}
-    two = transient(eq, speed=5000 * RPM, **asked)
+    two = transient(eq, rpm=5000, **asked)
     # four digits are given
     assert 1e6 * two["stable_motion"].values[:, 0] == pytest.approx([1.008, 10.0257], rel=5e-4)
     assert two.attrs["stable_motions"] == 2

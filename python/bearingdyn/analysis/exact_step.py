@@ -296,7 +296,7 @@ def _start(group: _Group, squares: Array, x: Array) -> Array:
 def _place_motion(
     system: System, group: _Group, squares: Array, out: dict[str, Array], starts: Index
 ) -> None:
-    """Weights excepted those of loads: what forces do to a group's numbers, and what motions are of them."""
+    """What bearing forces do to a group's numbers (P), and what motions and stresses are of them."""
     block, loose = group.block, len(group.loose)
     position, v, into = _motions(group, squares)
     B = system.B[:, block]
@@ -365,7 +365,7 @@ def _join(group: _Group, out: dict[str, Array], rows: Array, joined: Array) -> N
     real, pairs, loose = group.sizes
     m = len(P)
     re, im = slice(real, real + pairs), slice(real + pairs, modes)
-    for order, row in enumerate((5, 3)):
+    for order, row in enumerate((5, 3)):  # of the new force on a line, on a parabola
         weight = out["weights"][row]
         moved = P * weight
         moved[:, re] = P[:, re] * weight[re] - P[:, im] * weight[im]

@@ -136,7 +136,7 @@ class March:
         fastest = float(np.abs(drive[1]).max()) if isinstance(drive, tuple) else drive
         system.check_speed(fastest)
         if method == "exact":
-            _check_exact(system, drive)
+            drive = _exact_speed(system, drive)
         warn_if_coarse(system, fastest, dt)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
@@ -511,8 +511,8 @@ class March:
         return result
 
 
-def _check_exact(system: System, drive: float | tuple[Array, Array]) -> None:
-    """Refuse what exact steps cannot be taken through: ValueError."""
+def _exact_speed(system: System, drive: float | tuple[Array, Array]) -> float:
+    """The one speed of exact steps; ValueError for what they cannot be taken through."""
     remedy = "take method='newmark'"
     if isinstance(drive, tuple) and np.ptp(drive[1]) > 0:
         raise ValueError(
@@ -526,3 +526,4 @@ def _check_exact(system: System, drive: float | tuple[Array, Array]) -> None:
             f"method is 'exact', and layer {soft[0]!r} softens with its amplitude (`Maxwell.payne`), so that "
             f"no step is linear; {remedy}, or leave its law of softening out"
         )
+    return float(drive[1][0]) if isinstance(drive, tuple) else drive

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from bearingdyn import fingerprint
 from bearingdyn.checks import numbers, require
 from bearingdyn.magnitude import plausible
-from bearingdyn.system import System
+from bearingdyn.material import Maxwell
+from bearingdyn.system import LayerTerm, System
 from bearingdyn.types import Array
 
 # a number of a state beyond this belongs to no machine in SI units, and its cube would still be finite
@@ -23,20 +24,19 @@ def system_hash(system: System) -> str:
         {
             "matrices": [system.M, system.C, system.G, system.K, system.N],
             "layers": [
-                (
-                    t.L,
-                    t.material.G0,
-                    t.material.G,
-                    t.material.tau,
-                    t.material.eta0,
-                    *(() if t.strain is None else (t.strain, t.material.payne)),
-                )
+                (t.L, *_law(t), *(() if t.strain is None else (t.strain, t.material.payne)))
                 for t in system.layers
             ],
             "bearings": [(t.kernel().packed(), t.B) for t in system.bearings],
             "loads": system.loads,
         }
     )
+
+
+def _law(layer: LayerTerm) -> tuple[object, ...]:
+    """What tells a layer's law: of a Maxwell model the branches, that other names of it count alike."""
+    m = layer.material
+    return (m.G0, m.G, m.tau, m.eta0) if isinstance(m, Maxwell) else (m,)
 
 
 def check_state(field: str, state: Array) -> None:

@@ -83,8 +83,8 @@ class Balance:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     @cached_property
-    def kernels(self) -> list[dict[str, object]]:
-        return [term.kernel().packed() for term in self.system.bearings]
+    def kernels(self) -> list[_Packed]:
+        return [_Packed(term.kernel().packed()) for term in self.system.bearings]
 
     @cached_property
     def bodies(self) -> list[tuple[Array, Array]]:
@@ -158,9 +158,9 @@ class Balance:
         found = []
         K, C = np.zeros((m, m)), np.zeros((m, m))
         g = np.zeros((lines.samples, m))
-        for term, own, (angles, speeds) in zip(self.system.bearings, self.slots, bodies, strict=True):
+        for kernel, own, (angles, speeds) in zip(self.kernels, self.slots, bodies, strict=True):
             along = core.bearing_along(
-                _Packed(self.kernels[self.system.bearings.index(term)]),
+                kernel,
                 signal[:, own],
                 signal[:, m + own.start : m + own.stop],
                 angles,
@@ -190,6 +190,8 @@ class Balance:
 
 @dataclass(frozen=True)
 class _Packed:
+    """A kernel packed once for many calls."""
+
     fields: dict[str, object]
 
     def packed(self) -> dict[str, object]:

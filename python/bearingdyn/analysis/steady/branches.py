@@ -32,8 +32,8 @@ DIFFERENT = 1e-3
 # amplitude of the doubled motion with which a branch begins at a flip, as a share of the motion there
 BEGIN = 0.02
 # places of the range where motions are looked for beside those of the two ends, and amplitudes, as shares of
-# the mean deflection, with which they begin
-PLACES, PUSHES = 5, (0.5, 1.5)
+# the mean deflection, with which they begin: a motion that does not part from its balls is smaller than it
+PLACES, PUSHES = 5, (-0.3, 0.3)
 # of the range, by which a sweep that can go no further leaps on; and its most leaps
 LEAP, LEAPS = 0.01, 40
 # of a multiplier's size, within which an event lies on the unit circle

@@ -94,13 +94,8 @@ def _plain(system: System) -> bool:
 
 
 def rest_modulus(layer: LayerTerm) -> float:
-    """G*(0) of a layer's law, Pa; NaN where it has none."""
-    if isinstance(layer.material, Maxwell):
-        return float(layer.material.G0)
-    try:
-        return float(np.real(layer.material.complex_modulus(np.zeros(1)))[0])
-    except (ValueError, ZeroDivisionError, FloatingPointError):
-        return float("nan")
+    """G*(0) of a layer's law, Pa."""
+    return float(layer.material.complex_modulus(0.0).real)
 
 
 def check_linear(layer: LayerTerm) -> None:

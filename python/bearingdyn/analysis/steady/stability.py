@@ -122,7 +122,7 @@ def maxwell_system(system: System, band: tuple[float, float]) -> System:
     models: dict[int, Maxwell] = {}
     for t in system.layers:
         if not isinstance(t.material, Maxwell):
-            models.setdefault(id(t.material), t.material.maxwell("auto", band))
+            models.setdefault(id(t.material), t.material.maxwell("auto", band=band))
     return replace(
         system,
         layers=tuple(replace(t, material=models.get(id(t.material), t.material)) for t in system.layers),

@@ -52,14 +52,15 @@ def steady_state(
     """Find the steady motion at one speed, and whether it is stable, without marching to it.
 
     The motion is a sum of lines, Σ Re z_n e^{iω_n t}, whose amplitudes balance at every line; the structure
-    answers with G*(ω) of any law, the balls are pressed in time. Of two steady motions at one speed it finds
-    the one near its start; `speed_map` follows them all.
+    answers with G*(ω) of any law, the balls are pressed in time; films of oil have their damping of low
+    frequency, as in a march. Of two steady motions at one speed it finds the one near its start; `speed_map`
+    follows them all.
 
     Parameters
     ----------
     source
         Equilibrium, whose bearings give the start; an application, whose equilibrium is found first; or a
-        system.
+        system, whose layers may have laws that an application does not take.
     speed
         Of the shaft, rad/s; not zero.
     record
