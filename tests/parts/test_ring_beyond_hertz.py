@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -322,6 +323,25 @@ def test_the_shape_of_a_ring_is_drawn() -> None:
     import matplotlib.pyplot as plt
 
     plt.close(ax.figure)
+
+
+def test_waves_that_the_mesh_does_not_hold_are_refused() -> None:
+    """In soft rubber a shear wave at 20 kHz is 1.4 mm long; what the message names is taken."""
+    ring = replace(CUSHIONED, layer=replace(LAYER, material=SOFT), order=8)
+    with pytest.raises(
+        ValueError, match=r"f_max is 20000 Hz; shear waves of regions\[1\] are 1\.44 mm"
+    ) as told:
+        replace(ring, f_max=20e3)
+    finer, limit = re.findall(r"refinement=([\d.]+), or an f_max of at most ([\d.]+)", str(told.value))[0]
+    side = math.sqrt(1e6 / 1200.0) / (2.0 * float(limit))  # half a wave, as long as the longest element
+    z = ring.body.mesh.z[ring.body.mesh.elements[ring.body.mesh.region == 1]]
+    assert side == pytest.approx(np.ptp(z, axis=1).max(), rel=1e-2)  # three digits are told, rounded down
+    replace(ring, f_max=float(limit))
+    replace(ring, f_max=20e3, refinement=float(finer))
+    with pytest.raises(ValueError, match=r"wave: give an f_max of at most"):  # no mesh is so fine
+        replace(ring, f_max=200e3)
+    # without a frequency there is no wave
+    replace(ring, f_max=0.0)
 
 
 def test_bad_input_names_what_would_do() -> None:

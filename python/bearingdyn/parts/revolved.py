@@ -41,6 +41,7 @@ from bearingdyn.fem import (
 )
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
+from bearingdyn.parts.mesh_waves import check_waves
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
 from bearingdyn.parts.profile import Profile
@@ -102,7 +103,8 @@ class Revolved:
     ------
     ValueError
         For regions that overlap, faces that are not part of the body or share a node, a point outside the
-        section, a mesh whose regions do not fit, and values outside their range.
+        section, a mesh whose regions do not fit, values outside their range, and, with grooves, an f_max
+        whose shear waves the mesh does not hold.
 
     References
     ----------
@@ -131,7 +133,9 @@ class Revolved:
         if self.moduli is not None:
             object.__setattr__(self, "moduli", check_moduli(self.moduli))
         self._check_regions()
-        _ = self.mesh  # refuses regions that overlap and faces that do not exist
+        mesh = self.mesh  # refuses regions that overlap and faces that do not exist
+        if self.grooves and self.f_max > 0:
+            check_waves(mesh, self.regions, self.f_max, self.refinement)
         owner: dict[int, str] = {}
         for name, nodes in self._boundaries.nodes():
             for node in nodes.tolist():
