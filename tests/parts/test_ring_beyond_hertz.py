@@ -287,6 +287,26 @@ def test_the_energy_of_a_march_on_a_bed_is_of_second_order() -> None:
     assert missing[0] < 1e-4 * 2e-5  # of what the supports dissipate meanwhile, 2e-5 J
 
 
+def test_beds_and_points_hold_a_rigid_bore_by_their_pressure() -> None:
+    """On the bore, the ring held: k cos² around the outside, and k r² of tilts along the axis."""
+    k, axial, damping, angles = 3e9, 2e9, 3e-5, (0.3, 2.0, 4.5)
+    side = math.pi * SIZE[1] * SIZE[2]
+    feet = np.array([[math.cos(a), math.sin(a)] for a in angles])
+    for support, xy, z in (
+        (RingBed(k, axial=axial, damping=damping), k * side * np.eye(2), 2 * axial * side),
+        (RingPoints(angles, k, axial=axial, damping=damping), k * feet.T @ feet, 3 * axial),
+    ):
+        element = replace(RING, outside=support, f_max=0.0).superelement()
+        at = element.interfaces["outer"]
+        for matrix, share in ((element.K, 1.0), (element.C, damping)):
+            own = matrix[np.ix_(at, at)] / share
+            # closed forms, round-off of the quadrature
+            np.testing.assert_allclose(own[:2, :2], xy, rtol=0, atol=1e-9 * k * side)
+            assert own[2, 2] == pytest.approx(z, rel=1e-9)
+            # both tilts together: axial·r²
+            assert own[3, 3] + own[4, 4] == pytest.approx(z * SIZE[1] ** 2, rel=1e-9)
+
+
 def test_the_bed_carries_the_load_that_the_race_takes() -> None:
     stiffness, load = 1e10, (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)
     brg = FlexibleBearing(B6305, replace(RING, outside=RingBed(stiffness), f_max=0.0))
@@ -355,6 +375,9 @@ def test_bad_input_names_what_would_do() -> None:
     ):
         with pytest.raises(ValueError, match=name):
             replace(RING, **change)
+    with pytest.raises(ValueError, match="r_outer is") as told:
+        replace(RING, r_outer=28.0e-3)
+    replace(RING, r_outer=float(str(told.value).split("at least ")[1].split(" m")[0]))  # what is told does
     with pytest.raises(ValueError, match="bearing is None"):
         _ = FlexibleRing(*SIZE, arm=0.02).compliance
     with pytest.raises(ValueError, match="boundary is None"):

@@ -195,10 +195,11 @@ class FlexibleRing:
             return
         length, wall = 2.0 * self.footprint.half_length, self.wall
         if not length < 2.0 * wall:
+            least = _just_above(self.r_outer + 0.5 * length - wall, 1e-6)
             raise ValueError(
                 f"r_outer is {self.r_outer}; the ring is {1e3 * wall:.3g} mm thick under a contact "
                 f"{1e3 * length:.3g} mm long, and Hertz's law is of thick bodies: make r_outer at least "
-                f"{self.r_outer + 0.5 * length - wall:.6g} m, or state a smaller load"
+                f"{least:.9g} m, or state a smaller load"
             )
         if not length < self.track:
             raise ValueError(
@@ -330,7 +331,8 @@ class FlexibleRing:
         if not bore.interference >= least:
             raise ValueError(
                 f"bore.interference is {bore.interference:g} m; the ring parts from the bore at "
-                f"{math.degrees(psi):.3g} degrees: make it at least {least:.3g} m on the radius"
+                f"{math.degrees(psi):.3g} degrees: "
+                f"make it at least {_just_above(least, 1e-9):.9g} m on the radius"
             )
         return tuple(
             Waviness("outer", n, math.hypot(a, b) * float(c[0, 2] / c[2, 2]), phase=math.atan2(-b, a))
@@ -444,3 +446,8 @@ class FlexibleRing:
         outline = self.body.outline()
         none = np.zeros((len(outline.rows), len(self._folded) + (6 if self._supports else 0)))
         return replace(outline, rows=np.hstack([outline.rows, none]))
+
+
+def _just_above(value: float, step: float) -> float:
+    """The next whole number of steps, so that what a message names does."""
+    return (math.floor(value / step) + 1) * step
