@@ -317,8 +317,8 @@ def test_the_bed_carries_the_load_that_the_race_takes() -> None:
     area = SIZE[1] * SIZE[2] * 2 * math.pi / psi.size
     pressed = stiffness * area * (outside[:, 0] @ np.stack([np.cos(psi), np.sin(psi)], axis=-1))
     np.testing.assert_allclose(pressed, load[:2], atol=1e-6 * 3000)
-    # between them is the dent of 1.5 kN by orders to 8, some 2 µm of the 200
-    np.testing.assert_allclose(race[:, 0], outside[:, 0], rtol=0, atol=0.02 * np.abs(race).max())
+    # between them is the dent of 1.5 kN by orders to 8, 2.19 µm of 205
+    np.testing.assert_allclose(race[:, 0], outside[:, 0], rtol=0, atol=0.012 * np.abs(race).max())
     with pytest.raises(ValueError, match="outside is 'rigid'"):
         FlexibleBearing(B6305, RING).outside(q, psi)
     with pytest.raises(ValueError, match="azimuth"):
