@@ -124,8 +124,8 @@ def test_a_flexible_ring_is_softer_and_spreads_the_load(capsys: pytest.CaptureFi
 
     In a rigid bore the race lies on a wall 3.5 mm below it, where Hertz's half-space goes on: the contact is
     stiffer, the inner ring moves less and the heaviest ball takes more. With rubber around it the ring
-    bends: it
-    flattens under the loaded zone and follows the inner race, so the peak falls far and the zone widens.
+    bends: it flattens under the loaded zone and follows the inner race, so the peak falls far and the zone
+    widens.
     """
     load = (0.0, -3000.0, 0.0, 0.0, 0.0, 0.0)
     angle = -0.5 * math.pi  # a ball under the load

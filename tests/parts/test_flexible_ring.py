@@ -163,6 +163,6 @@ def test_rubber_around_the_ring_keeps_its_stiffness_at_every_modulus(G: float) -
     flexible = np.linalg.inv(K[np.ix_(inner, inner)])
     at_raceway = element.raceways["raceway"].rows[:, inner]
     S = np.linalg.inv(at_raceway @ flexible @ at_raceway.T)
-    # shapes at 2 and 7 MPa; between them the two-modulus basis is within 0.1 % of the full model
+    # shapes at 2 and 7 MPa, chosen to 2e-4 there and between (STILL): 2.6e-4 is the worst by this measure
     worst = np.linalg.eigvals(np.linalg.solve(exact.raceway_stiffness, S))
-    assert np.abs(worst - 1).max() < 1e-3
+    assert np.abs(worst - 1).max() < 5e-4

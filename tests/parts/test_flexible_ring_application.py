@@ -134,7 +134,10 @@ def test_the_response_at_0_hz_is_the_tangent_and_a_rigid_bore_stiffens() -> None
     # the stiffest, which feels the ring most: the wall takes 0.527 µm/kN from what some 1 kN on a ball gives,
     # 12 µm/kN, which is 4.4 %, and half of it in the frequency
     assert bore[5] == pytest.approx(1.022 * rigid[5], rel=0.004)
-    np.testing.assert_allclose(bore, rigid, rtol=0.025)
+    # the other radial one, whose softer balls the wall helps by less; spin, tilts and axial motion are held
+    # by springs and shallow contacts, and change by 2e-4
+    assert 1.01 < bore[4] / rigid[4] < bore[5] / rigid[5]
+    np.testing.assert_allclose(bore[:4], rigid[:4], rtol=5e-4)
 
 
 @pytest.mark.parametrize("ring", [replace(RING, damping=0.01), replace(CUSHIONED, damping=0.01)])

@@ -8,8 +8,8 @@ from typing import Literal, TypeAlias
 from bearingdyn.application.channel import GROUND
 from bearingdyn.application.joints import BearingJoint
 from bearingdyn.application.place import Place
+from bearingdyn.cms import RoundFace
 from bearingdyn.notice import FitWarning, warn
-from bearingdyn.parts import RoundFace
 
 Ring: TypeAlias = Literal["inner", "outer"]
 RINGS: tuple[Ring, Ring] = ("inner", "outer")

@@ -12,8 +12,7 @@ from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJ
 from bearingdyn.application.loads import Load
 from bearingdyn.application.part import Part
 from bearingdyn.application.place import GRAVITY, Place
-from bearingdyn.cms import Raceway, Superelement
-from bearingdyn.parts import HasRoundFaces, RoundFace
+from bearingdyn.cms import HasRoundFaces, Raceway, RoundFace, Superelement
 from bearingdyn.types import Array
 
 

@@ -1,6 +1,5 @@
 """Parts: everything an application is made of, each a frozen dataclass with `superelement()`."""
 
-from bearingdyn.cms import HasRoundFaces, RoundFace
 from bearingdyn.fem import Section, quadrilaterals
 from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.damping_sample import damping_sample
@@ -16,8 +15,9 @@ from bearingdyn.parts.outline import Outline, Outlined
 from bearingdyn.parts.prestress import Prestress
 from bearingdyn.parts.profile import HasProfile, Matter, Profile, cut
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
-from bearingdyn.parts.revolved import Revolved, RevolvedModes
+from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Groove, Line, MeshNodes, Where
+from bearingdyn.parts.revolved_modes import RevolvedModes
 from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring
 from bearingdyn.parts.ring_compliance import RingCompliance
@@ -38,7 +38,6 @@ __all__ = [
     "FlexibleRing",
     "Groove",
     "HasProfile",
-    "HasRoundFaces",
     "Housing",
     "Imported",
     "Layer",
@@ -61,7 +60,6 @@ __all__ = [
     "RingBed",
     "RingCompliance",
     "RingPoints",
-    "RoundFace",
     "Section",
     "Shaft",
     "Solid",

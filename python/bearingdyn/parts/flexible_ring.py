@@ -9,12 +9,10 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-import scipy
 
 from bearingdyn.bearing import BallBearing, Waviness
 from bearingdyn.checks import instance, one_of, positive, require, whole
-from bearingdyn.cms import RoundFace, Superelement, Viscoelastic
-from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.bore_shape import BoreShape
@@ -25,17 +23,16 @@ from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import HIGHEST, Cylinder, Face, Footprint, Groove, Line, Where
 from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
-from bearingdyn.parts.ring_support import RingBed, RingPoints, held_by
-from bearingdyn.types import Array
+from bearingdyn.parts.ring_element import upon_supports, with_folded
+from bearingdyn.parts.ring_section import ring_section
+from bearingdyn.parts.ring_support import RingBed, RingPoints
 from bearingdyn.units import takes
 
 F_HEARD = 6e3  # Hz, up to which a ring's receptances are right unless f_max says otherwise
 # of the ball's diameter, the height of shoulders of deep groove bearings, and of angular contact ones
 SHOULDER = 0.16
 SHOULDER_ANGULAR = 0.3
-STIFF = 100e3  # Hz, the least natural frequency of what follows at once
 NEGLIGIBLE = 1e-9  # of the largest folded compliance
-UNDER = (0.15, 0.45)  # of the ring's height: lines of the mesh under the balls
 
 
 @takes(r_inner="m", r_outer="m", width="m", arm="m", groove="m", groove_radius="m", f_max="Hz")
@@ -198,10 +195,11 @@ class FlexibleRing:
             return
         length, wall = 2.0 * self.footprint.half_length, self.wall
         if not length < 2.0 * wall:
+            least = _just_above(self.r_outer + 0.5 * length - wall, 1e-6)
             raise ValueError(
                 f"r_outer is {self.r_outer}; the ring is {1e3 * wall:.3g} mm thick under a contact "
                 f"{1e3 * length:.3g} mm long, and Hertz's law is of thick bodies: make r_outer at least "
-                f"{self.r_outer + 0.5 * length - wall:.6g} m, or state a smaller load"
+                f"{least:.9g} m, or state a smaller load"
             )
         if not length < self.track:
             raise ValueError(
@@ -333,7 +331,8 @@ class FlexibleRing:
         if not bore.interference >= least:
             raise ValueError(
                 f"bore.interference is {bore.interference:g} m; the ring parts from the bore at "
-                f"{math.degrees(psi):.3g} degrees: make it at least {least:.3g} m on the radius"
+                f"{math.degrees(psi):.3g} degrees: "
+                f"make it at least {_just_above(least, 1e-9):.9g} m on the radius"
             )
         return tuple(
             Waviness("outer", n, math.hypot(a, b) * float(c[0, 2] / c[2, 2]), phase=math.atan2(-b, a))
@@ -365,13 +364,14 @@ class FlexibleRing:
             outer, reach = self.layer.r_outer, 0.5 * self.layer.width
             regions.append(Region((self.r_outer, outer), (-reach, reach), self.layer.material, graded=True))
         section = None
-        if self.groove_radius is None and self.footprint is not None:
-            section = self._mesh([q.rectangle for q in regions])
+        if self.groove_radius is not None or self.footprint is not None:
+            section = ring_section(
+                [q.rectangle for q in regions], self.refinement, track, self.footprint, self.groove_radius
+            )
         if self.groove_radius is not None:
             face = Where(
                 lambda r, z: (np.abs(z) <= track * (1 + 1e-9)) & (r <= self.r_inner + 1.01 * self.depth)
             )
-            section = self._grooved([q.rectangle for q in regions], track)
         assert self.arm is not None
         assert self.order is not None
         grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0, footprint=self.footprint)}
@@ -391,34 +391,6 @@ class FlexibleRing:
             grooves=grooves,
             section=section,
         )
-
-    def _mesh(self, rectangles: list[Rectangle], track: float | None = None) -> RevolutionMesh:
-        """The mesh of the rectangles, finer under the balls, with lines near the edges of the track."""
-        half = 0.5 * self.track if track is None else track
-        near = np.linspace(-half, half, 9)
-        if self.footprint is None:
-            return revolution_mesh(rectangles, self.refinement, z_near=near)
-        height = self.r_outer - self.r_inner
-        r_cuts = [self.r_inner + share * height for share in UNDER]
-        lines, edges = self.footprint.lines(), near[[0, -1]]
-        if self.groove_radius is not None:  # the flanks of the groove, whose arcs are drawn by parabolas
-            flanks = []
-            for end, line in zip(edges, (lines[0], lines[-1]), strict=True):
-                count = max(1, math.ceil(4.0 * abs(end - line) / half))
-                flanks.append(np.linspace(end, line, count + 1)[:-1])
-            edges = np.concatenate(flanks)
-        if self.layer is not None:  # cuts would be graded towards, as the rubber's edges are
-            return revolution_mesh(rectangles, self.refinement, r_cuts, z_near=[*edges, *lines])
-        return revolution_mesh(rectangles, self.refinement, r_cuts, lines, edges)
-
-    def _grooved(self, rectangles: list[Rectangle], track: float) -> RevolutionMesh:
-        """The mesh of the rectangles, the ring's lines bent so that the innermost follows the groove."""
-        radius = self.groove_radius or 0.0
-        mesh = self._mesh(rectangles, track)
-        z = np.clip(mesh.z, -track, track)
-        bottom = np.sqrt(radius**2 - z**2) - math.sqrt(radius**2 - track**2)
-        share = (self.r_outer - mesh.r) / (self.r_outer - self.r_inner)
-        return replace(mesh, r=mesh.r + np.maximum(share, 0.0) * bottom)
 
     def profile(self) -> list[Profile]:
         """What the plane x = 0 shows of it; see Revolved.profile."""
@@ -462,40 +434,12 @@ class FlexibleRing:
         """
         element = self.body.superelement()
         if self._supports:
-            element = self._upon_supports(element)
-        if self.bearing is not None:
-            element = self._with_folded(element)
+            element = upon_supports(element, self._supports, self.r_outer, self.width)
+        if self.footprint is not None:
+            element = with_folded(
+                element, self.compliance, self._folded, self.footprint.normal, self.f_max, self.damping
+            )
         return replace(element, faces=self.round_faces())
-
-    def _upon_supports(self, element: Superelement) -> Superelement:
-        """The free ring between its supports and the rigid interface "outer" on which they stand."""
-        outside = element.raceways["outside"]
-        K, C = held_by(self._supports, outside.rows, outside.series, self.r_outer, self.width)
-        wide = _wider(element, 6, "raceway")
-        return replace(
-            wide,
-            K=wide.K + K,
-            C=wide.C + C,
-            interfaces={**wide.interfaces, "outer": np.arange(element.n, element.n + 6)},
-        )
-
-    def _with_folded(self, element: Superelement) -> Superelement:
-        """What the orders beyond do at the balls, in coordinates of its own, and the give of the race."""
-        assert self.bearing is not None
-        assert self.footprint is not None
-        rate = 2 * math.pi * max(STIFF, 10.0 * self.f_max)
-        count = len(self._folded)
-        own = np.arange(element.n, element.n + count)
-        wide = _wider(element, count, *element.raceways)
-        M, C, K = wide.M.copy(), wide.C.copy(), wide.K.copy()
-        M[own, own], C[own, own], K[own, own] = 1.0, 2.0 * self.damping * rate, rate**2
-        raceway = wide.raceways["raceway"]
-        rows = raceway.rows.copy()
-        for k, (p, sine, c) in zip(own, self._folded, strict=True):
-            for axial, share in enumerate(self.footprint.normal):
-                rows[raceway.series.index(axial, p, sine), k] = share * rate * math.sqrt(c)
-        carries = replace(raceway, rows=rows, give=self.compliance.give, Z=self.bearing.Z)
-        return replace(wide, M=M, C=C, K=K, raceways={**wide.raceways, "raceway": carries})
 
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""
@@ -504,32 +448,6 @@ class FlexibleRing:
         return replace(outline, rows=np.hstack([outline.rows, none]))
 
 
-def _wider(element: Superelement, count: int, *raceways: str) -> Superelement:
-    """A part with `count` more coordinates, without mass and force, and those raceways that are named."""
-    none = np.zeros((count, count))
-
-    def wider(A: Array) -> Array:
-        return np.asarray(scipy.linalg.block_diag(A, none))
-
-    def padded(rows: Array) -> Array:
-        return np.hstack([rows, np.zeros((len(rows), count))])
-
-    def material(v: Viscoelastic) -> Viscoelastic:
-        strain = v.concentration
-        more = None if strain is None else np.concatenate([strain, np.ones(count)])
-        return replace(v, H=wider(v.H), concentration=more)
-
-    return replace(
-        element,
-        M=wider(element.M),
-        C=wider(element.C),
-        G=wider(element.G),
-        K=wider(element.K),
-        N=None if element.N is None else wider(element.N),
-        outputs={name: padded(r) for name, r in element.outputs.items()},
-        viscoelastic=tuple(map(material, element.viscoelastic)),
-        raceways={
-            name: replace(element.raceways[name], rows=padded(element.raceways[name].rows))
-            for name in raceways
-        },
-    )
+def _just_above(value: float, step: float) -> float:
+    """The next whole number of steps, so that what a message names does."""
+    return (math.floor(value / step) + 1) * step

@@ -36,52 +36,30 @@ from bearingdyn.fem import (
     NoBalance,
     RevolutionMesh,
     assemble_harmonic,
-    deviatoric_strains,
     factorise,
-    lowest_modes,
     revolution_mesh,
 )
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
-from bearingdyn.parts.outline import Outline, azimuths, revolved
+from bearingdyn.parts.mesh_waves import check_waves
+from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
-from bearingdyn.parts.profile import Matter, Profile, loops, mirrored
+from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.raceway_shapes import Order, PortShapes, port_shapes
 from bearingdyn.parts.regions import Patch, Region, is_rubber
 from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_boundaries
+from bearingdyn.parts.revolved_drawing import section_profile, surface_outline
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.revolved_full import full_basis, full_model
+from bearingdyn.parts.revolved_modes import RevolvedModes, modes_of_order
 from bearingdyn.parts.revolved_shapes import ShapeMaker
+from bearingdyn.parts.revolved_strain import concentrations, strain_of_motion
 from bearingdyn.parts.shape_moduli import moduli_at, shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.static_modulus import quasi_static
 from bearingdyn.parts.strain import Strain
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
-
-_AZIMUTHS = 16  # of a quarter turn: ln γ averages to 1e-4 over them
-
-
-@dataclass(frozen=True, eq=False)
-class RevolvedModes:
-    """Undamped modes of a `Revolved` part, of one Fourier order.
-
-    Parameters
-    ----------
-    order
-        n.
-    frequency
-        (m,), Hz, rising.
-    shapes
-        (m, nodes, 3), the amplitudes U, V, W of unit modal mass at the mesh's nodes: u_r = U cos nφ, u_θ = V
-        sin nφ (V itself for n = 0), u_z = W cos nφ. For n >= 1 each mode is double.
-    """
-
-    order: int
-    frequency: Array
-    shapes: Array
-
-    __repr__ = short
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +103,8 @@ class Revolved:
     ------
     ValueError
         For regions that overlap, faces that are not part of the body or share a node, a point outside the
-        section, a mesh whose regions do not fit, and values outside their range.
+        section, a mesh whose regions do not fit, values outside their range, and, with grooves, an f_max
+        whose shear waves the mesh does not hold.
 
     References
     ----------
@@ -154,7 +133,9 @@ class Revolved:
         if self.moduli is not None:
             object.__setattr__(self, "moduli", check_moduli(self.moduli))
         self._check_regions()
-        _ = self.mesh  # refuses regions that overlap and faces that do not exist
+        mesh = self.mesh  # refuses regions that overlap and faces that do not exist
+        if self.grooves and self.f_max > 0:
+            check_waves(mesh, self.regions, self.f_max, self.refinement)
         owner: dict[int, str] = {}
         for name, nodes in self._boundaries.nodes():
             for node in nodes.tolist():
@@ -607,7 +588,7 @@ class Revolved:
             interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(self.interfaces)},
             outputs=rows,
             viscoelastic=tuple(
-                Viscoelastic(m, P @ h @ P, *self._strain_scale(j))
+                Viscoelastic(m, P @ h @ P, *concentrations(self.mesh, self._soft(j), self._placed(), n))
                 for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
             ),
             faces=self.round_faces(),
@@ -634,30 +615,6 @@ class Revolved:
                 owner[i] = next(j for j, m in enumerate(rubbers) if q.material is m)
         return rubbers, owner
 
-    def _strain_scale(self, owner: int) -> tuple[float, Array]:
-        """Volume of a rubber, m³, and χ of each coordinate (n,), logarithmic over rms strain of its shape."""
-        elements, scale = self._soft(owner), np.ones(self._size)
-        volume = np.zeros(0)
-        for h, Psi, places in self._placed():
-            e, volume = deviatoric_strains(self.mesh, h.order, h.components, h.complete(Psi.copy()))
-            e, volume = e[elements], volume[elements].ravel()
-            even, odd = (
-                2 * (part**2).sum(axis=2).reshape(volume.size, -1) for part in (e[:, :, :4], e[:, :, 4:])
-            )
-            phi = np.zeros(1) if h.order == 0 else (np.arange(_AZIMUTHS) + 0.5) * np.pi / _AZIMUTHS / h.order
-            cos2, sin2 = np.cos(h.order * phi) ** 2, np.sin(h.order * phi) ** 2
-            if h.order == 0:
-                sin2 = np.ones(1)
-            floor = 1e-9 * max(float((volume @ (even + odd)).max()), 1e-300)
-            for k in range(even.shape[1]):
-                if not volume @ (even[:, k] + odd[:, k]) > floor:
-                    continue
-                squares = np.outer(even[:, k], cos2) + np.outer(odd[:, k], sin2)
-                chi = Strain.of_field(np.sqrt(squares).ravel(), np.repeat(volume, phi.size)).concentration
-                for index, _ in places:
-                    scale[index[k]] = chi
-        return 2 * np.pi * float(volume.sum()), scale
-
     def strain_field(self, motion: ArrayLike, modulus: float | None = None) -> tuple[Array, Array]:
         """Shear strain amplitude γ = √(2 e:e) of the rubber under motions of the interfaces, point by point.
 
@@ -680,26 +637,16 @@ class Revolved:
             raise ValueError(
                 f"motion has shape {q.shape}; it must be ({count},), finite: six of each interface"
             )
-        elements = self._soft()
         levels = shape_moduli(self.regions, self.moduli if modulus is None else (modulus,))
-        phi = np.arange(4 * _AZIMUTHS) * 2 * np.pi / (4 * _AZIMUTHS)
         rigid = Boundaries(self._boundaries.faces, {})
-        total: Any = 0.0
-        volume = np.zeros(0)
-        for order, components, copies in rigid.families():
-            h = self._harmonic(order, components)
-            u, _ = self._shape_maker().constraint_shapes(h, levels[0])
-            e, volume = deviatoric_strains(self.mesh, order, components, h.complete(u.copy()))
-            e, volume = e[elements], volume[elements].ravel()
-            for copy in range(copies):
-                index, sign = rigid.place(h, copy)
-                own = e @ (sign * q[index])
-                cos, sin = np.cos(order * phi), np.sin(order * phi)
-                even, odd = (sin, -cos) if copy else (cos, sin if order else np.ones_like(phi))
-                turn = np.stack([even] * 4 + [odd] * 2, axis=-1)
-                total = total + turn[:, None, :] * own.reshape(volume.size, 6)
-        gamma = np.sqrt(2.0 * (np.abs(total) ** 2).sum(axis=-1))
-        return gamma, 2 * np.pi * volume
+
+        def placed() -> Iterator[tuple[Harmonic, Array, list[tuple[Index, Array]]]]:
+            for order, components, copies in rigid.families():
+                h = self._harmonic(order, components)
+                u, _ = self._shape_maker().constraint_shapes(h, levels[0])
+                yield h, u, [rigid.place(h, copy) for copy in range(copies)]
+
+        return strain_of_motion(self.mesh, self._soft(), placed(), q)
 
     def strain(self, motion: ArrayLike, modulus: float | None = None) -> Strain:
         """The rubber's strain in one number, under motions as in `strain_field`."""
@@ -718,19 +665,9 @@ class Revolved:
 
     def profile(self) -> list[Profile]:
         """What the plane x = 0 shows of it: the section of each region, above the axis and below."""
-        mesh = self.mesh
         faces = self._boundaries.faces
         origin = next(iter(faces.values())).reference if faces else 0.0
-        shown = []
-        for k, region in enumerate(self.regions):
-            own = replace(
-                mesh, elements=mesh.elements[mesh.region == k], region=mesh.region[mesh.region == k]
-            )
-            sides = own.outline_sides
-            matter: Matter = "metal" if isinstance(region.material, Elastic) else "rubber"
-            for loop in loops(np.vstack([sides[:, :2], sides[:, 1:]])):
-                shown += mirrored(np.stack([mesh.z[loop] - origin, mesh.r[loop]], axis=-1), matter)
-        return shown
+        return section_profile(self.mesh, self.regions, origin)
 
     def outline(self) -> Outline:
         """Its surface, revolved.
@@ -740,20 +677,7 @@ class Revolved:
         ValueError
             If moduli cannot be chosen for a material.
         """
-        sides = self.mesh.outline_sides
-        halves = np.vstack([sides[:, :2], sides[:, 1:]])
-        points, faces, nodes = revolved(self.mesh.r, self.mesh.z, halves)
-        n = self._size
-        rows = np.zeros((nodes.size, len(azimuths()), 3, n))
-        for h, Psi, places in self._placed():
-            shapes = np.zeros((nodes.size, 3, Psi.shape[1]))
-            shapes[:, list(h.components)] = h.complete(Psi.copy()).reshape(
-                self.mesh.r.size, len(h.components), -1
-            )[nodes]
-            for copy, (index, sign) in enumerate(places):
-                turned = h.turned(azimuths(), sine=copy == 1)
-                rows[..., index] += sign * (turned @ shapes[:, None])
-        return Outline(points, faces, rows.reshape(-1, n))
+        return surface_outline(self.mesh, self._placed(), self._size)
 
     def modes(
         self, order: int, count: int, modulus: float | None = None, fixed: Iterable[str] = ()
@@ -785,21 +709,11 @@ class Revolved:
         for name in names:
             if name not in self.interfaces:
                 raise ValueError(f"fixed has {name!r}; the interfaces are {sorted(self.interfaces)}")
-        rate = self._shape_maker().slow_rate(shear)
-        found: list[tuple[float, Array]] = []
-        for components in (AXIAL, TORSION) if order == 0 else ((0, 1, 2),):
-            h = self._harmonic(order, components)
-            held = [h.coordinates(self._boundaries.faces[name].nodes) for name in names]
-            free = np.setdiff1d(h.free, np.concatenate(held)) if held else h.free
-            K, M = h.stiffness(self._bulk, shear)[free][:, free], h.mass_matrix(self._density)[free][:, free]
-            frequency, phi = lowest_modes(K + rate**2 * M, M, n_modes=count)
-            u = np.zeros((h.n, frequency.size))
-            u[free] = phi
-            shapes = np.zeros((frequency.size, self.mesh.r.size, 3))
-            shapes[:, :, list(components)] = (
-                h.complete(u).reshape(-1, len(components), frequency.size).transpose(2, 0, 1)
-            )
-            omega = np.sqrt(np.maximum((2 * np.pi * frequency) ** 2 - rate**2, 0.0))
-            found += zip((omega / (2 * np.pi)).tolist(), shapes, strict=True)
-        found = sorted(found, key=lambda mode: mode[0])[:count]
-        return RevolvedModes(order, np.array([f for f, _ in found]), np.stack([u for _, u in found]))
+        return modes_of_order(
+            self._harmonic,
+            order,
+            count,
+            [self._boundaries.faces[name].nodes for name in names],
+            (self._bulk, shear, self._density),
+            self._shape_maker().slow_rate(shear),
+        )

@@ -61,9 +61,8 @@ class ShapeMaker:
 
         Internal are the differences of constraint shapes between moduli, which vanish on the boundaries,
         and the modes with the interfaces held. They are made modes of each other, of unit modal mass, and
-        those
-        without energy of their own are dropped (torsion has none: it changes no volume, so its shape does
-        not depend on the modulus).
+        those without energy of their own are dropped (torsion has none: it changes no volume, so its shape
+        does not depend on the modulus).
         """
         static, k = self.constraint_shapes(h, levels[0])
         K, M = h.stiffness(self.bulk, levels[0]), h.mass_matrix(self.density)

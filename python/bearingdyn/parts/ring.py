@@ -13,8 +13,9 @@ from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.regions import Region
-from bearingdyn.parts.revolved import Revolved, RevolvedModes
+from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
+from bearingdyn.parts.revolved_modes import RevolvedModes
 from bearingdyn.units import takes
 
 

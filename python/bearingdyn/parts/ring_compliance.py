@@ -5,10 +5,9 @@ Under loads Q of Z balls, equally spaced, the race sinks at ball i by Σ_j A_ij 
     A_ij = Σ_n C_n cos n(ψ_i − ψ_j) − δ_ij Σ_n h_n,
 
 C_n the compliance of order n of the ring and h_n that of the half-space under the same footprint. At the
-balls the
-orders n and p are alike if n ± p is a multiple of Z: cos n(ψ_i − ψ_j) = cos p(ψ_i − ψ_j). What the orders
-beyond the highest carried one add is therefore the same as a compliance of the orders p = 0…Z/2, exactly, and
-what these have in common is one at each ball by itself: its give.
+balls the orders n and p are alike if n ± p is a multiple of Z: cos n(ψ_i − ψ_j) = cos p(ψ_i − ψ_j). What the
+orders beyond the highest carried one add is therefore the same as a compliance of the orders p = 0…Z/2,
+exactly, and what these have in common is one at each ball by itself: its give.
 """
 
 from __future__ import annotations
@@ -42,8 +41,7 @@ class RingCompliance:
         Highest order that the ring carries by itself.
     ring, half_space
         (m,) compliance C_n and h_n of the orders n = 0…m − 1, m/N, of a unit load on the coefficient along
-        the
-        line of contact. C_n of orders 0 and 1 of a ring that nothing holds is that of its rigid motion, nan.
+        the line of contact. C_n of order 1 of a ring that nothing holds is nan: it moves as a whole.
     give
         What the orders beyond `order` and the half-space leave at each ball by itself, m/N.
     folded

@@ -1,0 +1,69 @@
+"""The section of a flexible ring meshed: finer under the balls, and bent to its groove."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bearingdyn.fem import Rectangle, RevolutionMesh, revolution_mesh
+from bearingdyn.parts.revolved_faces import Footprint
+
+UNDER = (0.15, 0.45)  # of the ring's height: lines of the mesh under the balls
+
+
+def ring_section(
+    rectangles: Sequence[Rectangle],
+    refinement: float,
+    half_track: float,
+    footprint: Footprint | None,
+    groove_radius: float | None,
+) -> RevolutionMesh:
+    """The mesh of a ring, and of the rubber around it, with lines near the edges of its track.
+
+    Parameters
+    ----------
+    rectangles
+        The ring's own first.
+    half_track
+        Half the axial width of the face that carries the balls, m.
+    footprint
+        Where the balls touch; None: not known.
+    groove_radius
+        Of the groove's section, m; None: a plain rectangle.
+    """
+    mesh = _lines(rectangles, refinement, half_track, footprint, groove_radius is not None)
+    if groove_radius is None:
+        return mesh
+    # the ring's lines, bent so that the innermost follows the groove
+    r_inner, r_outer = rectangles[0].r
+    z = np.clip(mesh.z, -half_track, half_track)
+    bottom = np.sqrt(groove_radius**2 - z**2) - math.sqrt(groove_radius**2 - half_track**2)
+    share = (r_outer - mesh.r) / (r_outer - r_inner)
+    return replace(mesh, r=mesh.r + np.maximum(share, 0.0) * bottom)
+
+
+def _lines(
+    rectangles: Sequence[Rectangle],
+    refinement: float,
+    half: float,
+    footprint: Footprint | None,
+    grooved: bool,
+) -> RevolutionMesh:
+    near = np.linspace(-half, half, 9)
+    if footprint is None:
+        return revolution_mesh(rectangles, refinement, z_near=near)
+    r_inner, r_outer = rectangles[0].r
+    r_cuts = [r_inner + share * (r_outer - r_inner) for share in UNDER]
+    lines, edges = footprint.lines(), near[[0, -1]]
+    if grooved:  # the flanks of the groove, whose arcs are drawn by parabolas
+        flanks = []
+        for end, line in zip(edges, (lines[0], lines[-1]), strict=True):
+            count = max(1, math.ceil(4.0 * abs(end - line) / half))
+            flanks.append(np.linspace(end, line, count + 1)[:-1])
+        edges = np.concatenate(flanks)
+    if len(rectangles) > 1:  # cuts would be graded towards, as the rubber's edges are
+        return revolution_mesh(rectangles, refinement, r_cuts, z_near=[*edges, *lines])
+    return revolution_mesh(rectangles, refinement, r_cuts, lines, edges)
