@@ -174,7 +174,7 @@ def test_rings_that_clamp_their_balls():
     y = [replace(DEEP, clearance=float(p)).displacement([0, -500.0, 0, 0, 0, 0])[1] for p in play]
     assert (np.diff(y) > 0).all()
     assert abs(y[2] - y[1]) < 2e-8
-    with pytest.raises(ValueError, match=r"clearance is -0.0002; balls squeezed by more than Dw/50"):
+    with pytest.raises(ValueError, match=r"clearance is -0.0002; it must be at least -Dw/50, -0.0001588 m"):
         replace(DEEP, clearance=-2e-4)
 
 
