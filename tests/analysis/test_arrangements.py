@@ -256,6 +256,20 @@ def test_a_march_has_the_line_of_the_loaded_cage():
     assert abs(line - 253.96) > 2
 
 
+def test_the_balls_that_are_pressed_drive_the_cage():
+    """Of nine balls four are pressed, to .3987 and .3988; all nine have a mean of .4031."""
+    app = rotor_on(DEEP, (0, -500.0, 50.0, 0, 0, 0))
+    app.ground("rotor.centre", [0, 0, 0, 1e5, 1e5, 0])
+    eq, speed = bd.equilibrium(app), 500.0
+    running = Running(DEEP, speed)
+    balls = running.balls(running.displacement(DEEP.coefficients().T @ eq.bearings["set"].g))
+    orbit, pressed = balls.orbit / speed, balls.Q_i > 0
+    assert pressed.sum() == 4
+    assert (
+        orbit[pressed].min() < bd.cage_ratios(eq, speed)["set"] < orbit[pressed].max() < orbit.mean() - 3e-3
+    )
+
+
 def test_a_cage_that_no_ball_drives_keeps_its_nominal_ratio():
     """1 µm of clamping, 3000 rad/s: the balls are thrown off the inner race, and nothing else loads them."""
     clamped = replace(DEEP, clearance=-1e-6)
