@@ -292,7 +292,10 @@ def labelled(case: Mapping[str, object]) -> dict[str, float]:
 
 
 def write_records(count: int, folder: Path, seconds: float = 10.0) -> list[study.Case]:
-    """So many labelled records on all cores; what is there already is not computed again."""
+    """So many labelled records on all cores; what is there already is not computed again.
+
+    A record of 10 s was 7.4 s of one core's time.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     cases = [{"seed": seed, "seconds": seconds, "folder": str(folder)} for seed in range(count)]
     return study.sweep(labelled, cases, store=folder / "truth")
@@ -304,9 +307,10 @@ is; that the inner race's line has its strong sidebands at twice the shaft's spe
 balls, and the sensor feels the vertical part of a force that goes around); the order of the level.
 What it cannot: the spall's size from the level. It takes a ball for a point that drops by w²/4D into the
 spall, whose width is that of the contact; the edges' true shape is not known, two assemblies of one rig
-differ by some dB in their housing's modes, and the level grows here with the square of the width while
-the gain, fitted to one spall, stands for all of that. Harmonics beyond the second depend on how the
-housing's modes beat, and are wrong by 10 dB and more.
+differ by some dB in their housing's modes, and the gain, fitted to one spall, stands for all of that. At
+7, 14 and 21 thousandths of an inch the model has 0.52, 2.54 and 2.76 g on the outer race and 0.41, 1.79 and
+1.80 g on the inner one: the level does not tell 14 from 21. Harmonics beyond the second depend on how the
+housing's modes beat: the third of the inner race is 15 dB too high.
 """
 
 

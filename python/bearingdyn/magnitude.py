@@ -180,7 +180,7 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             "of Dw",
             (-0.02, 0.1),
             (-0.005, 0.04),
-            "radial clearances (ISO 5753) are below Dw/80, and balls clamped by Dw/200 have 4.2 GPa",
+            "radial clearances (ISO 5753) are below Dw/80, and balls clamped by Dw/200 have 2.4 GPa",
             by_size=False,
         ),
         "mount clearance": Magnitude(

@@ -93,10 +93,11 @@ def test_thrust_reversal_passes_from_one_row_to_the_other_without_a_jump():
     z = np.array([s.displacement("rotor.centre")[2] for s in states])
     slope = np.diff(z) / np.diff(thrust)
     K = pair.stiffness([0.0] * 6)[2, 2]
-    # 2.83 of the preload open one row; the other alone has about half the stiffness
+    # 2.83 of the preload open one row, and the other, pressed as hard, is softer than both: 1.28 is found. A
+    # step of 50 N from there changes the slope by .11 of itself
     assert (slope > 0).all()
-    assert slope.max() < 2.5 / K
-    assert np.abs(np.diff(slope)).max() < 0.35 * slope.max()
+    assert 1 / K < slope.max() < 1.4 / K
+    assert np.abs(np.diff(slope)).max() < 0.15 * slope.max()
     np.testing.assert_allclose(z, -z[::-1], rtol=0, atol=1e-9 * z.max())
     carried = np.array([[s.bearings[f"set-{k}"].force[2] for k in (1, 2)] for s in states])
     np.testing.assert_allclose(carried.sum(axis=1), thrust, rtol=0, atol=1e-6)
@@ -114,9 +115,11 @@ def test_the_march_of_a_reversal_has_no_jump():
     assert z.max() > 2e-6
     assert z.min() < -2e-6
     static = [pair.displacement([0, 0, F, 0, 0, 0])[2] for F in (500.0, -500.0)]
-    assert z.max() == pytest.approx(static[0], rel=0.05)
-    assert z.min() == pytest.approx(static[1], rel=0.05)
-    # 1 kN in 20 ms is the fastest thing that moves it: 2.2 times the stiff slope is the soft one's
+    # at the turn of the ramp it swings over by .6 %
+    assert z.max() == pytest.approx(static[0], rel=0.01)
+    assert z.min() == pytest.approx(static[1], rel=0.01)
+    # the ramp of 50 kN/s turns round at 10 ms: it swings to three times its rate, the soft slope 1.3 times
+    # the stiff one; 2.8 are found
     steady = 500.0 / 1e-2 / pair.stiffness([0.0] * 6)[2, 2] * 5e-6
     assert np.abs(np.diff(z[200:])).max() < 4 * steady
 
@@ -174,7 +177,7 @@ def test_rings_that_clamp_their_balls():
     y = [replace(DEEP, clearance=float(p)).displacement([0, -500.0, 0, 0, 0, 0])[1] for p in play]
     assert (np.diff(y) > 0).all()
     assert abs(y[2] - y[1]) < 2e-8
-    with pytest.raises(ValueError, match=r"clearance is -0.0002; balls squeezed by more than Dw/50"):
+    with pytest.raises(ValueError, match=r"clearance is -0.0002; it must be at least -Dw/50, -0.0001588 m"):
         replace(DEEP, clearance=-2e-4)
 
 
@@ -222,8 +225,10 @@ def test_the_cage_of_an_axially_loaded_6202_is_faster_than_its_ratio():
     by["loaded"] = moved.system.bearings[0].bearing
     bpfo = {name: b.Z * b.cage_ratio * speed / (2 * math.pi) for name, b in by.items()}
     assert bpfo["nominal"] == pytest.approx(253.96, abs=0.01)
-    # the two hypotheses of race control, between which the reference lies, are 0.033 Hz apart
-    assert bpfo["loaded"] == pytest.approx(256.63, abs=0.02)
+    # outer race control, ours, and inner race control, 0.033 Hz apart: the reference lies between
+    balls = Running(replace(ball, damping=0.0), speed, "inner")
+    inner = 8 * balls.balls(balls.displacement((0, 0, 180.0, 0, 0, 0))).orbit.mean() / (2 * math.pi)
+    assert inner < 256.63 < bpfo["loaded"] < inner + 0.04
     assert bd.cage_ratios(eq, speed)["set"] == by["loaded"].cage_ratio
 
 
@@ -251,6 +256,31 @@ def test_a_march_has_the_line_of_the_loaded_cage():
     assert abs(line - 253.96) > 2
 
 
+def test_the_balls_that_are_pressed_drive_the_cage():
+    """Of nine balls four are pressed, to .3987 and .3988; all nine have a mean of .4031."""
+    app = rotor_on(DEEP, (0, -500.0, 50.0, 0, 0, 0))
+    app.ground("rotor.centre", [0, 0, 0, 1e5, 1e5, 0])
+    eq, speed = bd.equilibrium(app), 500.0
+    running = Running(DEEP, speed)
+    balls = running.balls(running.displacement(DEEP.coefficients().T @ eq.bearings["set"].g))
+    orbit, pressed = balls.orbit / speed, balls.Q_i > 0
+    assert pressed.sum() == 4
+    assert (
+        orbit[pressed].min() < bd.cage_ratios(eq, speed)["set"] < orbit[pressed].max() < orbit.mean() - 3e-3
+    )
+
+
+def test_a_cage_that_no_ball_drives_keeps_its_nominal_ratio():
+    """1 µm of clamping, 3000 rad/s: the balls are thrown off the inner race, and nothing else loads them."""
+    clamped = replace(DEEP, clearance=-1e-6)
+    eq = bd.equilibrium(rotor_on(clamped))
+    assert (eq.bearings["set"].loads > 0).all()
+    fast = Running(clamped, 3000.0)
+    assert not fast.balls(fast.displacement([0.0] * 6)).Q_i.any()
+    assert bd.cage_ratios(eq, 3000.0)["set"] == clamped.cage_ratio
+    assert bd.cage_ratios(eq, 300.0)["set"] == pytest.approx(clamped.cage_ratio, rel=1e-6)
+
+
 @pytest.mark.parametrize("turning", ["inner", "outer", (1.0, -0.5)])
 def test_loaded_cages_know_which_ring_turns(turning):
     """Slowly, the formula ½[ω_i(1 − γ) + ω_o(1 + γ)] at the loaded angle."""
@@ -272,8 +302,8 @@ def test_loaded_cages_know_which_ring_turns(turning):
 def test_bad_input_is_named():
     with pytest.raises(ValueError, match="speed is 0"):
         bd.cage_ratios(bd.equilibrium(rotor_on(DEEP, (0, -9.0, 0, 0, 0, 0))), 0.0)
-    with pytest.raises(ValueError, match="mirrored is 1; it must be True or False"):
-        rotor_on(ROW, mirrored=1)
+    with pytest.raises(ValueError, match="mirrored is 2; it must be True or False"):
+        rotor_on(ROW, mirrored=2)
     with pytest.raises(ValueError, match="arrangement is 'DBX'"):
         Triplet(ROW, "DBX", WIDTH)
     with pytest.raises(ValueError, match="tandem has no preload"):

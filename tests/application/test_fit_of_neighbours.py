@@ -178,6 +178,18 @@ def test_two_bearings_in_one_place_of_a_shaft_are_refused(apart):
     app.bearing("meant", BALL, **second, fits=False)
 
 
+def test_rows_of_a_set_do_not_overlap():
+    """Rows of 15 mm, 10 mm apart; nothing of the set is hung where one row does not fit."""
+    row = bearing("7205")
+    app = bd.Application()
+    app.add("s", bd.Shaft([bd.Section(0.1, 0.025)], {"a": 0.05}, f_max=1e3))
+    with pytest.raises(ValueError, match=r"'p-2' and 'p-1' sit 10 mm apart .* need 15 mm"):
+        app.bearing("p", bd.bearing.Pair(row, "DB", distance=0.010), inner="s.a", outer="ground")
+    assert not app.plan.bearings
+    app.bearing("p", bd.bearing.Pair(row, "DB", distance=0.015), inner="s.a", outer="ground")
+    assert list(app.plan.bearings) == ["p-1", "p-2"]
+
+
 @pytest.mark.parametrize(("case", "found"), [c[1:] for c in REFUSED], ids=[c[0] for c in REFUSED])
 def test_reduced_parts_know_their_faces(case, found):
     """What a part knew of radius and width its superelement knows, and refuses alike."""

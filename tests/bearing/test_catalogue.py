@@ -158,7 +158,7 @@ def test_estimate_becomes_a_bearing():
         (lambda: estimate(0.03, 0.06, 0.01, kind="roller"), "kind"),
         (lambda: estimate(0.03, 0.06, 0.01, contact_angle=0.3), "contact_angle"),
         (lambda: estimate(0.03, 0.06, 0.01, kind="angular contact"), "contact_angle"),
-        (lambda: bearing("6205", clearance=-1e-3), "clearance"),
+        (lambda: bearing("6205", clearance=-1.01 * 7.94e-3 / 50), "clearance"),
         (lambda: bearing("7205", clearance=1e-5), "clearance"),
         (lambda: bearing("6999", clearance=1e-5), "designation"),
     ],

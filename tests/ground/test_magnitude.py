@@ -75,7 +75,7 @@ def test_clearance_in_micrometres_is_refused(clearance):
 
 
 def test_balls_that_would_yield_and_clearance_that_is_eaten_are_told():
-    with pytest.raises(ValueError, match=r"clearance is -0.001; balls squeezed by more than Dw/50.* µm"):
+    with pytest.raises(ValueError, match=r"clearance is -0.001; it must be at least -Dw/50.* µm"):
         bd.BallBearing(**BALLS, clearance=-1e-3)
     with pytest.warns(UnusualMagnitude, match=r"clearance.*clamped by Dw/200 have 4.2 GPa"):
         bd.BallBearing(**BALLS, clearance=-6e-5)

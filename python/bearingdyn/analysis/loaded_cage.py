@@ -104,6 +104,9 @@ def _ratio(term: BearingTerm, bearing: BallBearing, state: BearingState, speed: 
         return bearing.cage_ratio
     balls = running.balls(running.displacement(_load(smooth, state)))
     pressed = np.minimum(balls.Q_i, balls.Q_o)
+    # clamped balls that nothing else loads may be thrown off the inner race
+    if not pressed.sum() > 0:
+        return bearing.cage_ratio
     return float((pressed @ balls.orbit) / pressed.sum() / speed)
 
 

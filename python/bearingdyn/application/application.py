@@ -313,7 +313,8 @@ class Application:
         self.plan.check_new("bearing", name)
         joints: list[BearingJoint] = []
         ends = self.plan.interface(inner), self.plan.raceway_or_interface(outer)
-        require(isinstance(mirrored, bool), "mirrored", mirrored, "it must be True or False")
+        truth("mirrored", mirrored)
+        truth("fits", fits)
         if isinstance(bearing, RowSet) and self.plan.raceway(ends[1]) is not None:
             raise ValueError(
                 f"bearing {name!r}: {ends[1]} carries one row of balls, and a {type(bearing).__name__} has "
@@ -322,11 +323,12 @@ class Application:
         for joint in _hung(name, bearing, ends, offset, mirrored):
             self.plan.check_new("bearing", joint.name)
             self.plan.check_raceway(joint)
-            if truth("fits", fits):
+            if fits:
                 for ring, place in zip(RINGS, (joint.inner, joint.outer), strict=True):
                     check_bearing(joint, ring, place, self.plan.faces(place))
-                others = [b for b in self.plan.bearings.values() if b.inner.part == joint.inner.part]
-                check_beside(joint, others, self.plan.faces)
+                # the rows of one set must not overlap either
+                others = [*self.plan.bearings.values(), *joints]
+                check_beside(joint, [b for b in others if b.inner.part == ends[0].part], self.plan.faces)
             joints.append(joint)
         self.plan.bearings |= {joint.name: joint for joint in joints}
 

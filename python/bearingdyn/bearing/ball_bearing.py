@@ -547,9 +547,7 @@ class BallBearing:
 
     def energy(self, q: ArrayLike, angle: float = 0.0) -> float:
         """Energy stored in the contacts at rest, Σ (2/5)κ(δ + film)^{5/2}, J."""
-        # in terms of the load F = κ s^{3/2}
-        loads = self.ball_loads(q, angle)
-        return float(0.4 * (loads * (loads / self.kappa) ** (2 / 3)).sum())
+        return self._kernel.stored(self.ball_loads(q, angle))
 
     def displacement(self, load: ArrayLike, angle: float = 0.0) -> Array:
         """Static equilibrium q (6,) of the inner ring under a load (6,), θz held, outer ring fixed.
@@ -588,8 +586,7 @@ class BallBearing:
 
         def stored(z: Array) -> tuple[float, Array, Array, float]:
             g, K, _, loads = core.bearing_force(self._kernel, z, still, turn, 0.0, shaft)
-            # ∫κ s^{3/2} ds = (2/5) F s with s = (F/κ)^{2/3}
-            return float(0.4 * (loads * (loads / self.kappa) ** (2 / 3)).sum()), g, K, float(loads.sum())
+            return self._kernel.stored(loads), g, K, float(loads.sum())
 
         expected = (
             (float(np.linalg.norm(target)) / self.kappa) ** (2 / 3) + abs(self.geometry.Pd) / 2 + self.film

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import ClassVar, Literal
 
 import scipy
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.row_set import Row, RowSet, touching
-from bearingdyn.checks import nonnegative, positive, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.bearing.row_set import RowSet, touching
 
 Arrangement = Literal["DB", "DF", "DT"]
 Threefold = Literal["DBD", "DFD", "DTD"]
@@ -57,17 +56,9 @@ class Pair(RowSet):
     True
     """
 
-    row: BallBearing
-    arrangement: Arrangement
-    distance: float
-    preload: float | None = None
-    preload_force: float | None = None
+    SENSES: ClassVar[Mapping[str, tuple[int, ...]]] = {"DB": (1, -1), "DF": (-1, 1), "DT": (1, 1)}
 
-    def __post_init__(self) -> None:
-        self._check_row()
-        known = self.arrangement in ("DB", "DF", "DT")
-        require(known, "arrangement", self.arrangement, 'it must be "DB", "DF" or "DT"')
-        _check_distance_and_preload(self)
+    arrangement: Arrangement
 
     @cached_property
     def approach(self) -> float:
@@ -76,11 +67,10 @@ class Pair(RowSet):
             return _approach(self.row, self.preload_force)
         return (self.preload or 0.0) / 2
 
-    @cached_property
-    def rows(self) -> tuple[Row, ...]:
-        """The row at −distance/2 and the row at +distance/2."""
-        senses, half = {"DB": (1, -1), "DF": (-1, 1), "DT": (1, 1)}[self.arrangement], self.distance / 2
-        return tuple(Row(z, s, self.approach) for z, s in zip((-half, half), senses, strict=True))
+    @property
+    def lifts(self) -> tuple[float, float]:
+        """`approach` of the row at −distance/2 and of the row at +distance/2, m."""
+        return self.approach, self.approach
 
 
 @dataclass(frozen=True)
@@ -122,17 +112,13 @@ class Triplet(RowSet):
     [38, 38, 74]
     """
 
-    row: BallBearing
-    arrangement: Threefold
-    distance: float
-    preload: float | None = None
-    preload_force: float | None = None
+    SENSES: ClassVar[Mapping[str, tuple[int, ...]]] = {
+        "DBD": (1, 1, -1),
+        "DFD": (-1, -1, 1),
+        "DTD": (1, 1, 1),
+    }
 
-    def __post_init__(self) -> None:
-        self._check_row()
-        known = self.arrangement in ("DBD", "DFD", "DTD")
-        require(known, "arrangement", self.arrangement, 'it must be "DBD", "DFD" or "DTD"')
-        _check_distance_and_preload(self)
+    arrangement: Threefold
 
     @cached_property
     def approaches(self) -> tuple[float, float]:
@@ -149,15 +135,11 @@ class Triplet(RowSet):
         third = float(scipy.optimize.brentq(surplus, 0.0, whole, xtol=1e-18, rtol=1e-14))
         return whole - third, third
 
-    @cached_property
-    def rows(self) -> tuple[Row, ...]:
-        """The rows at −distance, 0 and +distance."""
-        senses = {"DBD": (1, 1, -1), "DFD": (-1, -1, 1), "DTD": (1, 1, 1)}[self.arrangement]
+    @property
+    def lifts(self) -> tuple[float, float, float]:
+        """Of the rows at −distance, 0 and +distance, as `approaches` has them, m."""
         tandem, third = self.approaches
-        return tuple(
-            Row(k * self.distance, sense, lift)
-            for k, sense, lift in zip((-1, 0, 1), senses, (tandem, tandem, third), strict=True)
-        )
+        return tandem, tandem, third
 
 
 def _thrust(row: BallBearing, approach: float) -> float:
@@ -168,20 +150,3 @@ def _thrust(row: BallBearing, approach: float) -> float:
 def _approach(row: BallBearing, force: float) -> float:
     """How much closer than touching an axial force, N, presses the rings of a row, m."""
     return float(row.displacement([0, 0, force, 0, 0, 0])[2]) - touching(row)
-
-
-def _check_distance_and_preload(rows: Pair | Triplet) -> None:
-    """Check the fields that a pair and a triplet share; a tandem has no preload of its own."""
-    apart = positive("distance", rows.distance, "between the rows, in metres, must be positive and finite")
-    plausible("length", "distance", apart)
-    remedy = "it must be zero or positive, and finite"
-    if rows.preload is not None:
-        plausible("offset", "preload", nonnegative("preload", rows.preload, f"in m, {remedy}"))
-        both = rows.preload_force is None
-        require(both, "preload_force", rows.preload_force, "give a preload or a preload_force, not both")
-    if rows.preload_force is not None:
-        force = nonnegative("preload_force", rows.preload_force, f"{remedy}, in N")
-        plausible("force", "preload_force", force)
-    free = not rows.arrangement.startswith("DT") or not (rows.preload or rows.preload_force)
-    remedy = "a tandem has no preload of its own: load it from outside"
-    require(free, "arrangement", rows.arrangement, remedy)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +16,8 @@ from bearingdyn.bearing.contact_pressure import check_bearing_pressure
 from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.bearing.load_and_motion_checks import check_load
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
-from bearingdyn.checks import require, vector
+from bearingdyn.checks import nonnegative, positive, require, vector
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 _MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
@@ -21,7 +25,10 @@ _MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
 
 
 def touching(row: BallBearing) -> float:
-    """Axial position of a row, from its own origin, at which all its balls just touch, m."""
+    """Axial position of a row, from its own origin, at which all its balls just touch, m.
+
+    Clamped balls touch everywhere: theirs is the centred position.
+    """
     return 0.0 if row.clearance is None else row.geometry.Pe / 2
 
 
@@ -60,22 +67,80 @@ def at_distance(place: float) -> Array:
     return T
 
 
-class RowSet:
-    """What `Pair` and `Triplet` have in common: the law of their rows together."""
+@dataclass(frozen=True)
+class RowSet(ABC):
+    """What `Pair` and `Triplet` have in common: their fields, and the law of their rows together.
+
+    Parameters
+    ----------
+    row
+        One bearing; by itself its inner ring carries axial load towards +z.
+    arrangement
+        Which way each row carries.
+    distance
+        Between the middles of neighbouring rows, m.
+    preload
+        How much closer than touching the rings are clamped, m. Not for a tandem.
+    preload_force
+        Axial force that the rows press on each other with, N, instead of `preload`.
+
+    Raises
+    ------
+    ValueError
+        Naming the field: a wrong type or arrangement, a distance or preload that is not positive or zero,
+        both preloads at once, or a preload of a tandem.
+    """
+
+    SENSES: ClassVar[Mapping[str, tuple[int, ...]]]
+    """Of the rows along z, by arrangement; a tandem's are all +1."""
 
     row: BallBearing
+    arrangement: str
+    distance: float
+    preload: float | None = None
+    preload_force: float | None = None
 
-    @property
-    def rows(self) -> tuple[Row, ...]:
-        """The rows in their order along z."""
-        raise NotImplementedError
-
-    def _check_row(self) -> None:
-        """Check that the row by itself carries towards +z."""
+    def __post_init__(self) -> None:
         require(isinstance(self.row, BallBearing), "row", self.row, "give a BallBearing")
         side = shoulder(self.row.open_side, self.row.contact_angle)
         remedy = "a row by itself must carry towards +z: give the row as it is made, bearing.mirrored()"
         require(side >= 0, "row", self.row, remedy)
+        *others, last = (f'"{name}"' for name in self.SENSES)
+        known = isinstance(self.arrangement, str) and self.arrangement in self.SENSES
+        remedy = f"it must be {', '.join(others)} or {last}"
+        require(known, "arrangement", self.arrangement, remedy)
+        apart = positive(
+            "distance", self.distance, "between the rows, in metres, must be positive and finite"
+        )
+        plausible("length", "distance", apart)
+        remedy = "it must be zero or positive, and finite"
+        if self.preload is not None:
+            plausible("offset", "preload", nonnegative("preload", self.preload, f"in m, {remedy}"))
+            both = self.preload_force is None
+            require(both, "preload_force", self.preload_force, "give a preload or a preload_force, not both")
+        if self.preload_force is not None:
+            force = nonnegative("preload_force", self.preload_force, f"{remedy}, in N")
+            plausible("force", "preload_force", force)
+        tandem = len(set(self.SENSES[self.arrangement])) == 1
+        remedy = "a tandem has no preload of its own: load it from outside"
+        require(
+            not (tandem and (self.preload or self.preload_force)), "arrangement", self.arrangement, remedy
+        )
+
+    @property
+    @abstractmethod
+    def lifts(self) -> tuple[float, ...]:
+        """Axial approach of the rings of each row from touching, without load, in the order along z, m."""
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """The rows in their order along z, `distance` apart, their middle at zero."""
+        senses = self.SENSES[self.arrangement]
+        first = -0.5 * (len(senses) - 1)
+        return tuple(
+            Row((first + k) * self.distance, sense, lift)
+            for k, (sense, lift) in enumerate(zip(senses, self.lifts, strict=True))
+        )
 
     @cached_property
     def _maps(self) -> tuple[tuple[Array, Array], ...]:
@@ -125,13 +190,13 @@ class RowSet:
         maps = self._maps
 
         def law(u: Array) -> tuple[float, Array, Array, float]:
-            q, kappa = np.append(u * length, 0.0), self.row.kappa
+            q, kernel = np.append(u * length, 0.0), self.row.kernel()
             energy, g, K, held = 0.0, np.zeros(5), np.zeros((5, 5)), 0.0
             for (T, _), x in zip(maps, self.row_displacements(q), strict=True):
                 # as far out as the search goes, whatever the pressures there
                 B = self.row.coefficients() @ T[:, :5] * length
                 g_row, K_row, _, loads = self.row.evaluate(x, angle)
-                energy += float(0.4 * (loads * (loads / kappa) ** (2 / 3)).sum())
+                energy += kernel.stored(loads)
                 g, K, held = g + B.T @ g_row, K + B.T @ K_row @ B, held + float(loads.sum())
             return energy, g, K, held
 
