@@ -147,19 +147,23 @@ def test_many_balls_are_interpolated_to_the_answer_of_each(axial: Equilibrium) -
     assert np.ptp(each.imag, axis=1).min() > 0.1 * np.abs(each.imag).max(axis=1).min()
 
 
-def test_modes_on_a_layer_are_followed_to_its_own_eigenvalues() -> None:
+def test_modes_on_a_layer_and_of_a_rotor_are_followed_to_their_own_eigenvalues() -> None:
     """Without films the search must find what the linear problem has, from a per cent beside it."""
+    speed = 300.0
     app = Application()
     app.add("mass", RigidBody(2.0, (1e-3, 1e-3, 1e-3)))
     app.add("layer", bd.Layer(0.026, 0.030, 0.016, RUBBER, refinement=0.5))
     app.connect("mass.centre", "layer.inner")
     app.ground("layer.outer", stiffness=[1e8] * 3 + [1e5] * 3)
+    app.add("rotor", RigidBody(4.0, (0.02, 0.02, 0.03), rotating=True))
+    app.ground("rotor.centre", stiffness=[1e6] * 3 + [1e3, 2e3, 1e3], damping=[10.0] * 3 + [0.1] * 3)
     modal, _ = assemble(app).modal()
     assert modal.layers
-    values, shapes = _damped_modal(modal, 0.0)
+    assert np.abs(modal.G).max() > 0
+    values, shapes = _damped_modal(modal, speed)
     swinging = (values.imag > 0) & (values.imag > 0.5 * np.abs(values))
     values, shapes = values[swinging], shapes[:, swinging]
-    found, _ = film_modes(modal, 0.0, lambda omega: None, values, lambda held: (1.01 * values, shapes))
+    found, _ = film_modes(modal, speed, lambda omega: None, values, lambda held: (1.01 * values, shapes))
     assert found.size > 2
     np.testing.assert_allclose(np.sort_complex(found), np.sort_complex(values), rtol=1e-8)
 
