@@ -26,6 +26,11 @@ class Slip(NamedTuple):
     shift: float = 0.0
 
 
+_TYPED = (
+    0.01  # numbers in units below a thousandth are larger: nobody gives a film of 5e-5 µm, but of 5e-5 mm
+)
+
+
 @dataclass(frozen=True)
 class Magnitude:
     """What magnitudes one quantity can have.
@@ -63,7 +68,8 @@ class Magnitude:
         """The unit in which x would be usual, as a question; empty if there is none."""
         for unit, scale, shift in self.slips:
             meant = scale * x + shift
-            if self.within(meant, self.usual):
+            typed = abs(x) >= _TYPED or scale >= 1e-3
+            if typed and self.within(meant, self.usual):
                 return f"; is it in {unit}? give {meant:.4g} {self.unit}".rstrip()
         return ""
 

@@ -13,12 +13,15 @@ import bearingdyn as bd
 from bearingdyn.analysis import equilibrium, frequency_response, modes
 from bearingdyn.analysis.energy_shares import energy_shares
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.film_modes import film_modes
+from bearingdyn.analysis.modes import _damped_modal
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, FilmDamping, Lubricant, Walther, ehl
 from bearingdyn.demo import SPEED, motor
 from bearingdyn.parts import RigidBody
 from bearingdyn.system import assemble
 from core_models import harmonic, model
+from rotors import RUBBER
 
 OIL, TEMPERATURE = Lubricant(Walther.iso_vg(32)), 60.0
 MASS, LOAD, OMEGA = 0.05, 300.0, 523.6
@@ -116,6 +119,53 @@ def test_low_frequency_is_the_viscous_law(axial: Equilibrium) -> None:
     # Σ c v vᵀ is the tangent that the kernel forms
     C = (balls.across.T * c) @ balls.across
     np.testing.assert_allclose(C, axial.bearings["ball"].C, rtol=1e-12, atol=1e-12 * np.abs(C).max())
+
+
+def test_balls_below_the_table_keep_the_damping_of_their_law(axial: Equilibrium) -> None:
+    """Loads fade and the law with them; the answer, held at the table's end, is brought down to the law."""
+    balls = axial.bearings["ball"].balls
+    assert balls is not None
+    assert balls.law.answer is not None
+    least = balls.law.answer.loads()[0]
+    fading = replace(balls, loads=least * np.array([0.1, 0.3, 1.0]), across=balls.across[:3])
+    c = balls.law.at((fading.loads / balls.kappa) ** (2 / 3))
+    assert c[0] < 0.1 * c[2]
+    assert (np.abs(fading.stiffness(np.array([2 * np.pi]))[0].imag) < 1e-3 * 2 * np.pi * c).all()
+
+
+def test_many_balls_are_interpolated_to_the_answer_of_each(axial: Equilibrium) -> None:
+    """Twenty loads over a decade by splines through twelve, against each looked up by itself."""
+    balls = axial.bearings["ball"].balls
+    assert balls is not None
+    answer = balls.law.answer
+    assert answer is not None
+    loads, omega = np.geomspace(20.0, 200.0, 20), 2 * np.pi * np.array([50.0, 2e3, 1e4])
+    many = answer.under(loads).stiffness(omega)
+    each = np.concatenate([answer.under(loads[i : i + 1]).stiffness(omega) for i in range(20)], axis=1)
+    np.testing.assert_allclose(many.real, each.real, rtol=1e-3)
+    np.testing.assert_allclose(many.imag, each.imag, rtol=1e-2)
+    assert np.ptp(each.imag, axis=1).min() > 0.1 * np.abs(each.imag).max(axis=1).min()
+
+
+def test_modes_on_a_layer_and_of_a_rotor_are_followed_to_their_own_eigenvalues() -> None:
+    """Without films the search must find what the linear problem has, from a per cent beside it."""
+    speed = 300.0
+    app = Application()
+    app.add("mass", RigidBody(2.0, (1e-3, 1e-3, 1e-3)))
+    app.add("layer", bd.Layer(0.026, 0.030, 0.016, RUBBER, refinement=0.5))
+    app.connect("mass.centre", "layer.inner")
+    app.ground("layer.outer", stiffness=[1e8] * 3 + [1e5] * 3)
+    app.add("rotor", RigidBody(4.0, (0.02, 0.02, 0.03), rotating=True))
+    app.ground("rotor.centre", stiffness=[1e6] * 3 + [1e3, 2e3, 1e3], damping=[10.0] * 3 + [0.1] * 3)
+    modal, _ = assemble(app).modal()
+    assert modal.layers
+    assert np.abs(modal.G).max() > 0
+    values, shapes = _damped_modal(modal, speed)
+    swinging = (values.imag > 0) & (values.imag > 0.5 * np.abs(values))
+    values, shapes = values[swinging], shapes[:, swinging]
+    found, _ = film_modes(modal, speed, lambda omega: None, values, lambda held: (1.01 * values, shapes))
+    assert found.size > 2
+    np.testing.assert_allclose(np.sort_complex(found), np.sort_complex(values), rtol=1e-8)
 
 
 def test_an_average_over_cage_angles_weighs_them_alike() -> None:

@@ -72,6 +72,26 @@ def test_the_unit_probably_meant_is_named(kind):
             assert f"{row.slips[0].unit}" in told or unit in told
 
 
+@pytest.mark.parametrize(
+    ("kind", "given", "said"),
+    [
+        ("film", 5e-5, "is it in mm? give 5e-08 m"),  # not in µm: 5e-11 m is less than an atom
+        ("film", 0.3, "is it in µm? give 3e-07 m"),
+        ("film", 300.0, "is it in nm? give 3e-07 m"),
+        ("expansion", 5e-4, ""),
+        ("expansion", 12.0, "is it in 1e-6/K? give 1.2e-05 1/K"),
+        ("mount clearance", 3e-3, "is it in mm? give 3e-06 m"),
+        ("offset", 2.0, "is it in µm? give 2e-06 m"),
+        ("mount clearance", 20.0, "is it in µm? give 2e-05 m"),
+        ("Young's modulus", 0.003, "is it in GPa? give 3e+06 Pa"),
+        ("contact angle", 1.4, "is it in degrees"),
+    ],
+)
+def test_no_unit_is_offered_in_which_nobody_would_have_given_the_number(kind, given, said):
+    told = MAGNITUDES[kind].guess(given)
+    assert said in told if said else told == ""
+
+
 def rotor(load=None, **bearing):
     app = bd.Application()
     app.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))

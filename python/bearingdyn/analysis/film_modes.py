@@ -92,7 +92,10 @@ def _followed(
             H = 2 * (layer.L @ layer.L.T)
             T = T + (G * value * tau / inert).sum() * H
             slope = slope + (G * tau / inert**2).sum() * H
-        y = np.linalg.solve(T, slope @ x)
+        try:
+            y = np.linalg.solve(T, slope @ x)
+        except np.linalg.LinAlgError:  # met to the last bit, as a motion that nothing couples can be
+            return value, np.asarray(x)
         share = complex(held @ y)
         step = complex(held @ x) / share
         value, x = value - step, y / np.linalg.norm(y)

@@ -108,6 +108,8 @@ def lubricate(
     law
         "ehl": the equations of the lubricated contact; or a formula of the film, divided by the oil's
         relative density at the Hertz pressure, because formulas are fits of an oil that does not yield.
+        That of Nijenbanning, Venner and Moes is then within 6 % of the equations, from three times the load
+        on at which a contact turns from rigid bodies to a Hertz contact; about that load up to 42 % off.
     method
         Where the figures of "ehl" come from: the "table", or "solve" the equations for both contacts, which
         takes some seconds and knows no limits of a table. The damping over other loads is the table's, at the

@@ -11,6 +11,7 @@ import scipy
 from bearingdyn.bearing import ehl
 from bearingdyn.bearing.ehl.dimensionless_groups import LOAD
 from bearingdyn.bearing.ehl.newton import Border, newton
+from bearingdyn.bearing.ehl.steady_film import _limit
 from bearingdyn.bearing.film_thickness import dimensionless_film
 from verified.ehl import CASES, OMEGA, TABLE, mourier
 
@@ -69,15 +70,42 @@ def _centre(level: ehl.Level) -> float:
         ((200.0, 5.0, 0.15), {"viscosity": "barus"}),
     ],
 )
-def test_other_grids_and_a_farther_inlet_find_the_same_contact(
-    place: tuple[float, float, float], laws: dict[str, str]
-) -> None:
+def test_finer_grids_find_the_same_contact(place: tuple[float, float, float], laws: dict[str, str]) -> None:
     usual = ehl.steady(*place, **laws).figures
     finer = ehl.steady(*place, **laws, accuracy=0.004).figures
     # what was asked of other programs: .5 % of films, .1 % of K0, 2 % of C0
     assert usual[:3] == pytest.approx(finer[:3], rel=5e-3)
     assert usual.K0 == pytest.approx(finer.K0, rel=1e-3)
     assert usual.C0 == pytest.approx(finer.C0, rel=2e-2)
+
+
+def test_figures_that_settle_are_extrapolated_and_those_that_jump_are_averaged() -> None:
+    """Pitch 4, 2 and 1: a film, a film with jumps, a K0 that settles, and one that jumps."""
+    pitch, jumps = np.array([4.0, 2.0, 1.0]), np.array([0.0, 3e-3, 0.0])
+    settling, jumping = 1 + 1e-2 * pitch**2, 1 + 1e-4 * pitch**2 + jumps
+    grids = np.stack([settling, jumping, settling, jumping], axis=1)
+    limit, error = _limit(grids, np.array([True, True, False, False]))
+    assert limit[[0, 2]] == pytest.approx(1.0, abs=1e-12)
+    # two grids make −jump/3 of a jump, least squares over three jump/2
+    assert limit[[1, 3]] == pytest.approx([1 - 1e-3, 1 + 1.5e-3], abs=1e-12)
+    assert (np.abs(limit - 1) <= error).all()
+    assert error[1] > 3e-3
+    first, unknown = _limit(grids[:1])
+    assert (first == grids[0]).all()
+    assert np.isnan(unknown).all()
+    assert _limit(grids[:2])[0] == pytest.approx(grids[1] + (grids[1] - grids[0]) / 3)
+
+
+@pytest.mark.parametrize("accuracy", [0.04, pytest.param(0.02, marks=pytest.mark.slow)])
+def test_a_stiffness_that_jumps_from_grid_to_grid_errs_by_no_more_than_it_says(accuracy: float) -> None:
+    """Of M = 10: on twenty grids it is .8312 ± 7e-4, and the independent program's is .831, to .0005."""
+    found = ehl.steady(10, 0, accuracy=accuracy)
+    assert abs(found.K0 - 0.831) < found.error.K0 * found.K0 + 5e-4
+    assert 3e-4 < found.error.K0 < 4e-3
+    # the answer at low frequency is the same figure
+    slow = complex(found.stiffness(1e-3))
+    assert slow.real == pytest.approx(found.K0, rel=1e-6)
+    assert 1.5 * slow.imag / 1e-3 == pytest.approx(found.C0, rel=1e-5)
 
 
 def test_grid_error_falls_with_the_square_of_the_pitch() -> None:

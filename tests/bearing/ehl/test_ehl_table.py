@@ -41,6 +41,15 @@ def test_table_is_within_two_per_cent_of_new_solutions(M: float, L: float, D: fl
     assert found.K0 == pytest.approx(solved.K0, abs=0.003)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("M", [24.0, 35.27, 43.09, 52.64])
+def test_about_the_turn_the_table_is_within_five_per_cent_of_new_solutions(M: float) -> None:
+    """Where C0 halves (1.00 at M = 24, .51 at 43): a hump of c over the load is the film's own."""
+    solved, found = ehl.steady(M, 14.8, 0.031, accuracy=0.02), ehl.lookup(M, 14.8, 0.031).figures
+    assert found.C0 == pytest.approx(solved.C0, rel=0.055)  # 4.9 % at M = 43, .6 % the grid's
+    assert found.K0 == pytest.approx(solved.K0, abs=0.01)
+
+
 @pytest.mark.parametrize("case", bearing_contacts(), ids=lambda case: case[0])
 def test_damping_of_bearing_contacts_is_that_of_an_independent_program(
     case: tuple[str, float, float],
@@ -50,7 +59,7 @@ def test_damping_of_bearing_contacts_is_that_of_an_independent_program(
 
 
 def test_closed_form_over_the_density_is_the_film_of_a_hertz_contact() -> None:
-    """From three times the turn on; below it the formula is up to twice the film (rigid bodies, narrow)."""
+    """From three times the turn on; of rigid bodies the formula is up to 2.2 times the film."""
     corrected, bare, count = closed_form()
     assert count > 100
     assert corrected < 0.058  # 5 % was asked: 5.4 % at M = 5000, L = 20, D = .02, and 5.7 % at L = 25

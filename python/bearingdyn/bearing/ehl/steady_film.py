@@ -26,9 +26,13 @@ _M, _L, _D = (0.5, 2e4), (0.0, 30.0), (0.01, 1.0)  # solved without failure in b
 _COARSEST = 17  # nodes of a square grid
 _THICK = (4.0, 2.0, 1.0, 0.5, 0.2)  # L on the way from Hertz to an oil that is thin under pressure
 _LEVELS = 3  # refinements from the grid that starts at Hertz to the finest
-# Two grids of pitch 2Δ and Δ differ by (2^p − 1) errors of the finer. The order p seen is 1.7 to 2.3.
+# Two grids of pitch 2Δ and Δ differ by (2^p − 1) errors of the finer. The order p of films is 1.7 to 2.3.
 _FINER = 1 / (2**1.7 - 1)
 _EXTRAPOLATED = 1 / (2**1.7 - 1) - 1 / 3
+# K0 and C0 jump by some 1e-3 and 1e-2 where the rupture passes a node. Steps from grid to grid that fall by
+# less than this are such jumps, no trend; extrapolation from two grids would add a third to them.
+_FALLS = 0.5
+_FILMS = np.array([True, True, True, False, False])  # of Figures, those without jumps
 
 
 class Figures(NamedTuple):
@@ -77,7 +81,7 @@ class Steady:
     levels: tuple[Level, ...]
     """The grids solved, the finest last."""
     extrapolated: bool
-    """Whether figures are extrapolated from the two finest grids, or those of the finest."""
+    """Whether figures are extrapolated to no pitch, or those of the finest grid."""
 
     def __repr__(self) -> str:
         numbers = ", ".join(f"{name}={value:.4g}" for name, value in self.figures._asdict().items())
@@ -86,19 +90,22 @@ class Steady:
     @cached_property
     def figures(self) -> Figures:
         """Hc, Hmin, H0, K0 and C0."""
-        fine = self.levels[-1].figures
-        if not self.extrapolated:
-            return fine
-        return Figures(*(f + (f - c) / 3 for f, c in zip(fine, self.levels[-2].figures, strict=True)))
+        return Figures(*map(float, self._found[0]))
 
     @cached_property
     def error(self) -> Figures:
-        """Relative errors of `figures` by the grid, estimated from the two finest; NaN with one grid only."""
-        if len(self.levels) < 2:
-            return Figures(*(5 * [math.nan]))
-        part = _EXTRAPOLATED if self.extrapolated else _FINER
-        fine, coarse = self.levels[-1].figures, self.levels[-2].figures
-        return Figures(*(part * abs(f - c) / abs(f) for f, c in zip(fine, coarse, strict=True)))
+        """Relative errors of `figures` by the grid, estimated from the three finest; NaN with one grid only.
+
+        Of figures that jump from grid to grid, and do not settle, the error is their scatter.
+        """
+        best, error = self._found
+        return Figures(*map(float, error / np.abs(best)))
+
+    @cached_property
+    def _found(self) -> tuple[Array, Array]:
+        """Figures and their absolute errors."""
+        grids = np.array([level.figures for level in self.levels[-3:]])
+        return _limit(grids, _FILMS) if self.extrapolated else _finest(grids)
 
     @property
     def Hc(self) -> float:
@@ -166,12 +173,14 @@ class Steady:
         """
         asked = np.asarray(Omega, dtype=complex)
         require(bool(np.isfinite(asked).all()), "Omega", Omega, "frequencies ωa/um must be finite")
-        used = self.levels[-2:] if self.extrapolated else self.levels[-1:]
-        found = [
-            np.array([harmonic_approach.stiffness(v.equations, v.state, x) for x in asked.ravel()])
-            for v in used
-        ]
-        best = found[-1] + (found[-1] - found[0]) / 3  # nothing is added where there is one level
+        used = self.levels[-3:] if self.extrapolated else self.levels[-1:]
+        found = np.array(
+            [
+                [harmonic_approach.stiffness(v.equations, v.state, x) for x in asked.ravel()] or np.zeros(0)
+                for v in used
+            ]
+        )
+        best = _limit(found.real)[0] + 1j * _limit(found.imag)[0]
         return np.asarray(best.reshape(asked.shape))
 
 
@@ -202,8 +211,9 @@ def steady(
     viscosity, density
         Laws of the oil over pressure.
     grid
-        "auto" sizes the grid by `accuracy` and extrapolates from it and one of twice its pitch. A number n
-        takes n × n nodes on the whole contact and extrapolates nothing.
+        "auto" sizes the grid by `accuracy` and extrapolates from it and one of twice its pitch; K0 and C0,
+        where they jump from grid to grid, from a line over pitch² fitted to three grids. A number n takes
+        n × n nodes on the whole contact and extrapolates nothing.
     inlet
         Gap at which the oil begins, over hc, with 0.4 of it at the sides. Left out, the extent is that of
         published solutions. Oil that reaches further (100) adds some 1 % to the film of a circular contact
@@ -278,6 +288,40 @@ def steady(
             f"give {max(enough, n + 4)} or more"
         ) from None
     return Steady(groups.M, groups.L, groups.D, levels, extrapolated=False)
+
+
+def _limit(grids: Array, smooth: Array | bool = False) -> tuple[Array, Array]:
+    """Limit of figures (n, …) on up to three grids, each of half the pitch before, and its error.
+
+    By the two finest, which differ by three errors of the finer; figures that are not smooth and do not
+    settle by least squares of a + b·pitch² over all three.
+    """
+    fine = grids[-1]
+    if len(grids) == 1:
+        return fine, np.full(fine.shape, math.nan)
+    step = fine - grids[-2]
+    limit = fine + step / 3
+    if len(grids) == 2:
+        return limit, np.abs(step) / 3
+    before = grids[-2] - grids[-3]
+    settles = np.abs(step) <= _FALLS * np.abs(before)
+    limit = np.where(settles | smooth, limit, (4 * fine + 3 * grids[-2] - grids[-3]) / 6)
+    # what the order that the three grids show would add instead of a third
+    other = step**2 / np.where(settles & (step != 0), before - step, 1.0)
+    by_order = np.maximum(_EXTRAPOLATED * np.abs(step), np.abs(other - step / 3))
+    # a jump may hide in three grids that look settled: nothing less than the last step is promised
+    by_order = np.where(smooth, by_order, np.maximum(by_order, np.abs(step)))
+    scatter = np.abs(limit - grids[-2:]).max(axis=0)
+    return limit, np.where(settles, by_order, scatter)
+
+
+def _finest(grids: Array) -> tuple[Array, Array]:
+    """Figures (n, …) of the finest of up to three grids, and their error."""
+    steps = np.abs(np.diff(grids, axis=0))
+    if len(steps) == 0:
+        return grids[-1], np.full(grids[-1].shape, math.nan)
+    settles = steps[-1] <= _FALLS * steps[0] if len(steps) == 2 else True
+    return grids[-1], np.where(settles, _FINER * steps[-1], steps.max(axis=0))
 
 
 def _cascade(groups: Groups, oil: Oil, first: Grid, halvings: int, Hc: float) -> tuple[Level, ...]:

@@ -52,7 +52,7 @@ class MasterCurve:
         log10 a_T of each isotherm by its mean temperature, °C; zero at T_ref by the law.
     shift_errors
         Standard error of each, decades, against the isotherm nearest to T_ref, from the scatter of the
-        points.
+        points with the levels of the runs held: `level_errors` come on top of it.
     law
         Law fitted to the shifts; None of a single sweep.
     law_residual
