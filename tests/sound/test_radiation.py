@@ -36,16 +36,19 @@ def errors(n: int, ka: float) -> list[float]:
 
 
 @pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarsePanels")
-@pytest.mark.parametrize("ka", [0.1, math.pi, 5.763459])
+@pytest.mark.parametrize("ka", [0.01, 0.1, math.pi, 5.763459])
 def test_spheres_radiate_their_power(ka: float) -> None:
-    """Pulsating, oscillating and as a quadrupole; inside resonances are no exception."""
+    """Pulsating, oscillating and as a quadrupole; inside resonances are no exception.
+
+    At ka = .01 the power of the quadrupole is 4e-12 of what swings: a complex factor made it 25 dB too much.
+    """
     # flat triangles render the shape of P2 worst: .043 dB with 800
     assert np.abs(errors(10, ka)) == pytest.approx(0.0, abs=0.05)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("ka", [0.01, 0.1, 0.3, 1.0, *RESONANCES, 8.0, 10.0])
-def test_spheres_radiate_their_power_from_tenth_to_ten(ka: float) -> None:
+def test_spheres_radiate_their_power_from_hundredth_to_ten(ka: float) -> None:
     """Theory.md, section 4.6, on 1568 triangles: .02 dB seen, from the shape of P2 on flat triangles."""
     assert np.abs(errors(14, ka)) == pytest.approx(0.0, abs=0.03)
 

@@ -33,7 +33,7 @@ LEVELS = (5, 9, 17, 33, 65)
 TOLERANCE = 0.02  # dB, at which no further frequencies are solved
 SURE = 0.05  # dB
 THREADS = 2
-VERSION = 1  # of what a stored octave holds, and of the numbers in it
+VERSION = 2  # of what a stored octave holds, and of the numbers in it
 NEGATIVE = 1e-4  # of the largest eigenvalue: less is the discretisation's own error
 
 
