@@ -171,8 +171,8 @@ def _pressure(surface: TriangleSurface, B: Array, k: float) -> tuple[Complex, Co
     V, V1, Kt, K, D = helmholtz(surface.points, surface.faces, k, surface.floor)
     P0, P1 = _masses(surface)
     L = Kt @ B + 0.5 * (P0 @ B)
-    # Burton and Miller's factor: its sign keeps the sum well conditioned. Below all resonances it is real, lest
-    # errors of p get out of phase and drown the power of quadrupoles, (ka)⁵/27 of what swings to and fro
+    # Burton and Miller's factor: its sign keeps the sum well conditioned. Below all resonances it is real,
+    # lest errors of p get out of phase and drown the power of quadrupoles, (ka)⁵/27 of what swings to and fro
     alpha = -1j / k if k * surface.extent > 1.0 else surface.extent
     right = -(V1 @ B) - alpha * L
     K *= -1.0
