@@ -126,6 +126,13 @@ def test_small_source_above_a_floor_has_its_image() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarsePanels")
+def test_a_floor_at_any_height_sends_the_power_far_away() -> None:
+    """The image's phase counts from the floor; the far field has the error of the pressure, not squared."""
+    found = solved(4, 1.0, floor=0.7, height=2.0)
+    assert bd.sound.far_power(found, [1, 0, 0]) == pytest.approx(found.power([1, 0, 0]), rel=0.02)
+
+
+@pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarsePanels")
 def test_half_a_sphere_on_a_floor_radiates_half_of_the_sphere() -> None:
     """Triangles that meet their own images; the mesh is symmetric, so that only the quadrature differs."""
     points, faces = sphere(6)

@@ -170,6 +170,18 @@ def test_what_is_repaired_or_unsure_is_told(monkeypatch: pytest.MonkeyPatch) -> 
         )
 
 
+@pytest.mark.parametrize("level", [None, 3])
+def test_the_polynomial_through_the_nodes_is_exact_for_polynomials(level: int | None) -> None:
+    """Up to the degree that 5 points carry, and 3 of them; round-off else."""
+    nodes = resistance._nodes(500.0, 1000.0, 5)
+    octave = resistance.Octave(
+        500.0, 1000.0, nodes, np.zeros((5, 1, 1)), np.zeros((5, 0, 1), complex), 0.01, 100
+    )
+    f = np.array([500.0, 555.0, 777.0, 1000.0])
+    for degree in range(5 if level is None else level):
+        assert octave.weights(f, level) @ nodes**degree == pytest.approx(f**degree, rel=1e-12)
+
+
 def facing(gap: float) -> radiators.Radiators:
     """Two housings, one before the other."""
     skin = bd.Housing(0.16, 0.20, 0.03, 0.078, bore_height=0.12, f_max=0.0).superelement().skin
