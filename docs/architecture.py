@@ -23,6 +23,7 @@ BOXES: dict[str, tuple[float, float, float, str, str]] = {
     "system": (8.0, 1.5, 1.3, ROOM, "plain arrays"),
     "analysis": (9.9, 1.5, 1.4, ROOM, "modes, FRF, runs"),
     "core": (9.9, 3.0, 1.4, CORE, "C: steps, sweeps"),
+    "sound": (11.9, 3.0, 1.3, ROOM, "power, levels"),
     "results": (11.9, 1.5, 1.3, ROOM, "named, in SI"),
     "plot": (13.85, 3.0, 1.3, TOLD, "one call each"),
     "study": (13.85, 1.5, 1.3, TOLD, "many designs"),
@@ -32,6 +33,7 @@ ARROWS = [
     ("DMA table", "material"), ("catalogue, oil", "bearing"), ("drawing, mesh", "fem"),
     ("material", "bearing"), ("fem", "cms"), ("cms", "parts"), ("parts", "application"),
     ("application", "system"), ("system", "analysis"), ("analysis", "results"),
+    ("analysis", "sound"), ("sound", "results"),
     ("results", "plot"), ("results", "study"), ("results", "cli"),
 ]  # fmt: skip
 

@@ -102,6 +102,10 @@ int bd_py_between_chunks(PyObject *progress, long long done, long long total);
 #define BD_PY_CHUNK_SECONDS 0.05
 double bd_py_seconds(void);
 
+/* After a chunk that took so many seconds, of a call that leaves nothing half done: the next one's size, signals and
+ * progress. Returned: 0 to go on, or -1 with an exception, KeyboardInterrupt among them */
+int bd_py_after_chunk(PyObject *progress, double took, int done, int total, int *chunk);
+
 /* ---------------------------------------------------------------- bearing.c, scheme.c: dicts */
 
 /* A bearing as BearingKernel.packed returns it. Returned: 0, or -1 with an exception. */

@@ -83,14 +83,7 @@ PyObject *bd_py_harmonic(PyObject *object, PyObject *args)
         }
         const double took = bd_py_seconds() - began;
         at += now;
-        if (took < 0.5 * BD_PY_CHUNK_SECONDS && chunk < 1000000)
-            chunk *= 2;
-        else if (took > BD_PY_CHUNK_SECONDS && chunk > 1)
-            chunk /= 2;
-        const int stop = bd_py_between_chunks(progress, at, data.n_omega);
-        if (stop > 0)
-            PyErr_SetNone(PyExc_KeyboardInterrupt);
-        if (stop != 0)
+        if (bd_py_after_chunk(progress, took, at, data.n_omega, &chunk))
             goto failed;
     }
     goto done;

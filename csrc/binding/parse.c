@@ -216,3 +216,15 @@ int bd_py_between_chunks(PyObject *progress, long long done, long long total)
     PyErr_Clear();
     return 1;
 }
+
+int bd_py_after_chunk(PyObject *progress, double took, int done, int total, int *chunk)
+{
+    if (took < 0.5 * BD_PY_CHUNK_SECONDS && *chunk < 1000000)
+        *chunk *= 2;
+    else if (took > BD_PY_CHUNK_SECONDS && *chunk > 1)
+        *chunk /= 2;
+    const int stop = bd_py_between_chunks(progress, done, total);
+    if (stop > 0)
+        PyErr_SetNone(PyExc_KeyboardInterrupt);
+    return stop ? -1 : 0;
+}

@@ -85,14 +85,7 @@ PyObject *bd_py_helmholtz(PyObject *module, PyObject *args)
         Py_END_ALLOW_THREADS
         const double took = bd_py_seconds() - began;
         at += now;
-        if (took < 0.5 * BD_PY_CHUNK_SECONDS && chunk < 1000000)
-            chunk *= 2;
-        else if (took > BD_PY_CHUNK_SECONDS && chunk > 1)
-            chunk /= 2;
-        const int stop = bd_py_between_chunks(Py_None, at, data.n_faces);
-        if (stop > 0)
-            PyErr_SetNone(PyExc_KeyboardInterrupt);
-        if (stop != 0)
+        if (bd_py_after_chunk(Py_None, took, at, data.n_faces, &chunk))
             goto done;
     }
     out = PyList_AsTuple(made);

@@ -37,6 +37,11 @@ SHEET = bd.bearing_sheet(bd.equilibrium(BORNE))
 TABLE = bd.stiffness_table(BALL, [[0, 0, 200.0, 0, 0, 0]])
 OIL = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
 RESPONSE = bd.frequency_response(STATE, [10.0], ["r.centre.y"], ["r.centre.y"])
+PLATE = bd.Application()
+PLATE.add("plate", bd.Housing(0.1, 0.1, 0.03, 0.04, f_max=0.0).superelement())
+PLATE.ground("plate.feet")
+PLATE.free("plate.bore")
+PLATED = analysis.linear(PLATE).system
 WRONG = [
     Pair(BALL, "DB", distance=0.015), 5, "6205", None, [], {}, RUN, RESPONSE, STATE, MODES, APP, np.zeros(3),
     object(), 1.5, True, BALL,
@@ -51,11 +56,15 @@ GOOD = {
     "sheet": SHEET, "loads": [[0, 0, 200.0, 0, 0, 0]],
     "make": lambda value: held(), "values": (1.0, 2.0),
 }  # fmt: skip
-# what the sound room takes from this one: no analyses, and their callers check
-SHARED = ("part_velocities", "surface_of")
-ANALYSES = [
-    name for name in analysis.__all__ if inspect.isfunction(getattr(analysis, name)) and name not in SHARED
-]
+# what the sound room takes from this one: arguments of their own under names of others
+OWN = {
+    "part_velocities": {
+        "state": analysis.linear(STATE), "parts": STATE.system.parts, "frequency": np.array([10.0]),
+        "inputs": [analysis.Input.of(STATE.system, "r.centre.y")],
+    },
+    "surface_of": {"system": PLATED, "name": "plate.outside"},
+}  # fmt: skip
+ANALYSES = [name for name in analysis.__all__ if inspect.isfunction(getattr(analysis, name))]
 
 
 @pytest.mark.parametrize("name", ANALYSES)
@@ -64,9 +73,12 @@ def test_a_wrong_object_is_refused_by_name(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # "6205" is a file's name too
     call = getattr(analysis, name)
     parameters = inspect.signature(call).parameters
-    needed = {key: GOOD[key] for key, p in parameters.items() if p.default is p.empty and key in GOOD}
-    lacking = [key for key, p in parameters.items() if p.default is p.empty and key not in GOOD]
+    good = GOOD | OWN.get(name, {})
+    needed = {key: good[key] for key, p in parameters.items() if p.default is p.empty and key in good}
+    lacking = [key for key, p in parameters.items() if p.default is p.empty and key not in good]
     assert lacking == [], "an argument that this test has no good value for"
+    if name in OWN:
+        call(**needed)
     for key in parameters:
         for wrong in WRONG:
             with warnings.catch_warnings():

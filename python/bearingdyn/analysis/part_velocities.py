@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bearingdyn.analysis.frequency_response import frequencies
 from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import Linear
 from bearingdyn.application import Place
-from bearingdyn.checks import meant
+from bearingdyn.checks import instance, items, meant, number
 from bearingdyn.cms import Surface
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import PartTerm, System
@@ -45,7 +46,21 @@ def part_velocities(
     -------
     list of numpy.ndarray
         (f, n, i) complex of each part of n coordinates.
+
+    Raises
+    ------
+    ValueError
+        For arguments of another kind, and as `frequency_response`.
     """
+    instance("state", state, Linear, "it must be what `linear` gives")
+    frequency = frequencies(frequency)
+    parts = items("parts", parts, "it must be a list of parts of the system")
+    inputs = items("inputs", inputs, "it must be a list of inputs, as Input.of makes them")
+    for one in parts:
+        instance("parts", one, PartTerm, "it must be a list of parts of the system")
+    for each in inputs:
+        instance("inputs", each, Input, "it must be a list of inputs, as Input.of makes them")
+    speed = number("speed", speed, "it must be a number in rad/s")
     n = state.system.n
     force = np.array([i.force for i in inputs]).reshape(-1, n)
     rows = np.vstack([np.zeros((0, n)), *(t.place for t in parts)])
@@ -79,8 +94,10 @@ def surface_of(system: System, name: str) -> tuple[PartTerm, Surface]:
     Raises
     ------
     ValueError
-        For a part or a surface that there is not.
+        For what is no system and no text, and for a part or a surface that there is not.
     """
+    instance("system", system, System, "it must be a System")
+    instance("name", name, str, 'it must be a text, part and surface, "housing.outside"')
     owner = next((term for term in system.parts if name.startswith(f"{term.name}.")), None)
     if owner is None:
         raise ValueError(f"{name!r} is no surface; there are the parts {[t.name for t in system.parts]}")

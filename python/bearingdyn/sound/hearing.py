@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -13,6 +11,7 @@ from bearingdyn.sound.weighting import Weighting, weighting
 from bearingdyn.types import Array, Complex
 
 AUDIBLE = 44100.0  # samples a second that carry 20 kHz
+SETTLED = 0.2  # s, in which the filters of the bands start
 
 
 def weighted_signal(samples: ArrayLike, rate: float, kind: Weighting = "A") -> Array:
@@ -99,13 +98,17 @@ def _between(f: Array, H: Complex, at: Array) -> Complex:
     return np.asarray(np.interp(at, f, np.abs(H)) * np.exp(1j * np.interp(at, f, phase)))
 
 
-def loudness(pressure: ArrayLike, rate: float, field: str = "free") -> Any:
+def loudness(pressure: ArrayLike, rate: float, field: str = "free") -> float:
     """Loudness of a steady sound, sone, by the package mosqito (extra "sound").
+
+    The bands are those of the standard's own filters, over the time in which they have settled; mosqito's
+    `loudness_zwst` takes other filters, and their start with them: 4.14 sone of half a second of the tone of
+    60 dB, instead of 4.02.
 
     Parameters
     ----------
     pressure
-        (n,), Pa, half a second or more.
+        (n,), Pa, half a second or more, of which the first fifth of a second only sets the filters going.
     rate
         Samples a second; other than 48 kHz it is resampled.
     field
@@ -114,32 +117,38 @@ def loudness(pressure: ArrayLike, rate: float, field: str = "free") -> Any:
     Returns
     -------
     float
-        Sone: 1 of a tone of 1 kHz and 40 dB, 4 of 60 dB.
+        Sone: 1.00 of a tone of 1 kHz and 40 dB, 4.02 of 60 dB.
 
     Raises
     ------
     ImportError
-        Where mosqito is not installed.
+        Where mosqito is not installed, or is of a version without these filters.
     ValueError
         For a signal that is too short, a rate that does not carry the audible band, and another field.
 
     References
     ----------
-    ISO 532-1:2017 (Zwicker), stationary sounds.
+    ISO 532-1:2017 (Zwicker), clause 5: stationary sounds.
     """
     one_of("field", field, ("free", "diffuse"))
     x, rate = signal("pressure", pressure), positive("rate", rate)
     require(
-        rate >= 0.5 * AUDIBLE, "rate", rate, f"its step cannot carry the audible band; it must be {AUDIBLE:g}"
+        rate >= 0.5 * AUDIBLE,
+        "rate",
+        rate,
+        f"its step cannot carry the audible band; it must be {AUDIBLE:g}, and half that at least",
     )
     require(x.size >= 0.5 * rate, "pressure", f"{x.size / rate:.3g} s", "it must last half a second or more")
     try:
-        from mosqito.sq_metrics import loudness_zwst
+        from mosqito.sq_metrics.loudness.loudness_zwst._calc_slopes import _calc_slopes
+        from mosqito.sq_metrics.loudness.loudness_zwst._main_loudness import _main_loudness
+        from mosqito.sq_metrics.loudness.loudness_zwtv._third_octave_levels import _third_octave_levels
     except ImportError as error:
-        raise ImportError(f'loudness needs mosqito: pip install "bearingdyn[sound]" ({error})') from error
+        raise ImportError(f'loudness needs mosqito 1.2: pip install "bearingdyn[sound]" ({error})') from error
     import scipy.signal
 
     if rate != 48000.0:
-        count = round(x.size * 48000.0 / rate)
-        x = scipy.signal.resample(x, count)
-    return float(loudness_zwst(x, 48000, field_type=field)[0])
+        x = scipy.signal.resample(x, round(x.size * 48000.0 / rate))
+    levels, time, _ = _third_octave_levels(x, 48000)
+    mean = 10.0 * np.log10(np.mean(10.0 ** (levels[:, time > SETTLED] / 10.0), axis=1))
+    return float(_calc_slopes(_main_loudness(mean, field))[0])

@@ -67,8 +67,8 @@ def sound_power(
     density, sound_speed
         Of the medium, kg/m³ and m/s; those of air at 20 °C.
     element_size
-        Side of the radiating panels, m; None: a quarter of the shortest wavelength of each octave, and an
-        tenth of the smallest body.
+        Side of the radiating panels, m; None: a quarter of the shortest wavelength of each octave, and a
+        tenth of the smallest body at most.
     cache
         A folder for what was solved, by the hash of the panels' source; None: nothing is kept.
     progress

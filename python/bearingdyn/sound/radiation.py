@@ -5,7 +5,10 @@ Pressure p and its slope g = ∂p/∂n = −iωρ v on the surface, time as exp(
     (½ − K) p = −V g        and        D p = −(½ + K′) g.
 
 Each alone fails at frequencies of the inside. Their sum (½ − K + α D) p = −(V + α(½ + K′)) g with a complex
-α does not (Burton and Miller); by Galerkin's method, p linear and g constant on triangles, it gives p. The
+α does not (Burton and Miller); by Galerkin's method, p linear and g constant on triangles, it gives p. With
+a real α = L, the longest side of the box around the surface, it fails only where the inside resonates with
+slopes −p/L at its walls: at kL above 2.06, and above a floor at 1.81, as among all insides of one volume the
+ball is the lowest (Daners), and none has more than L³, with its image 2 L³. The
 reaction ⟨h, p⟩ of one velocity's pressure on another's is then taken from the form
 
     F(h, g) = −⟨h, V g⟩ + ⟨(½ + K′)h, p_g⟩ + ⟨p_h, (½ + K′)g⟩ + ⟨D p_h, p_g⟩,
@@ -17,6 +20,7 @@ low frequency, which ⟨h, p⟩ itself loses in the error of p.
 References
 ----------
 A. J. Burton, G. F. Miller, Proc. R. Soc. Lond. A 323 (1971) 201.
+D. Daners, Math. Ann. 335 (2006) 767.
 J.-C. Nédélec, Acoustic and Electromagnetic Equations, Springer 2001.
 """
 
@@ -167,8 +171,9 @@ def _pressure(surface: TriangleSurface, B: Array, k: float) -> tuple[Complex, Co
     V, V1, Kt, K, D = helmholtz(surface.points, surface.faces, k, surface.floor)
     P0, P1 = _masses(surface)
     L = Kt @ B + 0.5 * (P0 @ B)
-    # Burton and Miller's factor: its sign keeps the sum well conditioned; bounded at low frequency
-    alpha = -1j / max(k, 1.0 / surface.extent)
+    # Burton and Miller's factor: its sign keeps the sum well conditioned. Below all resonances it is real,
+    # lest errors of p get out of phase and drown the power of quadrupoles, (ka)⁵/27 of what swings to and fro
+    alpha = -1j / k if k * surface.extent > 1.0 else surface.extent
     right = -(V1 @ B) - alpha * L
     K *= -1.0
     K += alpha * D + (0.5 * P1).toarray()
