@@ -115,6 +115,30 @@ def test_the_rows_of_a_set_stand_side_by_side() -> None:
     assert centres == {round(1e3 * z, 6) for z in (*places, 0.14)}
 
 
+def test_notes_lie_clear_of_other_words_where_there_is_no_list() -> None:
+    ax = bd.examples.fan().draw(table=False)
+    ax.figure.canvas.draw()
+    note = next(t for t in ax.texts if t.get_text().startswith("gravity")).get_window_extent()
+    others = [t.get_window_extent() for t in ax.texts if t.get_text() and "gravity" not in t.get_text()]
+    assert len(others) > 8
+    assert not any(note.overlaps(each) for each in others)
+    assert ax.figure.bbox.containsx(note.x0)
+    assert ax.figure.bbox.containsy(note.y0), "within the sheet"
+
+
+def test_balloons_stand_above_places_whose_part_is_not_drawn() -> None:
+    app = bd.Application()
+    app.add("shaft", bd.Shaft([bd.Section(0.2, 0.02)], {"a": 0.01, "b": 0.19}))
+    box = bd.Housing(0.09, 0.12, 0.02, 0.04, 0.07, f_max=5e3, element_size=0.02).superelement()
+    app.add("box", box)
+    app.connect("shaft.a", "box.bore", fits=False)
+    app.ground("box.feet")
+    ax = app.draw()
+    number = next(t for t in ax.texts if t.get_text() == "1")
+    assert machine(app.plan).missing == ["box"]
+    assert number.get_position()[1] > 1e3 * app.plan.positions()["box.top"][1]
+
+
 def test_an_arrow_stands_on_the_surface_that_it_presses(layered: bd.Application) -> None:
     ax = layered.draw()
     arrows = [t for t in ax.texts if getattr(t, "arrow_patch", None) is not None and t.get_text() == ""]

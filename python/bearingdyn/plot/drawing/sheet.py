@@ -94,9 +94,9 @@ def draw(app: Application, ax: Axes | None = None, *, table: bool = True) -> Axe
             _resize(ax, foot - 10 * scale, top, LINE * (len(rows) + len(notes) + 3.4))
             _table(ax, rows.values(), notes + _lost(shown))
         elif own:
-            _resize(ax, foot - 10 * scale, top, 0.1)
+            _resize(ax, foot - 10 * scale, top, 0.1 + LINE * len(notes))
         if notes and not (own and table):
-            ax.text(0.0, 1.0, "\n".join(notes), transform=ax.transAxes, fontsize=TEXT, va="top", color="0.2")
+            ax.text(0.0, 0.0, "\n".join(notes), transform=ax.transAxes, fontsize=TEXT, va="top", color="0.2")
     return ax
 
 
@@ -104,8 +104,8 @@ def draw(app: Application, ax: Axes | None = None, *, table: bool = True) -> Axe
 
 
 def _extent(shown: Machine) -> tuple[Array, Array]:
-    """Lowest and highest z and y, mm, of all that is drawn to scale."""
-    at = [shown.corners()]
+    """Lowest and highest z and y, mm, of all that is drawn to scale, and of its places."""
+    at = [shown.corners(), *(place[None, [2, 1]] for place in shown.places.values())]
     for joint in shown.plan.bearings.values():
         place = shown.balls(joint)
         if place is not None:
