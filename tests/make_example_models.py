@@ -13,17 +13,16 @@ HERE = Path(__file__).resolve().parents[1] / "python" / "bearingdyn" / "examples
 def models(*names: str) -> dict[str, Model]:
     """The machines with what their files ask of them; all of them, where none is named."""
     asked = {
-        "motor": ("A small motor with rubber layers", "shaft.middle.y", "left_housing.top.y", None),
-        "fan": ("An overhung fan on rubber feet", "shaft.wheel.y", "shaft.middle.y", None),
-        "spindle": ("A grinding spindle, preloaded", "shaft.nose.y", "shaft.front.y", None),
-        "pump": ("A pump with one layered bearing", "shaft.impeller.y", "front_housing.top.y", None),
+        "motor": ("A small motor with rubber layers", "shaft.middle.y", "left_housing.top.y"),
+        "fan": ("An overhung fan on rubber feet", "shaft.wheel.y", "shaft.middle.y"),
+        "spindle": ("A grinding spindle, preloaded", "shaft.nose.y", "shaft.front.y"),
+        "pump": ("A pump with one layered bearing", "shaft.impeller.y", "front_housing.top.y"),
     }
     found = {}
-    for name, (title, force, seen, after) in asked.items():
+    for name, (title, force, seen) in asked.items():
         if names and name not in names:
             continue
         app = getattr(examples, name)()
-        state = {} if after is None else {"after": after}
         frequency = [10.0, 31.0, 100.0, 310.0, 1000.0]
         analyses = [
             Analysis("modes", "modes", {"count": 12, "rpm": 3000}),
@@ -38,7 +37,7 @@ def models(*names: str) -> dict[str, Model]:
             ),
             Analysis("run", "transient", {"rpm": 3000, "dt": 5e-6, "steps": 400, "record": [force, seen]}),
         ]
-        found[name] = Model(app, analyses, state, title, {}, {"rubber": examples.rubber()})
+        found[name] = Model(app, analyses, {}, title, {}, {"rubber": examples.rubber()})
     return found
 
 

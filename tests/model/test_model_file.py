@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import time
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ import pytest
 import bearingdyn as bd
 import make_example_models
 from bearingdyn import examples
+from bearingdyn.bearing import Pair
 from bearingdyn.cli import main
 from bearingdyn.core import SolverError
 from bearingdyn.model.key_lines import key_lines
@@ -226,6 +228,19 @@ def test_every_kind_of_joint_and_load_comes_back(tmp_path: Path) -> None:
     assert np.array_equal(one["record"].values, other["record"].values)
 
 
+def test_the_rows_of_a_set_come_back_to_their_places(tmp_path: Path) -> None:
+    app = bd.Application()
+    app.add("shaft", bd.Shaft([bd.Section(0.2, 0.03)], {"a": 0.03, "b": 0.17}))
+    app.ground("shaft.b", stiffness=[1e6] * 6)
+    pair = Pair(bd.catalogue.bearing("7206C"), "DB", distance=0.016, preload_force=100.0)
+    app.bearing("set", pair, inner="shaft.a", outer="ground")
+    app.load("shaft.b", (0.0, -50.0, 0.0, 0.0, 0.0, 0.0))
+    bd.write_model(app, tmp_path / "pair.toml")
+    back = bd.read_model(tmp_path / "pair.toml").application
+    assert [b.place for b in back.plan.bearings.values()] == [b.place for b in app.plan.bearings.values()]
+    assert np.array_equal(bd.equilibrium(back).x, bd.equilibrium(app).x)
+
+
 def test_what_no_text_can_hold_is_named(tmp_path: Path) -> None:
     app = bd.Application()
     app.add("box", bd.RigidBody(2.0, (1e-3, 1e-3, 1e-3)).superelement())
@@ -250,6 +265,8 @@ BAD = [
     ('"16 mm"', '"= 1 / 0"', 26, "parts.layer.width", "has no value"),
     ('material = "rubber"', 'material = "ruber"', 27, "parts.layer.material", "did you mean 'rubber'"),
     ("[parts.layer]", "[parts.lager]", 34, "bearings.ball", "names no part"),
+    ('designation = "6205"', 'desgnation = "6205"', 30, "bearings.ball.desgnation", "mean 'designation'"),
+    ("damping = 30.0", "dampin = 30.0", 32, "bearings.ball.dampin", "did you mean 'damping'"),
     ('designation = "6205"', 'designation = "6299"', 30, "bearings.ball.designation", "6299"),
     ('outer = "layer.inner"\n', "", 29, "bearings.ball", "lacks outer"),
     ('ground = "layer.outer"', 'grund = "layer.outer"', 36, "joints[1]", "it must have one of"),
@@ -364,6 +381,25 @@ def test_200_mutated_files_are_refused_with_line_and_key_or_run(bench: Path) -> 
 
 
 # ------------------------------------------------------------------------------------------- small things
+
+
+def test_what_is_no_model_at_all_is_told_with_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "x.toml"
+    for data, said in ((b"\xff\xfe", "no UTF-8"), (b"a = " + b"[" * 20_000, "nested too deep")):
+        path.write_bytes(data)
+        with pytest.raises(ValueError, match=said) as caught:
+            bd.read_model(path)
+        assert str(path) in str(caught.value)
+
+
+def test_lines_of_many_numbers_are_found_in_one_pass() -> None:
+    # a load sampled at 50 000 times; counting the lines anew at every key would take half a minute
+    text = "a = [\n" + "".join(f"    {k}.5,\n" for k in range(50_000)) + "]\nb = 1\n"
+    start = time.process_time()
+    found = key_lines(text)
+    assert found["a", 49_999] == 50_001
+    assert found["b",] == 50_003
+    assert time.process_time() - start < 5.0  # 0.3 s where nothing else runs
 
 
 def test_lines_of_keys() -> None:

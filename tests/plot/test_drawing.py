@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 
 import bearingdyn as bd
+from bearingdyn.bearing import Pair
 from bearingdyn.demo import motor
 from bearingdyn.parts.profile import cut
+from bearingdyn.plot.drawing.labels import spread
 from bearingdyn.plot.drawing.loads import value
 from bearingdyn.plot.drawing.machine import machine
-from bearingdyn.plot.drawing.sheet import spread
 from bearingdyn.plot.drawing.words import designation
 
 matplotlib.use("Agg")
@@ -89,9 +90,53 @@ def test_the_drawing_names_designations_loads_places_and_distances(layered: bd.A
         assert text in said, text
     assert "rubber, G0 1 MPa" in " ".join(said)
     assert any("ball bearing 6203, 8 balls" in t for t in said)
-    assert [t for t in said if re.fullmatch(r"\d", t)] == [str(k) for k in [*range(1, 10)] * 2] or {
-        str(k) for k in range(1, 10)
-    } <= set(said)
+    for k in range(1, 10):
+        assert said.count(str(k)) == 2, "each number in its balloon and in the list"
+
+
+def paired() -> bd.Application:
+    """A shaft in a pair back to back, its rows 8 mm to either side of the seat, and a bearing."""
+    ball = bd.catalogue.bearing("7206C")
+    app = bd.Application()
+    app.add("shaft", bd.Shaft([bd.Section(0.2, 0.03)], {"a": 0.03, "b": 0.17}))
+    app.bearing("set", Pair(ball, "DB", distance=0.016, preload_force=100.0), inner="shaft.a", outer="ground")
+    app.bearing("b", bd.catalogue.bearing("6206"), inner="shaft.b", outer="ground")
+    return app
+
+
+def test_the_rows_of_a_set_stand_side_by_side() -> None:
+    app = paired()
+    places = [app.plan.bearings[f"set-{k}"].place for k in (1, 2)]
+    assert places[0] == -places[1] != 0.0
+    ax = app.draw()
+    from matplotlib.patches import Circle
+
+    centres = {round(float(p.center[0]), 6) for p in ax.patches if isinstance(p, Circle)}
+    assert centres == {round(1e3 * z, 6) for z in (*places, 0.14)}
+
+
+def test_notes_lie_clear_of_other_words_where_there_is_no_list() -> None:
+    ax = bd.examples.fan().draw(table=False)
+    ax.figure.canvas.draw()
+    note = next(t for t in ax.texts if t.get_text().startswith("gravity")).get_window_extent()
+    others = [t.get_window_extent() for t in ax.texts if t.get_text() and "gravity" not in t.get_text()]
+    assert len(others) > 8
+    assert not any(note.overlaps(each) for each in others)
+    assert ax.figure.bbox.containsx(note.x0)
+    assert ax.figure.bbox.containsy(note.y0), "within the sheet"
+
+
+def test_balloons_stand_above_places_whose_part_is_not_drawn() -> None:
+    app = bd.Application()
+    app.add("shaft", bd.Shaft([bd.Section(0.2, 0.02)], {"a": 0.01, "b": 0.19}))
+    box = bd.Housing(0.09, 0.12, 0.02, 0.04, 0.07, f_max=5e3, element_size=0.02).superelement()
+    app.add("box", box)
+    app.connect("shaft.a", "box.bore", fits=False)
+    app.ground("box.feet")
+    ax = app.draw()
+    number = next(t for t in ax.texts if t.get_text() == "1")
+    assert machine(app.plan).missing == ["box"]
+    assert number.get_position()[1] > 1e3 * app.plan.positions()["box.top"][1]
 
 
 def test_an_arrow_stands_on_the_surface_that_it_presses(layered: bd.Application) -> None:

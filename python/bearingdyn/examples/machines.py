@@ -11,6 +11,7 @@ from bearingdyn.bearing import catalogue
 from bearingdyn.checks import one_of
 from bearingdyn.material import Maxwell
 from bearingdyn.parts import Disc, Housing, Layer, RigidBody, Section, Shaft
+from bearingdyn.units import rpm
 
 NAMES = ("motor", "fan", "spindle", "pump")
 
@@ -60,7 +61,8 @@ def motor(layers: bool = True, material: Maxwell | None = None) -> Application:
         ),
     )
     app.free("shaft.middle")
-    # the outer ring of the 6203: groove radius and outside radius, width, m; the layer outside of it
+    # the outer ring of the 6203 as a plain ring: radii and width, m, 2 mm wider than the bearing; the layer
+    # outside of it
     ring, thickness, width = (0.0170, 0.0200, 0.014), 0.004, 0.014
     bore = ring[1] + (thickness if layers else 0.0)
     for side in ("left", "right"):
@@ -114,7 +116,7 @@ def fan() -> Application:
     app.gravity((0.0, -9.81, 0.0))
     app.load("shaft.wheel", (0.0, 0.0, 60.0, 0.0, 0.0, 0.0))
     # G 6.3: eccentricity times speed is 6.3 mm/s
-    app.unbalance("shaft.wheel", wheel.mass * 6.3e-3 / (1500.0 * 3.141592653589793 / 30.0))
+    app.unbalance("shaft.wheel", wheel.mass * 6.3e-3 / (1500.0 * rpm))
     return app
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from typing import TypeAlias
 
 Key: TypeAlias = tuple[str | int, ...]
@@ -26,6 +27,7 @@ def key_lines(text: str) -> dict[Key, int]:
 class _Scanner:
     def __init__(self, text: str) -> None:
         self.text, self.at = text, 0
+        self.breaks = [found.start() for found in re.finditer("\n", text)]
         self.lines: dict[Key, int] = {}
         self.counts: dict[Key, int] = {}  # of the arrays of tables
         here: Key = ()
@@ -47,8 +49,9 @@ class _Scanner:
         return found[0]
 
     def _mark(self, key: Key) -> None:
+        line = bisect_left(self.breaks, self.at) + 1
         for k in range(1, len(key) + 1):
-            self.lines.setdefault(key[:k], self.text.count("\n", 0, self.at) + 1)
+            self.lines.setdefault(key[:k], line)
 
     def _key(self) -> list[str]:
         found = []

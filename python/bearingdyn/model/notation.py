@@ -61,12 +61,11 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         raise ValueError(f"{text!r} is no arithmetic; write numbers, parameters, units and + - * / **")
 
     try:
-        tree = ast.parse(text.strip(), mode="eval")
+        return of(ast.parse(text.strip(), mode="eval"))
     except (SyntaxError, RecursionError, MemoryError):
         raise ValueError(
             f"{text!r} is no arithmetic; write numbers, parameters, units and + - * / **"
         ) from None
-    return of(tree)
 
 
 def quantity(text: str, unit: str) -> float | None:

@@ -7,13 +7,14 @@ import os
 import re
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from bearingdyn.analysis import equilibrium
 from bearingdyn.application import Application
-from bearingdyn.bearing import catalogue
-from bearingdyn.checks import existing, meant, named, require
+from bearingdyn.bearing import BallBearing, catalogue
+from bearingdyn.checks import existing, meant, named, number, require
 from bearingdyn.material import Maxwell, fit_maxwell, master_curve, read_dma, sample_dma_path
 from bearingdyn.model.key_lines import Key, key_lines
 from bearingdyn.model.kinds import MATERIALS, Shelf, kinds
@@ -25,6 +26,15 @@ FORMAT = 1
 TABLES = ("parameters", "materials", "parts", "bearings", "fits", "temperatures")
 LISTS = ("joints", "loads", "analyses")
 WORDS = ("format", "title", "include", "equilibrium")
+# of a bearing in its place, and of the bearing itself
+HUNG = ("inner", "outer", "offset", "place", "fits", "mirrored")
+BEARING = (
+    "designation",
+    "balls",
+    "like",
+    "type",
+    *(k for k in inspect.signature(BallBearing).parameters if k != "overrides"),
+)
 SAMPLE = "sample"  # instead of a path: the DMA table that the package ships
 
 
@@ -91,9 +101,16 @@ def read_model(path: str | os.PathLike[str], **parameters: float | str) -> Model
 
 def _load(file: Path, origin: Origin, above: tuple[Path, ...], seen: list[Path]) -> dict[str, Any]:
     """The tables of a file and of those that it includes, each key in one of them."""
-    text = file.read_text(encoding="utf-8")
+    try:
+        text = file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise Located(
+            f"{file}: byte {error.start + 1} is no UTF-8; a model file must be text in UTF-8"
+        ) from None
     try:
         held = tomllib.loads(text)
+    except RecursionError:
+        raise Located(f"{file}: its brackets are nested too deep; a model needs no more than ten") from None
     except tomllib.TOMLDecodeError as error:
         found = re.search(r"at line (\d+)", str(error))
         line = int(found[1]) if found else text.count("\n") + 1
@@ -241,9 +258,11 @@ def _bearings(shelf: Shelf, app: Application, held: Mapping[str, Any]) -> None:
                 if field not in table:
                     raise ValueError(f"bearing {name!r} lacks {field}; it must name an interface")
                 hung[field] = table[field]
-            own = {
-                k: v for k, v in table.items() if k not in ("inner", "outer", "offset", "fits", "mirrored")
-            }
+            own = {k: v for k, v in table.items() if k not in HUNG}
+            for k in own:
+                with at(shelf.origin, (*key, k)):
+                    if k not in BEARING or k == "overrides":
+                        raise ValueError(f"{k} is no field of a bearing; {meant(k, BEARING)}")
         if "like" in own:
             with at(shelf.origin, (*key, "like")):
                 _only(own, ("like",))
@@ -267,6 +286,11 @@ def _bearings(shelf: Shelf, app: Application, held: Mapping[str, Any]) -> None:
             offset, fits = shelf.plain(table.get("offset", 0.0), "m"), table.get("fits", True)
             require(isinstance(fits, bool), "fits", fits, "it must be true or false")
             app.bearing(name, made[name], **hung, offset=offset, fits=fits)
+        if "place" in table:
+            with at(shelf.origin, (*key, "place")):
+                require(not fits, "fits", fits, "it must be false where place is given")
+                place = number("place", shelf.plain(table["place"], "m"), "it must be a finite length in m")
+                app.plan.bearings[name] = replace(app.plan.bearings[name], place=place)
     for name, table in _table(shelf.origin, held, "fits").items():
         key = ("fits", name)
         with at(shelf.origin, key):

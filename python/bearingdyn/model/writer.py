@@ -99,7 +99,7 @@ def model_text(model: Model) -> str:
     balls: dict[int, str] = {}
     for name, joint in plan.bearings.items():
         ends: dict[str, Any] = {"inner": str(joint.inner), "outer": str(joint.outer)}
-        ends |= {"offset": joint.offset} if joint.offset else {}
+        ends |= {name: x for name in ("offset", "place") if (x := getattr(joint, name))}
         if id(joint.bearing) in balls:
             own: dict[str, Any] = {"like": balls[id(joint.bearing)]}
         else:

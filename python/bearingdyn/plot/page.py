@@ -37,7 +37,7 @@ def svg(figure: Figure, told: str) -> str:
 
     held = io.StringIO()
     settings: Any = matplotlib.rcParams
-    # the same drawing gives the same text, and text stays text
+    # the same drawing gives the same text; letters are paths, for a reader without the font
     before = {key: settings[key] for key in ("svg.hashsalt", "svg.fonttype")}
     settings.update({"svg.hashsalt": "bearingdyn", "svg.fonttype": "path"})
     try:

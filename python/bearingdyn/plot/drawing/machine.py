@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearingdyn.application import Place, Plan, arm
+from bearingdyn.application import BearingJoint, Place, Plan, arm
 from bearingdyn.parts import HasProfile, Matter, Outline, Outlined, Profile, cut
 from bearingdyn.types import Array
 
@@ -50,6 +50,11 @@ class Machine:
         found = [p.reach(z) for p in self.parts if part in (None, p.name)]
         known = [f for f in found if f is not None]
         return (min(f[0] for f in known), max(f[1] for f in known)) if known else None
+
+    def balls(self, joint: BearingJoint) -> Array | None:
+        """Centre (3,) of a bearing's balls, mm, beside its interface where it is a row of a set; or None."""
+        at = self.places.get(str(joint.inner))
+        return None if at is None else at + (0.0, 0.0, 1e3 * joint.place)
 
     def corners(self) -> Array:
         """All corners (k, 2), mm."""

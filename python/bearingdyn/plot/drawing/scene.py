@@ -57,7 +57,7 @@ def scene(app: Application) -> Any:
         at = places.get(str(joint.inner))
         if at is None:
             continue
-        b = joint.bearing
+        b, at = joint.bearing, at + (0.0, 0.0, joint.place)
         balls = [
             pyvista.Sphere(
                 radius=0.5 * b.Dw, center=at + _around(0.5 * b.Dpw, b.angle0 + 2 * np.pi * k / b.Z)
