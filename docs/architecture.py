@@ -83,7 +83,7 @@ def draw(path: Path) -> None:
         arrow((bend, ys + HEIGHT / 2 + 0.05), (bend, yt + HEIGHT))
     ax.text(
         -0.1, -0.45, "Data move to the right only. No room imports one beside or after it; "
-        "the core knows arrays, balls, branches and time, and one room imports it.",
+        "the core knows arrays, balls, branches and time.",
         fontsize=7.6, color=SOFT, va="center",
     )  # fmt: skip
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -223,8 +223,11 @@ def one_speed(speed: Any, rpm: Any, default: float | None = None, what: str = "s
     if speed is not None:
         raise ValueError(f"rpm is {rpm!r}; it must be left out, as {what} is given too: give one of them")
     remedy = "it must be finite, in revolutions a minute"
-    if isinstance(rpm, tuple) and len(rpm) == 2 and np.ndim(rpm[1]) > 0:
+    try:
+        profile = isinstance(rpm, tuple) and len(rpm) == 2 and np.ndim(rpm[1]) > 0
+        several = np.ndim(rpm) > 0
+    except (TypeError, ValueError):  # of what NumPy makes no array, such as a Dataset
+        raise ValueError(f"rpm is {rpm!r}; {remedy}") from None
+    if profile:
         return rpm[0], numbers("rpm", rpm[1], remedy) * (math.pi / 30)
-    if np.ndim(rpm) > 0:
-        return numbers("rpm", rpm, remedy) * (math.pi / 30)
-    return number("rpm", rpm, remedy) * (math.pi / 30)
+    return (numbers if several else number)("rpm", rpm, remedy) * (math.pi / 30)

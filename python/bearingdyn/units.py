@@ -251,7 +251,6 @@ def _converting(
     if unknown:
         raise TypeError(f"{function.__qualname__} has no parameters {sorted(unknown)}")
     at = [(order.index(name), name, unit) for name, unit in wanted.items()]
-    revolving = "rpm" in order
 
     @functools.wraps(function)
     def convert(*args: Any, **kwargs: Any) -> Any:
@@ -263,20 +262,9 @@ def _converting(
                 value = si(name, given[k], unit)
                 if value is not given[k]:
                     given = (*given[:k], value, *given[k + 1 :])
-        if revolving and kwargs.get("rpm") is not None:
-            _check_rpm(kwargs["rpm"])
         return function(*given, **kwargs)
 
     return convert
-
-
-def _check_rpm(value: Any) -> None:
-    """Refuse an `rpm` that NumPy makes no number or numbers of, such as a Dataset: ValueError."""
-    try:
-        for each in value if isinstance(value, tuple) else (value,):
-            np.ndim(each)
-    except (TypeError, ValueError):
-        raise ValueError(f"rpm is {value!r}; it must be finite, in revolutions a minute") from None
 
 
 def display(result: xarray.Dataset, *wanted: str) -> xarray.Dataset:

@@ -199,3 +199,16 @@ def test_a_layer_at_one_modulus_is_quick(capsys: pytest.CaptureFixture[str]) -> 
             end=" ",
         )
     assert first < 2.0  # wanted 0.3 s on one core; the rest is room for a loaded machine
+
+
+@pytest.mark.parametrize("outwards", [0.3, -1.2])
+def test_strain_does_not_depend_on_the_direction_of_the_motion(outwards: float) -> None:
+    """A round layer that is moved and tilted about another axis strains the same."""
+    layer = Layer(0.020, 0.024, 0.012, rubber(1e6 + 1e5j))
+    along = np.array([1e-5, 0, 2e-6, 0, 1e-4, 0])
+    c, s = math.cos(outwards), math.sin(outwards)
+    turned = np.array([1e-5 * c, 1e-5 * s, 2e-6, -1e-4 * s, 1e-4 * c, 0])
+    first, second = layer.strain(along), layer.strain(turned)
+    assert second.rms == pytest.approx(first.rms, rel=1e-9)  # a mean over the turn: exact but for round-off
+    assert second.largest == pytest.approx(first.largest, rel=2e-3)  # at azimuths that are given
+    assert second.logarithmic == pytest.approx(first.logarithmic, rel=3e-4)  # 1e-4 by the azimuths

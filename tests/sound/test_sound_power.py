@@ -252,7 +252,7 @@ def test_bad_input_is_named(app, change, text) -> None:
 def test_unknown_surfaces_and_parts_without_a_skin_are_named(app) -> None:
     with pytest.raises(ValueError, match="has no surface 'inside'"):
         bd.sound_power(app, [100.0], ["housing.bore.z"], ["housing.inside"])
-    with pytest.raises(ValueError, match="it must name one surface or more"):
+    with pytest.raises(ValueError, match="it must be a list of surfaces, of at least 1"):
         bd.sound_power(app, [100.0], ["housing.bore.z"], [])
     bare = bd.Housing(0.1, 0.1, 0.03, 0.04, f_max=0.0).superelement()
     other = bd.Application()

@@ -86,7 +86,7 @@ def modes(
     [112.54, 112.54, 112.54, 159.15, 159.15, 159.15]
     """
     if count is not None:
-        count = whole("count", count, 0)
+        count = whole("count", count, 1)
     damped, speed = truth("damped", damped), number("speed", one_speed(speed, rpm, 0.0))
     one_of("contacts", contacts, ("film", "viscous"))
     system = source.linearised() if isinstance(source, Equilibrium) else linear(source).system

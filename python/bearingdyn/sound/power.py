@@ -20,7 +20,7 @@ from bearingdyn.analysis import (
     surface_of,
 )
 from bearingdyn.application import Application, arm
-from bearingdyn.checks import name_list, number, positive, real, require
+from bearingdyn.checks import name_list, number, one_speed, positive, real, require
 from bearingdyn.notice import BeyondModes, CoarsePanels, warn
 from bearingdyn.progress import Progress, told
 from bearingdyn.sound.radiation import DENSITY, PANELS, SOUND_SPEED
@@ -28,18 +28,21 @@ from bearingdyn.sound.radiators import Radiators
 from bearingdyn.sound.resistance import heard, octaves, solved_octave
 from bearingdyn.system import PartTerm, System
 from bearingdyn.types import Array
+from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
 
 
+@takes(frequency="Hz", speed="rad/s")
 def sound_power(
     source: Equilibrium | Application | System,
     frequency: ArrayLike,
     inputs: Sequence[str],
     surfaces: Sequence[str],
     *,
-    speed: float = 0.0,
+    speed: float | None = None,
+    rpm: float | None = None,
     floor: float | None = None,
     microphones: ArrayLike | None = None,
     density: float = DENSITY,
@@ -56,7 +59,7 @@ def sound_power(
 
     Parameters
     ----------
-    source, frequency, inputs, speed
+    source, frequency, inputs, speed, rpm
         As in `radiated_power`.
     surfaces
         Surfaces of parts, by part and name ("housing.outside").
@@ -103,12 +106,12 @@ def sound_power(
     A. J. Burton, G. F. Miller, Proc. R. Soc. Lond. A 323 (1971) 201.
     """
     f = frequencies(frequency)
-    inputs, surfaces = name_list("inputs", inputs), name_list("surfaces", surfaces, "surfaces")
+    inputs, surfaces = name_list("inputs", inputs, least=1), name_list("surfaces", surfaces, "surfaces", 1)
     density, sound_speed = positive("density", density), positive("sound_speed", sound_speed)
-    require(len(surfaces) > 0, "surfaces", surfaces, "it must name one surface or more")
     if element_size is not None:
         element_size = positive("element_size", element_size, "it must be a positive length in m")
     places = _microphones(microphones)
+    speed = number("speed", one_speed(speed, rpm, 0.0))
     state = linear(source)
     state.system.check_speed(speed)
     found = [surface_of(state.system, name) for name in surfaces]

@@ -4,8 +4,8 @@ Each octave has panels of its own, and Clenshaw and Curtis's points, which nest:
 smooth in f, and the polynomial through it converges geometrically: twice the points square its error. So the
 departure e of the polynomial through every second point tells the error of that through all: 4 e² at
 most, seen on bodies before one another, whose echoes swing most (2.3e-2 fell to 7.7e-4, .23 to .054). Its
-largest over an octave held in three octaves of other distances, where it was 4 to 36 times the error; at a
-single frequency near one solved twice it may be too low, by .43 dB while the octave is known to 3.7 dB.
+largest over an octave held in three octaves of other distances, where it was 3 to 36 times the error; at a
+single frequency near one solved twice it may be too low, by 1.7 dB at 9 points an octave, .43 at 17.
 """
 
 from __future__ import annotations
