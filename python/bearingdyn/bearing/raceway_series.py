@@ -60,7 +60,7 @@ class RacewaySeries:
 
     @property
     def columns(self) -> tuple[NDArray[np.intc], NDArray[np.intc], NDArray[np.intc]]:
-        """axial, order, sine: (n,) each, as the contact kernel takes them."""
+        """The terms' axial, order and sine, (n,) each, as the contact kernel takes them."""
         axial, order, sine = np.array(self.terms, dtype=np.intc).T.copy()
         return axial, order, sine
 

@@ -82,7 +82,7 @@ class Radiation:
 
     @cached_property
     def resistance(self) -> Array:
-        """Radiation resistance R = Re Z, (n, n): the power of amplitudes v is ½ vᴴ R v."""
+        """Radiation resistance R = Re Z, (n, n), by which amplitudes v give the power ½ vᴴ R v."""
         return np.asarray(0.5 * (self.impedance.real + self.impedance.real.T))
 
     def power(self, amplitudes: ArrayLike = (1.0,)) -> float:
