@@ -42,8 +42,9 @@ demo: $(VENV)/package
 
 test: ctest pytest
 
+# One thread of BLAS in each of the processes: theirs would only wait for one another.
 pytest: $(VENV)/package $(VENV)/test
-	$(PY) -m pytest -n auto --dist loadfile
+	OPENBLAS_NUM_THREADS=1 $(PY) -m pytest -n auto --dist loadfile
 
 ctest: $(BUILD)/ctest/build.ninja
 	meson compile -C $(BUILD)/ctest

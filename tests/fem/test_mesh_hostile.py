@@ -13,7 +13,9 @@ from fem.test_mesh_formats import BLOCK, ENDS, bdf, msh, unv, vtk_of_gmsh
 
 pytest.importorskip("skfem")
 
-SOON = 5.0  # s of the processor, asked for; the files below need a tenth or less
+SOON = (
+    60.0  # s of the processor, on a machine however busy: a file that hangs; those below need half a second
+)
 
 
 def doubling(count, line):

@@ -410,12 +410,18 @@ def test_what_is_no_model_at_all_is_told_with_its_file(tmp_path: Path) -> None:
 
 def test_lines_of_many_numbers_are_found_in_one_pass() -> None:
     # a load sampled at 50 000 times; counting the lines anew at every key grows with the square
-    text = "a = [\n" + "".join(f"    {k}.5,\n" for k in range(50_000)) + "]\nb = 1\n"
-    start = time.process_time()
-    found = key_lines(text)
-    assert found["a", 49_999] == 50_001
-    assert found["b",] == 50_003
-    assert time.process_time() - start < 5.0
+    def least(count: int) -> float:
+        text = "a = [\n" + "".join(f"    {k}.5,\n" for k in range(count)) + "]\nb = 1\n"
+        seconds = []
+        for _ in range(3):
+            start = time.process_time()
+            found = key_lines(text)
+            seconds.append(time.process_time() - start)
+        assert found["a", count - 1] == count + 1
+        assert found["b",] == count + 3
+        return min(seconds)
+
+    assert least(48_000) < 9.0 * least(12_000)  # 4 in one pass, 16 where each key counts anew
 
 
 def test_lines_of_keys() -> None:
