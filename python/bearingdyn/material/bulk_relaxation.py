@@ -50,7 +50,7 @@ class BulkRelaxation:
     >>> loss = bd.BulkRelaxation.of_loss_factor(0.02, (10.0, 10e3))
     >>> K = loss.modulus(2e9, 2 * 3.14159 * 1000.0)
     >>> f"{K.real / 1e9:.3f} GPa, loss factor {K.imag / K.real:.4f}"
-    '2.128 GPa, loss factor 0.0199'
+    '2.184 GPa, loss factor 0.0200'
     """
 
     share: tuple[float, ...]

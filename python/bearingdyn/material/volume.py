@@ -23,7 +23,18 @@ class Volume(Maxwell):
 
 
 def volume_of(material: Any) -> Volume | None:
-    """The volumetric term of a viscoelastic material; None where its bulk modulus is constant."""
+    """The volumetric term of a viscoelastic material; None where its bulk modulus is constant.
+
+    Parameters
+    ----------
+    material
+        With K, and perhaps `bulk`, its relaxation.
+
+    Returns
+    -------
+    Maxwell or None
+        K*(ω) as its complex modulus.
+    """
     bulk: BulkRelaxation | None = getattr(material, "bulk", None)
     if bulk is None:
         return None
@@ -39,10 +50,22 @@ def volume_of(material: Any) -> Volume | None:
 
 
 def constant_bulk(material: Any) -> float:
-    """Bulk modulus, Pa, that stands in K of a superelement: 0 where it has a term of its own."""
+    """Bulk modulus, Pa, that stands in K of a superelement: 0 where it has a term of its own.
+
+    Parameters
+    ----------
+    material
+        With K, and perhaps `bulk`, its relaxation.
+    """
     return 0.0 if getattr(material, "bulk", None) is not None else float(material.K)
 
 
 def is_volume(material: Any) -> bool:
-    """Whether a term of a superelement is one of volume, not of shear."""
+    """Whether a term of a superelement is one of volume, not of shear.
+
+    Parameters
+    ----------
+    material
+        That of the term.
+    """
     return isinstance(material, Volume)
