@@ -87,6 +87,7 @@ from bearingdyn.fem import (
 )
 from bearingdyn.material import (
     STEEL,
+    BulkRelaxation,
     DMAData,
     Elastic,
     FractionalZener,
@@ -100,6 +101,7 @@ from bearingdyn.material import (
     StrainSweep,
     TabulatedModulus,
     Yeoh,
+    doubts,
     fit_maxwell,
     fit_payne,
     master_curve,
@@ -161,6 +163,7 @@ __all__ = [
     "Application",
     "BallBearing",
     "BoreShape",
+    "BulkRelaxation",
     "ConstantDamping",
     "Cylinder",
     "DMAData",
@@ -232,6 +235,7 @@ __all__ = [
     "contact_statistics",
     "damping_sample",
     "dissipation",
+    "doubts",
     "energy_shares",
     "envelope_spectrum",
     "equilibrium",
