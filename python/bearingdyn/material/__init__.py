@@ -21,6 +21,7 @@ from bearingdyn.material.reading import (
 )
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
+from bearingdyn.material.spread import Spread, normals, uniforms
 from bearingdyn.material.superposition import LIMIT as KK_LIMIT
 from bearingdyn.material.superposition import (
     MasterCurve,
@@ -56,6 +57,7 @@ __all__ = [
     "RelaxationData",
     "RhoT",
     "ShiftTable",
+    "Spread",
     "StrainSweep",
     "Suspect",
     "TabulatedModulus",
@@ -66,6 +68,7 @@ __all__ = [
     "group_isotherms",
     "kk_ratio",
     "master_curve",
+    "normals",
     "one_curve",
     "read_dma",
     "read_strain_sweep",
@@ -75,5 +78,6 @@ __all__ = [
     "to_abaqus_prony",
     "to_ansys",
     "to_calculix",
+    "uniforms",
     "warn_beyond",
 ]

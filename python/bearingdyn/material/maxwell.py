@@ -18,6 +18,7 @@ from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
+from bearingdyn.material.spread import Drawable, Spread
 from bearingdyn.notice import warn
 from bearingdyn.pictures import picture
 from bearingdyn.types import Array, Complex
@@ -41,12 +42,12 @@ def _branches(name: str, values: ArrayLike) -> Array:
 
 @takes(G0="Pa", G="Pa", tau="s", eta0="Pa s", K="Pa", density="kg/m³", temperature="°C", band="Hz")
 @dataclass(frozen=True, init=False, eq=False)
-class Maxwell(Retunable, Softening):
+class Maxwell(Retunable, Softening, Drawable):
     """The generalised Maxwell model, viscoelastic in shear, elastic in volume.
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
     G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).
-    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
+    Two materials are equal if they agree in everything but `band`, `fit`, `low_end` and `spread`.
 
     Parameters
     ----------
@@ -79,6 +80,9 @@ class Maxwell(Retunable, Softening):
     payne
         Law of softening with the amplitude of strain; G0, G and tau are then those at the law's gamma_r. None
         for none: the material is linear.
+    spread
+        How far the parameters may be off; that of the fit unless given. It goes along to another temperature,
+        modulus or loss factor, whose factors count as exact; see `with_spread` and `draws`.
 
     Raises
     ------
@@ -109,6 +113,7 @@ class Maxwell(Retunable, Softening):
     fit: FitReport | None = field(repr=False)
     low_end: LowEnd | None = field(repr=False)
     payne: Payne | None = field(repr=False)
+    spread: Spread | None = field(repr=False)
 
     def _repr_html_(self) -> str:
         return str(picture("as_html", self))
@@ -144,6 +149,7 @@ class Maxwell(Retunable, Softening):
         fit: FitReport | None = None,
         low_end: LowEnd | None = None,
         payne: Payne | None = None,
+        spread: Spread | None = None,
     ) -> None:
         instance("Maxwell.fit", fit, (FitReport, type(None)), "it must be the report of a fit, or None")
         shifts = law is None or (callable(getattr(law, "log_shift", None)) and hasattr(law, "T_ref"))
@@ -155,6 +161,9 @@ class Maxwell(Retunable, Softening):
         )
         if band is None and fit is not None:
             band = fit.band
+        instance("Maxwell.spread", spread, (Spread, type(None)), "it must be a bd.material.Spread, or None")
+        if spread is None and fit is not None:
+            spread = Spread.of(fit)
         edges = band if band is None else vector("Maxwell.band", band, (2,), "lowest and highest, in Hz")
         if temperature is None and law is not None:
             temperature = law.T_ref
@@ -172,10 +181,13 @@ class Maxwell(Retunable, Softening):
             "fit": fit,
             "low_end": low_end if low_end is not None or fit is None else fit.low_end,
             "payne": payne,
+            "spread": spread,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
         self._validate()
+        if self.spread is not None and self.spread.fits > self.tau.size:  # branches were taken away since
+            object.__setattr__(self, "spread", None)
         if self.low_end is None and self.band is not None:
             known = LowEnd.of_band(self.band[0], self._at(self.band[0]).real)
             object.__setattr__(self, "low_end", known)
@@ -454,6 +466,8 @@ class Maxwell(Retunable, Softening):
                 for name, v in vars(self.payne).items()
                 if name != "fit"
             }
+        if self.spread is not None:
+            data["spread"] = self.spread.told_as
         return json.dumps(data, indent=1)
 
     @classmethod
@@ -477,6 +491,7 @@ class Maxwell(Retunable, Softening):
                 "band",
                 "low_end",
                 "payne",
+                "spread",
             }
         )
         if unknown:
@@ -485,7 +500,10 @@ class Maxwell(Retunable, Softening):
         vertical = data.pop("vertical", None)
         known = data.pop("low_end", None)
         softens = data.pop("payne", None)
+        spread = data.pop("spread", None)
         try:
+            if spread is not None:
+                data["spread"] = Spread(**spread)
             if softens is not None:
                 data["payne"] = Payne(**softens)
             if known is not None:
