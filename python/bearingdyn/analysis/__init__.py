@@ -24,6 +24,7 @@ from bearingdyn.analysis.orders import order_spectrum, track_orders
 from bearingdyn.analysis.part_velocities import part_velocities, surface_of
 from bearingdyn.analysis.radiated_power import radiated_power
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
+from bearingdyn.analysis.response_band import Band, band_of
 from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
@@ -36,6 +37,7 @@ from bearingdyn.analysis.unbalance_response import unbalance_response
 from bearingdyn.analysis.waterfall import waterfall
 
 __all__ = [
+    "Band",
     "BearingState",
     "Equilibrium",
     "Input",
@@ -45,6 +47,7 @@ __all__ = [
     "ThermalNetwork",
     "ThermalRunaway",
     "ball_channels",
+    "band_of",
     "bearing_sheet",
     "cage_ratios",
     "campbell",
