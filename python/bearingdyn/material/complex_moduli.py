@@ -24,6 +24,7 @@ from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
 from bearingdyn.material.superposition import MasterCurve, one_curve
+from bearingdyn.pictures import picture
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
@@ -107,6 +108,9 @@ class TabulatedModulus(Softening):
     payne: Payne | None = None
 
     __repr__ = short
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
         _check("TabulatedModulus", {"K": self.K, "density": self.density})
@@ -233,6 +237,9 @@ class PowerLaw(Softening):
     temperature: float | None = None
     payne: Payne | None = None
 
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
+
     def __post_init__(self) -> None:
         values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
         _check("PowerLaw", values)
@@ -306,6 +313,9 @@ class FractionalZener(Softening):
     law: Law | None = field(default=None)
     temperature: float | None = None
     payne: Payne | None = None
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
         values = {"G_inf": self.G_inf, "tau": self.tau, "K": self.K, "density": self.density}
