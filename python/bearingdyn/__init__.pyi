@@ -87,6 +87,7 @@ from bearingdyn.fem import (
 )
 from bearingdyn.material import (
     STEEL,
+    BulkRelaxation,
     DMAData,
     Elastic,
     FractionalZener,
@@ -100,6 +101,7 @@ from bearingdyn.material import (
     StrainSweep,
     TabulatedModulus,
     Yeoh,
+    doubts,
     fit_maxwell,
     fit_payne,
     master_curve,
@@ -145,6 +147,7 @@ from bearingdyn.parts import (
     quadrilaterals,
     specimen_factor,
 )
+from bearingdyn.reporting import report as report
 from bearingdyn.results import (
     open_result,
     save,
@@ -161,6 +164,7 @@ __all__ = [
     "Application",
     "BallBearing",
     "BoreShape",
+    "BulkRelaxation",
     "ConstantDamping",
     "Cylinder",
     "DMAData",
@@ -232,6 +236,7 @@ __all__ = [
     "contact_statistics",
     "damping_sample",
     "dissipation",
+    "doubts",
     "energy_shares",
     "envelope_spectrum",
     "equilibrium",
@@ -259,6 +264,7 @@ __all__ = [
     "read_nodes",
     "read_strain_sweep",
     "reduction_error",
+    "report",
     "ring_mesh",
     "ross_table",
     "sample_dma_path",
