@@ -105,6 +105,17 @@ class UnloadedBearing(Notice):
     """
 
 
+class NothingPushes(Notice):
+    """Notice: a march starts at rest and nothing pushes, so its record stays as it begins.
+
+    When: a march from an equilibrium in which no ball is pressed, of an application without any load, from
+    no displacement by `initial=` and no earlier state.
+
+    Remedy: add what pushes (`app.gravity`, `app.load`, `app.unbalance`), or start displaced with
+    `initial=`; zero speed and zero load need no march.
+    """
+
+
 class BeyondData(Notice):
     """Notice: a static answer rests on a modulus at longer times than the rubber's data speak of.
 
