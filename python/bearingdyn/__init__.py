@@ -180,6 +180,7 @@ PUBLIC = {
             "open_result",
             "save",
         ),
+        "reporting": ("report",),
     },
 }
 _HOME = {name: home for homes in PUBLIC.values() for home, names in homes.items() for name in names}

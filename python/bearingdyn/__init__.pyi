@@ -147,6 +147,7 @@ from bearingdyn.parts import (
     quadrilaterals,
     specimen_factor,
 )
+from bearingdyn.reporting import report as report
 from bearingdyn.results import (
     open_result,
     save,
@@ -263,6 +264,7 @@ __all__ = [
     "read_nodes",
     "read_strain_sweep",
     "reduction_error",
+    "report",
     "ring_mesh",
     "ross_table",
     "sample_dma_path",

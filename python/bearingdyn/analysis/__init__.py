@@ -1,6 +1,12 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
-from bearingdyn.analysis.bearing_sheet import bearing_sheet, sheet_html, sheet_text, single_bearing
+from bearingdyn.analysis.bearing_sheet import (
+    bearing_sheet,
+    sheet_html,
+    sheet_rows,
+    sheet_text,
+    single_bearing,
+)
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.dissipation import dissipation
@@ -24,6 +30,7 @@ from bearingdyn.analysis.orders import order_spectrum, track_orders
 from bearingdyn.analysis.part_velocities import part_velocities, surface_of
 from bearingdyn.analysis.radiated_power import radiated_power
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
+from bearingdyn.analysis.response_band import Band, band_of
 from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
@@ -36,6 +43,7 @@ from bearingdyn.analysis.unbalance_response import unbalance_response
 from bearingdyn.analysis.waterfall import waterfall
 
 __all__ = [
+    "Band",
     "BearingState",
     "Equilibrium",
     "Input",
@@ -45,6 +53,7 @@ __all__ = [
     "ThermalNetwork",
     "ThermalRunaway",
     "ball_channels",
+    "band_of",
     "bearing_sheet",
     "cage_ratios",
     "campbell",
@@ -70,6 +79,7 @@ __all__ = [
     "ross_table",
     "shaft_angle",
     "sheet_html",
+    "sheet_rows",
     "sheet_text",
     "single_bearing",
     "spectrum",

@@ -57,6 +57,8 @@ class Equilibrium:
         Modulus that the layers have: "relaxed", "instantaneous" or "after" a time.
     after
         That time, s, for which the load has rested on them; None otherwise.
+    average
+        Number of cage angles over which the tangents are averaged.
 
     References
     ----------
@@ -68,6 +70,7 @@ class Equilibrium:
     bearings: Mapping[str, BearingState]
     modulus: str = "relaxed"
     after: float | None = None
+    average: int = 1
 
     @property
     def layers(self) -> str:
@@ -279,7 +282,7 @@ def equilibrium(
         )
         for name, state in passage[0].items()
     }
-    found = Equilibrium(first, x, mean, state if after is None else "after", after)
+    found = Equilibrium(first, x, mean, state if after is None else "after", after, average)
     if isinstance(app, Application):
         _warn_of_strained_layers(app, found)
     return found

@@ -23,6 +23,7 @@ from bearingdyn.material.reading import (
 )
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
+from bearingdyn.material.spread import Spread, normals, uniforms
 from bearingdyn.material.superposition import LIMIT as KK_LIMIT
 from bearingdyn.material.superposition import (
     MasterCurve,
@@ -62,6 +63,7 @@ __all__ = [
     "RelaxationData",
     "RhoT",
     "ShiftTable",
+    "Spread",
     "StrainSweep",
     "Suspect",
     "TabulatedModulus",
@@ -75,6 +77,7 @@ __all__ = [
     "is_volume",
     "kk_ratio",
     "master_curve",
+    "normals",
     "one_curve",
     "read_dma",
     "read_strain_sweep",
@@ -84,6 +87,7 @@ __all__ = [
     "to_abaqus_prony",
     "to_ansys",
     "to_calculix",
+    "uniforms",
     "volume_of",
     "warn_beyond",
 ]

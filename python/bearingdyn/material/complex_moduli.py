@@ -25,6 +25,7 @@ from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
 from bearingdyn.material.superposition import MasterCurve, one_curve
+from bearingdyn.pictures import picture
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
@@ -111,6 +112,9 @@ class TabulatedModulus(Softening):
     bulk: BulkRelaxation | None = None
 
     __repr__ = short
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
         _check("TabulatedModulus", {"K": self.K, "density": self.density})
@@ -241,6 +245,9 @@ class PowerLaw(Softening):
     payne: Payne | None = None
     bulk: BulkRelaxation | None = None
 
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
+
     def __post_init__(self) -> None:
         values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
         _check("PowerLaw", values)
@@ -318,6 +325,9 @@ class FractionalZener(Softening):
     temperature: float | None = None
     payne: Payne | None = None
     bulk: BulkRelaxation | None = None
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
         values = {"G_inf": self.G_inf, "tau": self.tau, "K": self.K, "density": self.density}

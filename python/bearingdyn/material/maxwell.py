@@ -19,6 +19,7 @@ from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
+from bearingdyn.material.spread import Drawable, Spread
 from bearingdyn.notice import warn
 from bearingdyn.pictures import picture
 from bearingdyn.types import Array, Complex
@@ -42,12 +43,12 @@ def _branches(name: str, values: ArrayLike) -> Array:
 
 @takes(G0="Pa", G="Pa", tau="s", eta0="Pa s", K="Pa", density="kg/m³", temperature="°C", band="Hz")
 @dataclass(frozen=True, init=False, eq=False)
-class Maxwell(Retunable, Softening):
+class Maxwell(Retunable, Softening, Drawable):
     """The generalised Maxwell model, viscoelastic in shear, and elastic in volume unless `bulk` is given.
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
     G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).
-    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
+    Two materials are equal if they agree in everything but `band`, `fit`, `low_end` and `spread`.
 
     Parameters
     ----------
@@ -83,6 +84,9 @@ class Maxwell(Retunable, Softening):
         for none: the material is linear.
     bulk
         Relaxation of the bulk modulus: K is then complex, with loss in volume. None: K is constant.
+    spread
+        How far the parameters may be off; that of the fit unless given. It goes along to another temperature,
+        modulus or loss factor, whose factors count as exact; see `with_spread` and `draws`.
 
     Raises
     ------
@@ -114,6 +118,7 @@ class Maxwell(Retunable, Softening):
     low_end: LowEnd | None = field(repr=False)
     payne: Payne | None = field(repr=False)
     bulk: BulkRelaxation | None = field(repr=False)
+    spread: Spread | None = field(repr=False)
 
     def _repr_html_(self) -> str:
         return str(picture("as_html", self))
@@ -150,6 +155,7 @@ class Maxwell(Retunable, Softening):
         low_end: LowEnd | None = None,
         payne: Payne | None = None,
         bulk: BulkRelaxation | None = None,
+        spread: Spread | None = None,
     ) -> None:
         instance("Maxwell.bulk", bulk, (BulkRelaxation, type(None)), "give a bd.BulkRelaxation, or None")
         instance("Maxwell.fit", fit, (FitReport, type(None)), "it must be the report of a fit, or None")
@@ -162,6 +168,9 @@ class Maxwell(Retunable, Softening):
         )
         if band is None and fit is not None:
             band = fit.band
+        instance("Maxwell.spread", spread, (Spread, type(None)), "it must be a bd.material.Spread, or None")
+        if spread is None and fit is not None:
+            spread = Spread.of(fit)
         edges = band if band is None else vector("Maxwell.band", band, (2,), "lowest and highest, in Hz")
         if temperature is None and law is not None:
             temperature = law.T_ref
@@ -180,10 +189,13 @@ class Maxwell(Retunable, Softening):
             "low_end": low_end if low_end is not None or fit is None else fit.low_end,
             "payne": payne,
             "bulk": bulk,
+            "spread": spread,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
         self._validate()
+        if self.spread is not None and self.spread.fits > self.tau.size:  # branches were taken away since
+            object.__setattr__(self, "spread", None)
         if self.low_end is None and self.band is not None:
             known = LowEnd.of_band(self.band[0], self._at(self.band[0]).real)
             object.__setattr__(self, "low_end", known)
@@ -472,6 +484,8 @@ class Maxwell(Retunable, Softening):
             }
         if self.bulk is not None:
             data["bulk"] = {name: list(v) for name, v in vars(self.bulk).items()}
+        if self.spread is not None:
+            data["spread"] = self.spread.told_as
         return json.dumps(data, indent=1)
 
     @classmethod
@@ -496,6 +510,7 @@ class Maxwell(Retunable, Softening):
                 "low_end",
                 "payne",
                 "bulk",
+                "spread",
             }
         )
         if unknown:
@@ -505,9 +520,12 @@ class Maxwell(Retunable, Softening):
         known = data.pop("low_end", None)
         softens = data.pop("payne", None)
         relaxes = data.pop("bulk", None)
+        spread = data.pop("spread", None)
         try:
             if relaxes is not None:
                 data["bulk"] = BulkRelaxation(**relaxes)
+            if spread is not None:
+                data["spread"] = Spread(**spread)
             if softens is not None:
                 data["payne"] = Payne(**softens)
             if known is not None:
