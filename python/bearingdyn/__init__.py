@@ -133,6 +133,7 @@ PUBLIC = {
             "estimated_network",
             "export_stiffness",
             "frequency_response",
+            "gradient",
             "mode_shapes",
             "mode_surfaces",
             "modes",
