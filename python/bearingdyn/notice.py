@@ -278,6 +278,17 @@ class TensionAsShear(Notice):
     """
 
 
+class VolumeCounts(Notice):
+    """Notice: the radial stiffness of a thin layer hangs on its bulk modulus, which DMA does not measure.
+
+    When: a layer is reduced whose radial stiffness changes by 0.1 % or more where K changes by 1 %; from 1 to
+    3 GPa, between which K of rubbers is told, that is 12 % or more.
+
+    Remedy: measure K, or tell what its doubt does, by `bd.study.doubt_effects` and
+    `bd.doubts(rubber, K=(1e9, 3e9))`.
+    """
+
+
 class FoldedMesh(Notice):
     """Notice: elements of a mesh overlap, one folded into its neighbours, and its volume counts twice.
 

@@ -1,6 +1,12 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
-from bearingdyn.analysis.bearing_sheet import bearing_sheet, sheet_html, sheet_text, single_bearing
+from bearingdyn.analysis.bearing_sheet import (
+    bearing_sheet,
+    sheet_html,
+    sheet_rows,
+    sheet_text,
+    single_bearing,
+)
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.dissipation import dissipation
@@ -76,6 +82,7 @@ __all__ = [
     "ross_table",
     "shaft_angle",
     "sheet_html",
+    "sheet_rows",
     "sheet_text",
     "single_bearing",
     "spectrum",

@@ -281,9 +281,9 @@ def sheet_text(sheet: xarray.Dataset) -> str:
     names = _names(sheet)
     lines: list[str] = []
     width = max(12, *(len(n) + 2 for n in names))
-    for heading, rows in _ROWS.items():
+    for heading, rows in sheet_rows(sheet).items():
         lines += ["", f"{heading:<58}" + "".join(f"{n:>{width}}" for n in names)]
-        for label, values, unit in _printed(sheet, rows):
+        for label, values, unit in rows:
             title = f"{label}, {unit}" if unit else label
             lines.append(f"  {title:<56}" + "".join(f"{v:>{width}}" for v in values))
     for name in names:
@@ -292,6 +292,18 @@ def sheet_text(sheet: xarray.Dataset) -> str:
         if one["warnings"].item():
             lines.append(f"{name}, warnings: {one['warnings'].item()}")
     return "\n".join(lines[1:])
+
+
+def sheet_rows(sheet: xarray.Dataset) -> dict[str, list[tuple[str, list[str], str]]]:
+    """What the sheet prints, for a table of one's own: label, value of each bearing, unit; by heading.
+
+    Parameters
+    ----------
+    sheet
+        By `bearing_sheet`.
+    """
+    _names(sheet)
+    return {heading: _printed(sheet, rows) for heading, rows in _ROWS.items()}
 
 
 def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
@@ -311,11 +323,9 @@ def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
         return "".join(f"<{tag}>{html.escape(t)}</{tag}>" for t in texts)
 
     body: list[str] = []
-    for heading, rows in _ROWS.items():
+    for heading, rows in sheet_rows(sheet).items():
         body.append(f"<tr>{cells('th', [heading, '', *names])}</tr>")
-        body += [
-            f"<tr>{cells('td', [label, unit, *values])}</tr>" for label, values, unit in _printed(sheet, rows)
-        ]
+        body += [f"<tr>{cells('td', [label, unit, *values])}</tr>" for label, values, unit in rows]
     notes = []
     for name in names:
         one = sheet.sel(bearing=name)

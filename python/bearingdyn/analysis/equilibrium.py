@@ -21,7 +21,7 @@ from bearingdyn.bearing import (
 )
 from bearingdyn.checks import one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import warn_beyond
+from bearingdyn.material import is_volume, warn_beyond
 from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
 from bearingdyn.pictures import picture
@@ -81,7 +81,9 @@ class Equilibrium:
     def moduli(self) -> dict[str, float]:
         """Shear modulus of each layer in this state, Pa, by part."""
         G = self.system.static_moduli(self.modulus if self.after is None else self.after)
-        return {t.part: value for t, value in zip(self.system.layers, G, strict=True)}
+        return {
+            t.part: value for t, value in zip(self.system.layers, G, strict=True) if not is_volume(t.material)
+        }
 
     def _repr_html_(self) -> str:
         return str(picture("as_html", self))

@@ -2,8 +2,10 @@
 
 from bearingdyn.material.amplitude import Payne, PayneFit
 from bearingdyn.material.beyond_data import warn_beyond
+from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
+from bearingdyn.material.doubts import Doubt, Doubts, doubts
 from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
 from bearingdyn.material.fit_report import FitReport, OutsideBand
@@ -31,6 +33,7 @@ from bearingdyn.material.superposition import (
     one_curve,
     suspects,
 )
+from bearingdyn.material.volume import constant_bulk, is_volume, volume_of
 
 __all__ = [
     "KK_LIMIT",
@@ -38,7 +41,10 @@ __all__ = [
     "STEEL",
     "WLF",
     "Arrhenius",
+    "BulkRelaxation",
     "DMAData",
+    "Doubt",
+    "Doubts",
     "Elastic",
     "FitReport",
     "FractionalZener",
@@ -62,10 +68,13 @@ __all__ = [
     "Suspect",
     "TabulatedModulus",
     "Yeoh",
+    "constant_bulk",
+    "doubts",
     "fit_dense",
     "fit_maxwell",
     "fit_payne",
     "group_isotherms",
+    "is_volume",
     "kk_ratio",
     "master_curve",
     "normals",
@@ -79,5 +88,6 @@ __all__ = [
     "to_ansys",
     "to_calculix",
     "uniforms",
+    "volume_of",
     "warn_beyond",
 ]

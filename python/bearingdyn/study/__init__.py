@@ -4,6 +4,7 @@ draws of what is not exactly known, and what they leave of a result."""
 from bearingdyn.study.band import Robust, band
 from bearingdyn.study.cases import Case, grid, sobol
 from bearingdyn.study.distributions import Fitted, LogNormal, Normal, Uniform, draw
+from bearingdyn.study.doubt_effects import doubt_effects
 from bearingdyn.study.indices import sobol_indices
 from bearingdyn.study.pareto import pareto
 from bearingdyn.study.sweep import sweep
@@ -17,6 +18,7 @@ __all__ = [
     "Robust",
     "Uniform",
     "band",
+    "doubt_effects",
     "draw",
     "grid",
     "pareto",

@@ -248,7 +248,7 @@ def _dataset(
     missed = sum(fed.values()) - sum(lost.values())
     dt = float(times[1] - times[0]) if len(times) > 1 else 0.0
     multipliers = np.zeros(0, dtype=np.complex128) if state is None else state.multipliers
-    made = dataset(
+    return dataset(
         {
             "amplitude": (
                 ("line", "channel"),
@@ -299,7 +299,6 @@ def _dataset(
             "time": (times, "s"),
             "part": (list(lost), ""),
             "source": (list(fed), ""),
+            "unit": ("channel", [unit for _, unit in channels], "", "unit of each channel"),
         },
     )
-    meaning = {"units": "", "long_name": "unit of each channel"}
-    return made.assign_coords(unit=("channel", [unit for _, unit in channels], meaning))

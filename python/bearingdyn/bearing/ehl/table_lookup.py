@@ -2,8 +2,8 @@
 
 `table.csv` holds solutions of `ehl.steady` for Roelands' viscosity and Dowson and Higginson's density (alpha
 2.2e-8 1/Pa, eta0 0.04 Pa s) over M, L and D; `maketable` makes it. Smooth quantities are interpolated by
-cubic splines in the place on the load axis (`table_places`), L and ln D: the film over the formula of
-Nijenbanning, Venner and Moes, the odds K0/(1 − K0), and logarithms of the others.
+cubic splines in the place on the load axis (`table_places`), L and ln D: the film over the formula of Nijenbanning,
+Venner and Moes, the odds K0/(1 − K0), and logarithms of the others.
 """
 
 from __future__ import annotations
