@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
@@ -23,30 +24,33 @@ FREQUENCY = np.geomspace(10.0, 6000.0, 6000)  # Hz; a step is a third of the sha
 STRAIN = 0.05  # static, above which the rubber is warned of
 
 
+def spent() -> tuple[float, float]:
+    """Seconds of the clock, and of the CPU, processes that have ended included."""
+    return time.perf_counter(), sum(os.times()[:4])
+
+
 @dataclass
 class Stages:
     """Wall and CPU seconds of every stage, by name; a stage entered again adds up."""
 
     seconds: dict[str, tuple[float, float]] = field(default_factory=dict)
-    began: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), time.process_time()))
+    began: tuple[float, float] = field(default_factory=spent)
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time what is done inside."""
-        wall, cpu = time.perf_counter(), time.process_time()
+        wall, cpu = spent()
         yield
-        before = self.seconds.get(name, (0.0, 0.0))
-        self.seconds[name] = (
-            before[0] + time.perf_counter() - wall,
-            before[1] + time.process_time() - cpu,
-        )
+        before, after = self.seconds.get(name, (0.0, 0.0)), spent()
+        self.seconds[name] = (before[0] + after[0] - wall, before[1] + after[1] - cpu)
 
     def table(self) -> None:
         """Print them, and the whole."""
         print(f"\n{'what it took':<44}{'wall':>8}{'CPU':>10}")
         for name, (wall, cpu) in self.seconds.items():
             print(f"  {name:<42}{wall:6.1f} s{cpu:8.1f} s")
-        whole = (time.perf_counter() - self.began[0], time.process_time() - self.began[1])
+        now = spent()
+        whole = now[0] - self.began[0], now[1] - self.began[1]
         print(f"  {'all of it':<42}{whole[0]:6.1f} s{whole[1]:8.1f} s")
 
 

@@ -19,7 +19,7 @@ from bearingdyn.analysis.exact_step import ExactModes
 from bearingdyn.analysis.march_state import Beginning, check_state, moved, system_hash
 from bearingdyn.analysis.shaft_speed import drive_of
 from bearingdyn.analysis.softening import memory_of, softening_layers
-from bearingdyn.analysis.step_size import step_error, warn_if_coarse
+from bearingdyn.analysis.step_size import step_error, warn_if_coarse, warn_if_growing
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import instance, one_of, positive, require, whole
@@ -138,6 +138,8 @@ class March:
         if method == "exact":
             drive = _exact_speed(system, drive)
         warn_if_coarse(system, fastest, dt)
+        if method == "exact" and isinstance(source, Equilibrium):
+            warn_if_growing(source, dt, counts["settle"] + counts["steps"])
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
         return cls(

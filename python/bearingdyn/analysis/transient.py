@@ -125,8 +125,8 @@ def transient(
         constant, harmonic or rotating load is exact, a table is linear from step to step. It does not take a
         speed that varies, nor layers with a law of softening; `scheme`'s β and γ do not count. Unlike
         Newmark's it is stable for small steps alone: a motion at ω that balls alone hold grows by (ωΔt)⁴/48 a
-        step, against its damping, and by 2 % at ωΔt = 1. Without damping in its contacts a machine with modes
-        to 8 kHz leaves its rest at Δt = 11 µs, and not at 5.6 µs.
+        step, against its damping, and by 2 % at ωΔt = 1; `GrowingStep` warns of it. Without damping in its
+        contacts a machine with modes to 8 kHz leaves its rest at Δt = 11 µs, and not at 5.6 µs.
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
