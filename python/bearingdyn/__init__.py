@@ -135,6 +135,7 @@ PUBLIC = {
             "estimated_network",
             "export_stiffness",
             "frequency_response",
+            "gradient",
             "mode_shapes",
             "mode_surfaces",
             "modes",

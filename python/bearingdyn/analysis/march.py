@@ -16,10 +16,10 @@ from bearingdyn.analysis.core_channels import CoreChannel, channel_of
 from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
-from bearingdyn.analysis.march_state import check_state, moved, system_hash
+from bearingdyn.analysis.march_state import Beginning, check_state, moved, system_hash
 from bearingdyn.analysis.shaft_speed import drive_of
 from bearingdyn.analysis.softening import memory_of, softening_layers
-from bearingdyn.analysis.step_size import step_error, warn_if_coarse
+from bearingdyn.analysis.step_size import step_error, warn_if_coarse, warn_if_growing
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import instance, one_of, positive, require, whole
@@ -145,6 +145,8 @@ class March:
         if method == "exact":
             drive = _exact_speed(system, drive)
         warn_if_coarse(system, fastest, dt)
+        if method == "exact" and isinstance(source, Equilibrium):
+            warn_if_growing(source, dt, counts["settle"] + counts["steps"])
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
         return cls(
@@ -195,9 +197,18 @@ class March:
             these motions together.
         """
         x = moved(self.system, self.x, initial) if initial else self.x
-        q = self.T.T @ self.system.M @ x
-        state = model.state(0.0, q, np.zeros(self.system.n))
-        return state if self.method == "newmark" else np.concatenate([state, self._modes.start(q)])
+        return self.begun(model, Beginning(x, np.zeros_like(x), None))
+
+    def begun(self, model: core.Model, beginning: Beginning) -> Array:
+        """State that moves as the beginning says."""
+        x, v = (self.T.T @ self.system.M @ each for each in (beginning.x, beginning.v))
+        stress = beginning.stress
+        state = model.state(0.0, x, v, stress)
+        if self.method == "newmark":
+            return state
+        if stress is None:
+            stress = np.zeros(sum(t.L.shape[1] * len(t.material.G) for t in self.modal.layers))
+        return np.concatenate([state, self._modes.start(x, v, stress)])
 
     @cached_property
     def _modes(self) -> ExactModes:
