@@ -116,6 +116,17 @@ class UnloadedBearing(Notice):
     """
 
 
+class NothingPushes(Notice):
+    """Notice: a march starts at rest and nothing pushes, so its record stays as it begins.
+
+    When: a march from an equilibrium in which no ball is pressed, of an application without any load, from
+    no displacement by `initial=` and no earlier state.
+
+    Remedy: add what pushes (`app.gravity`, `app.load`, `app.unbalance`), or start displaced with
+    `initial=`; zero speed and zero load need no march.
+    """
+
+
 class BeyondData(Notice):
     """Notice: a static answer rests on a modulus at longer times than the rubber's data speak of.
 
@@ -286,6 +297,17 @@ class TensionAsShear(Notice):
     When: `fit_maxwell` is given a master curve in tension.
 
     Remedy: `master.to_shear(K=...)` or `to_shear(nu=...)` beforehand says how it is meant.
+    """
+
+
+class VolumeCounts(Notice):
+    """Notice: the radial stiffness of a thin layer hangs on its bulk modulus, which DMA does not measure.
+
+    When: a layer is reduced whose radial stiffness changes by 0.1 % or more where K changes by 1 %; from 1 to
+    3 GPa, between which K of rubbers is told, that is 12 % or more.
+
+    Remedy: measure K, or tell what its doubt does, by `bd.study.doubt_effects` and
+    `bd.doubts(rubber, K=(1e9, 3e9))`.
     """
 
 

@@ -24,7 +24,7 @@ from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import instance, one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
-from bearingdyn.notice import OpenSideWarning, warn
+from bearingdyn.notice import NothingPushes, OpenSideWarning, warn
 from bearingdyn.progress import part_of
 from bearingdyn.results import inputs_of
 from bearingdyn.system import System, system_of
@@ -65,6 +65,8 @@ class March:
         Time, s, over which layers that soften remember their amplitude; None where none does.
     method
         One of METHODS.
+    pressed
+        Whether a ball is pressed where the march starts, or that is not known.
     """
 
     system: System
@@ -78,6 +80,7 @@ class March:
     filter: bool = False
     memory: float | None = None
     method: str = "newmark"
+    pressed: bool = True
 
     @classmethod
     def of(
@@ -113,6 +116,10 @@ class March:
             "settle": whole("settle", settle, 0),
             "decimate": whole("decimate", decimate, 1),
         }
+        if 0 < counts["steps"] < counts["decimate"]:
+            raise ValueError(
+                f"decimate is {decimate}; of {steps} steps no sample would be kept; it must be at most steps"
+            )
         drive = drive_of(speed)
         one_of("method", method, METHODS)
         if scheme is not None:
@@ -151,6 +158,7 @@ class March:
             filter=bool(filter),
             memory=memory_of(system, drive, memory),
             method=method,
+            pressed=not isinstance(source, Equilibrium) or source.presses,
             **counts,
         )
 
@@ -162,6 +170,17 @@ class March:
     def total(self) -> int:
         """Steps of the whole march, those before the record included."""
         return self.settle + self.steps
+
+    def warn_if_still(self) -> None:
+        """Warn that nothing pushes, for a march that starts at rest in its equilibrium."""
+        if self.pressed or any(term.p_cos.any() or term.p_sin.any() for term in self.system.loads):
+            return
+        warn(
+            "nothing pushes: the march starts at rest in an equilibrium in which no ball is pressed, and no "
+            "load acts; every record stays as it begins. Add what pushes (app.gravity, app.load, "
+            "app.unbalance), or start displaced with initial=",
+            NothingPushes,
+        )
 
     @property
     def filters(self) -> bool:

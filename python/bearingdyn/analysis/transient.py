@@ -157,6 +157,8 @@ def transient(
     -----
     BearingWarning
         Where a contact pressure was above 4.2 GPa (ISO 76) at the end of a step.
+    NothingPushes
+        Where the march starts at rest, no ball is pressed and no load acts.
     OpenSideWarning
         Where balls of an angular contact bearing were pressed onto its open side, or none onto its shoulder.
 
@@ -205,6 +207,8 @@ def transient(
         memory=memory,
         method=method,
     )
+    if resume is None and not initial:
+        march.warn_if_still()
     approaches = _approaches(source, speed) if check_unique else None
     check_room(march.steps // march.decimate, record)
     found = [channel_of(march.modal, name) for name in record]
