@@ -266,21 +266,27 @@ class Running:
             rise = _stored(kappa_o, _length(b) - rest_o) + _stored(kappa_i, _length(I - b) - rest_i)
             return np.asarray(rise - (push * b).sum(0))
 
+        def unbalanced(b: Array) -> Array:
+            n_o, n_i, Q_o, Q_i = self._contacts(b, I)
+            return np.asarray(_length(Q_i * n_i - Q_o * n_o + push))
+
         n_o, n_i, Q_o, Q_i = self._contacts(b, I)
         for _ in range(_ITERATIONS):
             r = Q_i * n_i - Q_o * n_o + push
             size, load = _length(r), np.abs(push).sum(0) + Q_i + Q_o
             H = _hessian(n_o, Q_o, kappa_o, _length(b)) + _hessian(n_i, Q_i, kappa_i, _length(I - b))
-            if (size <= _BALANCED * load + _ROUNDING * rest_o * _norm(H)).all():
+            settled = size <= _BALANCED * load + _ROUNDING * rest_o * _norm(H)
+            if settled.all():
                 break
             stiff = _norm(H)
             damp = np.where(stiff > 0, 1e-13 * stiff, 1.0)
             step = np.linalg.solve(H + damp[:, None, None] * np.eye(2), r.T[:, :, None])[:, :, 0].T
-            step *= np.minimum(1.0, 0.2 * rest_o / np.maximum(_length(step), 1e-300))
+            step *= np.minimum(1.0, 0.2 * rest_o / np.maximum(_length(step), 1e-300)) * ~settled
             before, part = energy(b), np.ones(b.shape[1])
             for _ in range(40):
                 trial = _moved(b, part * step)
-                worse = energy(trial) > before + 1e-15 * np.abs(before)
+                # near the end the energy's round-off hides its fall, which the forces still show
+                worse = (energy(trial) > before) & ~(unbalanced(trial) < size)
                 if not worse.any():
                     break
                 part = np.where(worse, part / 2, part)

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.checks import number, positive, real, require, two
 from bearingdyn.magnitude import check_density, check_waves, plausible
 from bearingdyn.material.amplitude import Payne, Softening
+from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.low_end import LowEnd
@@ -90,6 +91,8 @@ class TabulatedModulus(Softening):
         Shift law, and the temperature, °C, at which the table holds, for :meth:`at`.
     payne
         Law of softening with the amplitude of strain; None for none.
+    bulk
+        Relaxation of the bulk modulus, whose value at rest K then is; None: K is constant.
 
     Raises
     ------
@@ -106,6 +109,7 @@ class TabulatedModulus(Softening):
     law: Law | None = None
     temperature: float | None = None
     payne: Payne | None = None
+    bulk: BulkRelaxation | None = None
 
     __repr__ = short
 
@@ -180,7 +184,8 @@ class TabulatedModulus(Softening):
     def at(self, T: float) -> TabulatedModulus:
         """The same material at T, °C: frequencies over a_T; warnings and errors as :meth:`Maxwell.at`."""
         factor = _factor("TabulatedModulus", self.law, self.temperature, T)
-        return replace(self, frequency=self.frequency / factor, temperature=float(T))
+        bulk = None if self.bulk is None else self.bulk.moved(factor)
+        return replace(self, frequency=self.frequency / factor, temperature=float(T), bulk=bulk)
 
     def maxwell(
         self,
@@ -193,7 +198,7 @@ class TabulatedModulus(Softening):
         made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
-        return made.with_payne(self.payne)
+        return replace(made.with_payne(self.payne), bulk=self.bulk)
 
 
 @dataclass(frozen=True)
@@ -217,6 +222,8 @@ class PowerLaw(Softening):
         Shift law, and the temperature, °C, at which the modulus holds, for :meth:`at`.
     payne
         Law of softening with the amplitude of strain; None for none.
+    bulk
+        Relaxation of the bulk modulus, whose value at rest K then is; None: K is constant.
 
     Raises
     ------
@@ -236,6 +243,7 @@ class PowerLaw(Softening):
     law: Law | None = None
     temperature: float | None = None
     payne: Payne | None = None
+    bulk: BulkRelaxation | None = None
 
     def _repr_html_(self) -> str:
         return str(picture("as_html", self))
@@ -263,7 +271,8 @@ class PowerLaw(Softening):
     def at(self, T: float) -> PowerLaw:
         """The same material at T, °C; warnings and errors as :meth:`Maxwell.at`."""
         factor = _factor("PowerLaw", self.law, self.temperature, T)
-        return replace(self, frequency=self.frequency / factor, temperature=float(T))
+        bulk = None if self.bulk is None else self.bulk.moved(factor)
+        return replace(self, frequency=self.frequency / factor, temperature=float(T), bulk=bulk)
 
     def maxwell(
         self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02
@@ -272,7 +281,7 @@ class PowerLaw(Softening):
         made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
-        return made.with_payne(self.payne)
+        return replace(made.with_payne(self.payne), bulk=self.bulk)
 
 
 @dataclass(frozen=True)
@@ -293,6 +302,8 @@ class FractionalZener(Softening):
         Shift law, and the temperature, °C, at which tau holds, for :meth:`at`.
     payne
         Law of softening with the amplitude of strain; None for none.
+    bulk
+        Relaxation of the bulk modulus, whose value at rest K then is; None: K is constant.
 
     Raises
     ------
@@ -313,6 +324,7 @@ class FractionalZener(Softening):
     law: Law | None = field(default=None)
     temperature: float | None = None
     payne: Payne | None = None
+    bulk: BulkRelaxation | None = None
 
     def _repr_html_(self) -> str:
         return str(picture("as_html", self))
@@ -336,11 +348,9 @@ class FractionalZener(Softening):
 
     def at(self, T: float) -> FractionalZener:
         """The same material at T, °C; warnings and errors as :meth:`Maxwell.at`."""
-        return replace(
-            self,
-            tau=self.tau * _factor("FractionalZener", self.law, self.temperature, T),
-            temperature=float(T),
-        )
+        factor = _factor("FractionalZener", self.law, self.temperature, T)
+        bulk = None if self.bulk is None else self.bulk.moved(factor)
+        return replace(self, tau=self.tau * factor, temperature=float(T), bulk=bulk)
 
     def maxwell(
         self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02
@@ -349,4 +359,4 @@ class FractionalZener(Softening):
         made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
-        return made.with_payne(self.payne)
+        return replace(made.with_payne(self.payne), bulk=self.bulk)
