@@ -13,6 +13,7 @@ from pathlib import Path
 
 import architecture
 import contact_figure
+import design_figure
 import pictures
 import sheet_figure
 
@@ -32,6 +33,7 @@ def make() -> None:
     sheet_figure.draw(STATIC / "sheet.svg")
     for picture in (pictures.drawing, pictures.squeezed, pictures.ring, pictures.sound, pictures.steady):
         picture(STATIC / f"{picture.__name__}.png")
+    design_figure.design(STATIC / "design.png")
     contact_figure.maps(STATIC / "contact_maps.png")
     contact_figure.damping(STATIC / "contact_damping.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, FilmDamping
 from bearingdyn.fem import Section
@@ -22,6 +24,7 @@ LIKE_MEASURED = Maxwell(
 )
 
 
+@cache
 def motor_rubber() -> Maxwell:
     """The rubber of examples/motor.py, measured; a similar one where the measurement is absent.
 

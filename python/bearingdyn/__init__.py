@@ -24,6 +24,7 @@ PUBLIC = {
     "material": {
         "material": (
             "STEEL",
+            "BulkRelaxation",
             "DMAData",
             "Elastic",
             "FractionalZener",
@@ -37,6 +38,7 @@ PUBLIC = {
             "StrainSweep",
             "TabulatedModulus",
             "Yeoh",
+            "doubts",
             "fit_maxwell",
             "fit_payne",
             "master_curve",
@@ -133,6 +135,7 @@ PUBLIC = {
             "estimated_network",
             "export_stiffness",
             "frequency_response",
+            "gradient",
             "mode_shapes",
             "mode_surfaces",
             "modes",
@@ -178,6 +181,7 @@ PUBLIC = {
             "open_result",
             "save",
         ),
+        "reporting": ("report",),
     },
 }
 _HOME = {name: home for homes in PUBLIC.values() for home, names in homes.items() for name in names}

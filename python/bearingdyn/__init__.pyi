@@ -23,6 +23,7 @@ from bearingdyn.analysis import (
     estimated_network,
     export_stiffness,
     frequency_response,
+    gradient,
     mode_shapes,
     mode_surfaces,
     modes,
@@ -87,6 +88,7 @@ from bearingdyn.fem import (
 )
 from bearingdyn.material import (
     STEEL,
+    BulkRelaxation,
     DMAData,
     Elastic,
     FractionalZener,
@@ -100,6 +102,7 @@ from bearingdyn.material import (
     StrainSweep,
     TabulatedModulus,
     Yeoh,
+    doubts,
     fit_maxwell,
     fit_payne,
     master_curve,
@@ -145,6 +148,7 @@ from bearingdyn.parts import (
     quadrilaterals,
     specimen_factor,
 )
+from bearingdyn.reporting import report as report
 from bearingdyn.results import (
     open_result,
     save,
@@ -161,6 +165,7 @@ __all__ = [
     "Application",
     "BallBearing",
     "BoreShape",
+    "BulkRelaxation",
     "ConstantDamping",
     "Cylinder",
     "DMAData",
@@ -232,6 +237,7 @@ __all__ = [
     "contact_statistics",
     "damping_sample",
     "dissipation",
+    "doubts",
     "energy_shares",
     "envelope_spectrum",
     "equilibrium",
@@ -240,6 +246,7 @@ __all__ = [
     "fit_maxwell",
     "fit_payne",
     "frequency_response",
+    "gradient",
     "master_curve",
     "mode_shapes",
     "mode_surfaces",
@@ -259,6 +266,7 @@ __all__ = [
     "read_nodes",
     "read_strain_sweep",
     "reduction_error",
+    "report",
     "ring_mesh",
     "ross_table",
     "sample_dma_path",

@@ -27,6 +27,17 @@ class CoarseStep(Notice):
     """
 
 
+class GrowingStep(Notice):
+    """Notice: exact steps of this size make a motion grow that balls hold.
+
+    When: at `method="exact"`, about an equilibrium, a mode at ω of which balls hold the share s gains
+    s (ωΔt)⁴/48 a step, and its damping takes less, so that it is 1 % larger at the end.
+
+    Remedy: march with the dt that the warning names, or with method="newmark"; or give the contacts the
+    damping that they have.
+    """
+
+
 class FitWarning(Notice):
     """Notice: two neighbours at one interface hardly fit, by the radii and widths that are known of them.
 
@@ -102,6 +113,17 @@ class UnloadedBearing(Notice):
 
     Remedy: load the bearing (weight by `app.gravity`, a belt, an axial preload by `offset`), or give it no
     clearance.
+    """
+
+
+class NothingPushes(Notice):
+    """Notice: a march starts at rest and nothing pushes, so its record stays as it begins.
+
+    When: a march from an equilibrium in which no ball is pressed, of an application without any load, from
+    no displacement by `initial=` and no earlier state.
+
+    Remedy: add what pushes (`app.gravity`, `app.load`, `app.unbalance`), or start displaced with
+    `initial=`; zero speed and zero load need no march.
     """
 
 
@@ -275,6 +297,17 @@ class TensionAsShear(Notice):
     When: `fit_maxwell` is given a master curve in tension.
 
     Remedy: `master.to_shear(K=...)` or `to_shear(nu=...)` beforehand says how it is meant.
+    """
+
+
+class VolumeCounts(Notice):
+    """Notice: the radial stiffness of a thin layer hangs on its bulk modulus, which DMA does not measure.
+
+    When: a layer is reduced whose radial stiffness changes by 0.1 % or more where K changes by 1 %; from 1 to
+    3 GPa, between which K of rubbers is told, that is 12 % or more.
+
+    Remedy: measure K, or tell what its doubt does, by `bd.study.doubt_effects` and
+    `bd.doubts(rubber, K=(1e9, 3e9))`.
     """
 
 

@@ -267,6 +267,31 @@ def _converting(
     return convert
 
 
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+# units that take a prefix, to the first power, at the head of a compound; a long time stays in seconds
+_PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
+
+
+def suited(largest: float, unit: str) -> tuple[int, str, bool]:
+    """The multiple of a unit that suits values: power of ten, the unit with its prefix, and if it takes one.
+
+    Parameters
+    ----------
+    largest
+        Size of the largest value, in `unit`.
+    unit
+        As results have it, such as "m/N"; one that takes no prefix is returned as it is.
+    """
+    head = _PREFIXED.match(unit)
+    least, most = (1.0, 1e4) if head else (1e-2, 1e5)
+    known = 0.0 < largest < math.inf
+    power = 3 * math.floor(math.log10(largest) / 3 + 1e-9) if known and not least <= largest < most else 0
+    if not head:
+        return power, unit, False
+    power = min(max(power, min(PREFIXES)), 0 if head[2] == "s" else max(PREFIXES))
+    return power, f"{head[1]}{PREFIXES[power]}{unit[head.end(1) :]}", True
+
+
 def display(result: xarray.Dataset, *wanted: str) -> xarray.Dataset:
     """A result in other units, such as "µm", "rpm", "kN": a copy for tables and figures of your own.
 

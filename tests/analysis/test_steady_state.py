@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy
+import xarray
 
 import rotors
 from bearingdyn import core
@@ -29,6 +30,7 @@ from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, FilmDamping
 from bearingdyn.material import FractionalZener, Maxwell, Payne, PowerLaw
 from bearingdyn.parts import Layer, RigidBody, Section, Shaft
+from bearingdyn.results import open_result, save
 from bearingdyn.system import System, assemble
 
 RECORD = ["shaft.end.y", "block.centre.x", "shaft.end.y.velocity"]
@@ -339,6 +341,14 @@ def test_more_harmonics_add_what_the_estimate_says():
     added = np.abs(many["amplitude"].values[11:23, 0])
     # an estimate: what those lines would answer to each other is left out
     assert 0.5 < few["cut"].values[0] / np.sqrt((added**2).sum()) < 2.0
+
+
+def test_a_saved_result_is_the_same_when_opened(tmp_path):
+    """It has parts of the machine and complex numbers, whose two parts are an axis of the file."""
+    found = steady_state(loaded(), speed=SPEED, record=RECORD[:1], stability=False)
+    save(found, tmp_path / "steady.nc")
+    xarray.testing.assert_identical(open_result(tmp_path / "steady.nc")["motion"], found["motion"])
+    assert open_result(tmp_path / "steady.nc")["power"].dims == ("part",)
 
 
 def test_a_start_and_a_pickled_result_give_the_same_motion():

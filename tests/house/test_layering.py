@@ -45,6 +45,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("analysis",),
     ("sound",),
     ("model", "plot", "study"),
+    ("reporting",),
     ("examples",),
     ("",),
     ("check", "demo"),
@@ -53,7 +54,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
 ROW = {room: row for row, rooms in enumerate(ORDER) for room in rooms}
 
 # Drawing is the end of the line: only these may reach it, and only inside a function.
-MAY_DRAW = {"", "cli", "demo", "study"}
+MAY_DRAW = {"", "cli", "demo", "reporting", "study"}
 
 # Objects that show themselves go by one door, which names the room as a text when it is asked.
 BY_NAME = {"pictures"}

@@ -1,6 +1,12 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
-from bearingdyn.analysis.bearing_sheet import bearing_sheet, sheet_html, sheet_text, single_bearing
+from bearingdyn.analysis.bearing_sheet import (
+    bearing_sheet,
+    sheet_html,
+    sheet_rows,
+    sheet_text,
+    single_bearing,
+)
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.dissipation import dissipation
@@ -8,6 +14,7 @@ from bearingdyn.analysis.energy_shares import energy_shares
 from bearingdyn.analysis.envelope import envelope_spectrum
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, state_of
 from bearingdyn.analysis.frequency_response import frequencies, frequency_response
+from bearingdyn.analysis.gradient import Gradient, gradient
 from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.analysis.loaded_cage import cage_ratios, with_loaded_cages
@@ -24,6 +31,7 @@ from bearingdyn.analysis.orders import order_spectrum, track_orders
 from bearingdyn.analysis.part_velocities import part_velocities, surface_of
 from bearingdyn.analysis.radiated_power import radiated_power
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
+from bearingdyn.analysis.response_band import Band, band_of
 from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
@@ -36,8 +44,10 @@ from bearingdyn.analysis.unbalance_response import unbalance_response
 from bearingdyn.analysis.waterfall import waterfall
 
 __all__ = [
+    "Band",
     "BearingState",
     "Equilibrium",
+    "Gradient",
     "Input",
     "MovedSurface",
     "OperatingPoint",
@@ -45,6 +55,7 @@ __all__ = [
     "ThermalNetwork",
     "ThermalRunaway",
     "ball_channels",
+    "band_of",
     "bearing_sheet",
     "cage_ratios",
     "campbell",
@@ -57,6 +68,7 @@ __all__ = [
     "export_stiffness",
     "frequencies",
     "frequency_response",
+    "gradient",
     "linear",
     "mode_shapes",
     "mode_surfaces",
@@ -70,6 +82,7 @@ __all__ = [
     "ross_table",
     "shaft_angle",
     "sheet_html",
+    "sheet_rows",
     "sheet_text",
     "single_bearing",
     "spectrum",

@@ -19,6 +19,7 @@ from bearingdyn.bearing import (
     Lubricant,
     Phase,
     Supply,
+    contamination_factor,
     equivalent_life,
     equivalent_load,
     equivalent_static_load,
@@ -29,6 +30,7 @@ from bearingdyn.bearing import (
     modified_life,
     nijenbanning_venner_moes,
     ratings_of,
+    reliability_factor,
 )
 from bearingdyn.bearing import catalogue as listed
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
@@ -182,12 +184,17 @@ def bearing_sheet(
     if oil is not None:
         instance("oil", oil, Lubricant, "give a bd.bearing.Lubricant")
     sigma = plausible("roughness", "roughness", nonnegative("roughness", roughness))
+    # what cannot be meant is refused, even where no oil asks for it
+    reliability_factor(reliability)
+    contamination_factor(contamination, 0.0)
     own = {"C": C, "C0": C0, "shoulder": shoulder}
     given = {
         key: named(key, value or {}, "give values by the names of bearings") for key, value in own.items()
     }
     if isinstance(temperature, Mapping):
         given["temperature"] = named("temperature", temperature, "give °C by the names of bearings")
+    for value in given.get("temperature", {"": temperature}).values():
+        plausible("oil temperature", "temperature", value, "it must be one finite temperature in °C")
     for key, values in given.items():
         for name, value in values.items():
             require(name in hung, key, name, meant(name, hung))
@@ -281,9 +288,9 @@ def sheet_text(sheet: xarray.Dataset) -> str:
     names = _names(sheet)
     lines: list[str] = []
     width = max(12, *(len(n) + 2 for n in names))
-    for heading, rows in _ROWS.items():
+    for heading, rows in sheet_rows(sheet).items():
         lines += ["", f"{heading:<58}" + "".join(f"{n:>{width}}" for n in names)]
-        for label, values, unit in _printed(sheet, rows):
+        for label, values, unit in rows:
             title = f"{label}, {unit}" if unit else label
             lines.append(f"  {title:<56}" + "".join(f"{v:>{width}}" for v in values))
     for name in names:
@@ -292,6 +299,18 @@ def sheet_text(sheet: xarray.Dataset) -> str:
         if one["warnings"].item():
             lines.append(f"{name}, warnings: {one['warnings'].item()}")
     return "\n".join(lines[1:])
+
+
+def sheet_rows(sheet: xarray.Dataset) -> dict[str, list[tuple[str, list[str], str]]]:
+    """What the sheet prints, for a table of one's own: label, value of each bearing, unit; by heading.
+
+    Parameters
+    ----------
+    sheet
+        By `bearing_sheet`.
+    """
+    _names(sheet)
+    return {heading: _printed(sheet, rows) for heading, rows in _ROWS.items()}
 
 
 def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
@@ -311,11 +330,9 @@ def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
         return "".join(f"<{tag}>{html.escape(t)}</{tag}>" for t in texts)
 
     body: list[str] = []
-    for heading, rows in _ROWS.items():
+    for heading, rows in sheet_rows(sheet).items():
         body.append(f"<tr>{cells('th', [heading, '', *names])}</tr>")
-        body += [
-            f"<tr>{cells('td', [label, unit, *values])}</tr>" for label, values, unit in _printed(sheet, rows)
-        ]
+        body += [f"<tr>{cells('td', [label, unit, *values])}</tr>" for label, values, unit in rows]
     notes = []
     for name in names:
         one = sheet.sel(bearing=name)

@@ -15,6 +15,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.application import Application
 from bearingdyn.checks import one_speed
+from bearingdyn.material import is_volume
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System, factor
 from bearingdyn.types import Array
@@ -102,6 +103,7 @@ def dissipation(
         memory=memory,
         least_steps=1,
     )
+    march.warn_if_still()
     losing = sinks(march.modal)
     channels = [sink.channels() for sink in losing]
     model = march.model([channel for own in channels for channel in own])
@@ -152,7 +154,7 @@ def sinks(system: System) -> list[Sink]:
         for _ in part.element.viscoelastic:
             term = system.layers[layer]
             eta0 = float(getattr(term.material, "eta0", 0.0))
-            name = f"{part.name} (shear)"
+            name = f"{part.name} ({'volume' if is_volume(term.material) else 'shear'})"
             found.append(Sink(name, none, (core.CHANNEL_KINDS["branch_loss"], 0, layer)))
             if eta0 > 0.0:
                 found.append(Sink(f"{part.name} (shear, η0)", math.sqrt(2.0 * eta0) * term.L.T))

@@ -18,6 +18,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import Application
 from bearingdyn.checks import table
+from bearingdyn.material import is_volume
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 
@@ -38,8 +39,9 @@ class Store:
 def energy_shares(source: Equilibrium | Application | System, found: xarray.Dataset) -> xarray.Dataset:
     """Share of each part, bearing and spring in the energy and the loss of the modes that `modes` found.
 
-    The shear of a viscoelastic part has an entry of its own, "layer (shear)"; "layer" is the rest of the
-    part: its mass, elastic regions and change of volume. A bearing has its tangent stiffness and damping,
+    The shear of a viscoelastic part has an entry of its own, "layer (shear)", and so has its volume where
+    its bulk modulus relaxes, "layer (volume)"; "layer" is the rest of the part: its mass, elastic regions and
+    constant change of volume. A bearing has its tangent stiffness and damping,
     or those of its films, as the modes were found with.
 
     Parameters
@@ -138,7 +140,8 @@ def _stores(
         for term in e.viscoelastic:
             shear = 2.0 * quadratic(term.H, u).real
             stored, lost = _branches(term.material, value, damped, modulus)
-            yield Store(f"{part.name} (shear)", none, stored * shear, lost * shear)
+            what = "volume" if is_volume(term.material) else "shear"
+            yield Store(f"{part.name} ({what})", none, stored * shear, lost * shear)
     for spring in system.springs:
         u = spring.across @ phi
         yield Store(

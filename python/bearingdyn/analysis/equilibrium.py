@@ -21,7 +21,7 @@ from bearingdyn.bearing import (
 )
 from bearingdyn.checks import one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import warn_beyond
+from bearingdyn.material import is_volume, warn_beyond
 from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
 from bearingdyn.pictures import picture
@@ -57,6 +57,8 @@ class Equilibrium:
         Modulus that the layers have: "relaxed", "instantaneous" or "after" a time.
     after
         That time, s, for which the load has rested on them; None otherwise.
+    average
+        Number of cage angles over which the tangents are averaged.
 
     References
     ----------
@@ -68,6 +70,7 @@ class Equilibrium:
     bearings: Mapping[str, BearingState]
     modulus: str = "relaxed"
     after: float | None = None
+    average: int = 1
 
     @property
     def layers(self) -> str:
@@ -78,7 +81,9 @@ class Equilibrium:
     def moduli(self) -> dict[str, float]:
         """Shear modulus of each layer in this state, Pa, by part."""
         G = self.system.static_moduli(self.modulus if self.after is None else self.after)
-        return {t.part: value for t, value in zip(self.system.layers, G, strict=True)}
+        return {
+            t.part: value for t, value in zip(self.system.layers, G, strict=True) if not is_volume(t.material)
+        }
 
     def _repr_html_(self) -> str:
         return str(picture("as_html", self))
@@ -126,6 +131,11 @@ class Equilibrium:
                 wide[:, first : first + len(state.K)] = state.balls.across
                 across.append(wide)
         return (np.hstack(added), np.vstack(across)) if added else None
+
+    @property
+    def presses(self) -> bool:
+        """Whether any ball is pressed."""
+        return any((state.loads > PARTED).any() for state in self.bearings.values())
 
     def warn_of_unloaded(self) -> None:
         """Warn of every bearing without a pressed ball: about this state it has no stiffness."""
@@ -277,7 +287,7 @@ def equilibrium(
         )
         for name, state in passage[0].items()
     }
-    found = Equilibrium(first, x, mean, state if after is None else "after", after)
+    found = Equilibrium(first, x, mean, state if after is None else "after", after, average)
     if isinstance(app, Application):
         _warn_of_strained_layers(app, found)
     return found

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, requested
 from bearingdyn.analysis.linearised import Contacts, linear
+from bearingdyn.analysis.response_band import response_band
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, softening_layers, warn_of_strain
 from bearingdyn.application import QUANTITIES, RATES, Application
 from bearingdyn.checks import name_list, numbers, one_of, one_speed, positive, require
@@ -54,6 +55,8 @@ def frequency_response(
     contacts: Contacts = "film",
     progress: Progress | bool | None = None,
     rpm: float | None = None,
+    uncertainty: int | None = None,
+    coverage: float = 0.9,
 ) -> xarray.Dataset:
     """Complex response at `outputs` to unit harmonic forces or ground motions at `inputs`, zero-to-peak.
 
@@ -89,6 +92,12 @@ def frequency_response(
         where standard error is a terminal.
     rpm
         The speed in revolutions a minute, instead of `speed`.
+    uncertainty
+        Number of draws of the layers' materials from their spread (`Maxwell.spread`, that of their fit), for
+        each of which equilibrium and response are computed anew: the result then has the band that they
+        leave. Layers of equal material are drawn together. None: no band.
+    coverage
+        Share of further draws that the band covers at each frequency.
 
     Returns
     -------
@@ -96,13 +105,14 @@ def frequency_response(
         response (frequency, output, input), complex, per unit of the input. At 0 Hz it is the static
         response, without the free spin of a shaft unless a force drives it. With an amplitude also strain
         (frequency, layer, input), the shear strain amplitude of each layer that softens; with several levels
-        both have the dimension "amplitude" in front.
+        both have the dimension "amplitude" in front. With `uncertainty` also lower, median and upper, real,
+        of the magnitude of the response and of its dimensions.
 
     Raises
     ------
     ValueError
         For an unknown channel or quantity, a negative frequency, bearings without an equilibrium, a part that
-        would turn although its damping is known at rest only.
+        would turn although its damping is known at rest only; for an uncertainty where no material has any.
     ArithmeticError
         Where the dynamic stiffness is singular; at 0 Hz it names the motion that a force drives and nothing
         holds, such as the spin of a shaft.
@@ -182,6 +192,25 @@ def frequency_response(
             else:
                 response, strain = response[0], strain[0]
 
+    band = None
+    if uncertainty is not None:
+
+        def again(drawn: Equilibrium | System) -> Array:
+            found = frequency_response(
+                drawn,
+                f,
+                inputs,
+                outputs,
+                speed=speed,
+                quantity=quantity,
+                amplitude=amplitude,
+                contacts=contacts,
+                progress=False,
+            )
+            return np.asarray(found["response"].values)
+
+        band = response_band(source, again, uncertainty, coverage)
+
     from bearingdyn.results import dataset, inputs_of
 
     variables: dict[str, Any] = {
@@ -196,6 +225,12 @@ def frequency_response(
         over = tuple("layer" if d == "output" else d for d in dims)
         variables["strain"] = (over, strain, "1", "shear strain amplitude of each layer that softens")
     more: dict[str, Any] = {}
+    if band is not None:
+        unit = variables["response"][2]
+        more |= {"uncertainty": int(uncertainty or 0), "coverage": float(coverage)}
+        for name in ("lower", "median", "upper"):
+            words = f"{name} magnitude over the draws of the materials"
+            variables[name] = (dims, getattr(band, name), unit, words)
     if levels is not None and np.ndim(amplitude) != 1:  # type: ignore[arg-type]
         more["amplitude"] = levels[0].tolist()
     return dataset(

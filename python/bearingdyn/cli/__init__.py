@@ -1,4 +1,4 @@
-"""The command line: `bearingdyn fit`, `show`, `bearing`, `run`, `check`, `demo` and `version`.
+"""The command line: `bearingdyn fit`, `show`, `bearing`, `run`, `report`, `check`, `demo` and `version`.
 
 Results go to standard output; progress, and warnings and errors of one line each, to standard error. The exit
 code is 0, 1 where a check does not hold, 2 for a command or input that cannot be used, 130 after Ctrl-C.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -16,6 +17,7 @@ from typing import Literal
 from bearingdyn.cli.bearing import run_bearing
 from bearingdyn.cli.check_demo_version import run_check, run_demo, run_version
 from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, LAW, T_REF, run_fit
+from bearingdyn.cli.make_report import make_report
 from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
 from bearingdyn.cli.run_model import run_model
 from bearingdyn.cli.show import run_show
@@ -31,6 +33,7 @@ examples:
   bearingdyn check
   bearingdyn check motor.toml
   bearingdyn run motor.toml --out motor.nc --set thickness=0.003
+  bearingdyn report motor.toml --results motor.nc --out motor.html
   bearingdyn demo --out demo
 
 Every command takes --json and --help. Exit codes: 0 good, 1 a check does not hold, 2 a command or input
@@ -65,12 +68,19 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"bearingdyn: this needs the package {error.name}; pip install {error.name}", file=sys.stderr)
         return UNUSABLE
     except (ValueError, OSError) as error:
-        print(f"bearingdyn: {_line(error)}", file=sys.stderr)
+        print(f"bearingdyn: {_line(_reason(error))}", file=sys.stderr)
         return UNUSABLE
     except KeyboardInterrupt:
         print("bearingdyn: interrupted", file=sys.stderr)
         return INTERRUPTED
     return code
+
+
+def _reason(error: Exception) -> str:
+    """What an error says; of a file, its name and the reason, without the system's number."""
+    if isinstance(error, OSError) and error.filename is not None and error.strerror:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
 
 
 def _line(message: object) -> str:
@@ -79,7 +89,11 @@ def _line(message: object) -> str:
 
 def _branches(text: str) -> int | Literal["auto"]:
     """A number of branches, or "auto"."""
-    return "auto" if text == "auto" else int(text)
+    if text == "auto":
+        return "auto"
+    if not re.fullmatch(r"-?[0-9]{1,9}", text):
+        raise argparse.ArgumentTypeError(f"it is {text[:40]!r}; it must be a whole number, or auto")
+    return int(text)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -219,7 +233,23 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument("model", help="model file (TOML)")
     run.add_argument("--out", metavar="FILE", help="result file (default: the model's name with .nc)")
-    for command in (check, run):
+    page = add(
+        "report",
+        make_report,
+        "one page of HTML about a machine and its results",
+        "Write a page that needs nothing else: drawing, inputs and their doubts, state at rest, modes in "
+        "motion, curves to zoom. Of a model file, whose analyses are run, or of a result file.",
+    )
+    page.add_argument("source", help="model file (TOML), or result file")
+    page.add_argument("--out", metavar="FILE", help="the page (default: the source's name with .html)")
+    page.add_argument(
+        "--results", metavar="FILE", help="of a model: result file to show instead of running its analyses"
+    )
+    page.add_argument(
+        "--sound", nargs="+", default=[], metavar="LABEL=FILE", help=".wav files to listen to on the page"
+    )
+    page.add_argument("--title", default="", help="of the page")
+    for command in (check, run, page):
         command.add_argument(
             "--set", nargs="+", default=[], metavar="NAME=VALUE", help="values of the model's parameters"
         )

@@ -16,7 +16,7 @@ def run_model(arguments: argparse.Namespace) -> tuple[str, int]:
     from bearingdyn.model import read_model
     from bearingdyn.results import save
 
-    model = read_model(arguments.model, **_parameters(arguments.set))
+    model = read_model(arguments.model, **parameters_of(arguments.set))
     out = Path(arguments.out or Path(arguments.model).with_suffix(".nc").name)
     found = model.run(lambda line: print(f"bearingdyn: {line}", file=sys.stderr, flush=True))
     if found:
@@ -38,7 +38,7 @@ def check_model(arguments: argparse.Namespace) -> tuple[str, int]:
     from bearingdyn.model import read_model
     from bearingdyn.system import assemble
 
-    model = read_model(arguments.model, **_parameters(arguments.set))
+    model = read_model(arguments.model, **parameters_of(arguments.set))
     assemble(model.application)
     if arguments.json:
         plan = model.application.plan
@@ -53,7 +53,7 @@ def check_model(arguments: argparse.Namespace) -> tuple[str, int]:
     return "\n".join(lines), GOOD
 
 
-def _parameters(given: list[str]) -> dict[str, Any]:
+def parameters_of(given: list[str]) -> dict[str, Any]:
     """name=value of the command line: numbers where they are."""
     found: dict[str, Any] = {}
     for text in given:

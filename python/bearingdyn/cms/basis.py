@@ -229,7 +229,9 @@ def modulus_levels(
             continue
         low.append(G0 if G0 > 0 else abs(complex(material.complex_modulus(1 / tau.max()))))
         # shapes want the branches' whole range, also beyond the band of a fit: without it nothing warns
-        bare = replace(material, fit=None, band=None) if isinstance(material, Maxwell) else material
+        bare = (
+            replace(material, fit=None, band=None, spread=None) if isinstance(material, Maxwell) else material
+        )
         high.append(abs(complex(bare.complex_modulus(1 / tau.min()))))
     ratio = float(np.max(np.divide(high, low)))
     if ratio < 1.001:

@@ -2,8 +2,10 @@
 
 from bearingdyn.material.amplitude import Payne, PayneFit
 from bearingdyn.material.beyond_data import warn_beyond
+from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
+from bearingdyn.material.doubts import Doubt, Doubts, doubts
 from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
 from bearingdyn.material.fit_report import FitReport, OutsideBand
@@ -21,6 +23,7 @@ from bearingdyn.material.reading import (
 )
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
+from bearingdyn.material.spread import Spread, normals, uniforms
 from bearingdyn.material.superposition import LIMIT as KK_LIMIT
 from bearingdyn.material.superposition import (
     MasterCurve,
@@ -30,6 +33,7 @@ from bearingdyn.material.superposition import (
     one_curve,
     suspects,
 )
+from bearingdyn.material.volume import constant_bulk, is_volume, volume_of
 
 __all__ = [
     "KK_LIMIT",
@@ -37,7 +41,10 @@ __all__ = [
     "STEEL",
     "WLF",
     "Arrhenius",
+    "BulkRelaxation",
     "DMAData",
+    "Doubt",
+    "Doubts",
     "Elastic",
     "FitReport",
     "FractionalZener",
@@ -56,16 +63,21 @@ __all__ = [
     "RelaxationData",
     "RhoT",
     "ShiftTable",
+    "Spread",
     "StrainSweep",
     "Suspect",
     "TabulatedModulus",
     "Yeoh",
+    "constant_bulk",
+    "doubts",
     "fit_dense",
     "fit_maxwell",
     "fit_payne",
     "group_isotherms",
+    "is_volume",
     "kk_ratio",
     "master_curve",
+    "normals",
     "one_curve",
     "read_dma",
     "read_strain_sweep",
@@ -75,5 +87,7 @@ __all__ = [
     "to_abaqus_prony",
     "to_ansys",
     "to_calculix",
+    "uniforms",
+    "volume_of",
     "warn_beyond",
 ]

@@ -18,12 +18,14 @@ from numpy.typing import ArrayLike
 from bearingdyn.checks import number, positive, real, require, two
 from bearingdyn.magnitude import check_density, check_waves, plausible
 from bearingdyn.material.amplitude import Payne, Softening
+from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
 from bearingdyn.material.superposition import MasterCurve, one_curve
+from bearingdyn.pictures import picture
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
@@ -89,6 +91,8 @@ class TabulatedModulus(Softening):
         Shift law, and the temperature, °C, at which the table holds, for :meth:`at`.
     payne
         Law of softening with the amplitude of strain; None for none.
+    bulk
+        Relaxation of the bulk modulus, whose value at rest K then is; None: K is constant.
 
     Raises
     ------
@@ -105,8 +109,12 @@ class TabulatedModulus(Softening):
     law: Law | None = None
     temperature: float | None = None
     payne: Payne | None = None
+    bulk: BulkRelaxation | None = None
 
     __repr__ = short
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
         _check("TabulatedModulus", {"K": self.K, "density": self.density})
@@ -176,7 +184,8 @@ class TabulatedModulus(Softening):
     def at(self, T: float) -> TabulatedModulus:
         """The same material at T, °C: frequencies over a_T; warnings and errors as :meth:`Maxwell.at`."""
         factor = _factor("TabulatedModulus", self.law, self.temperature, T)
-        return replace(self, frequency=self.frequency / factor, temperature=float(T))
+        bulk = None if self.bulk is None else self.bulk.moved(factor)
+        return replace(self, frequency=self.frequency / factor, temperature=float(T), bulk=bulk)
 
     def maxwell(
         self,
@@ -189,7 +198,7 @@ class TabulatedModulus(Softening):
         made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
-        return made.with_payne(self.payne)
+        return replace(made.with_payne(self.payne), bulk=self.bulk)
 
 
 @dataclass(frozen=True)
@@ -213,6 +222,8 @@ class PowerLaw(Softening):
         Shift law, and the temperature, °C, at which the modulus holds, for :meth:`at`.
     payne
         Law of softening with the amplitude of strain; None for none.
+    bulk
+        Relaxation of the bulk modulus, whose value at rest K then is; None: K is constant.
 
     Raises
     ------
@@ -232,6 +243,10 @@ class PowerLaw(Softening):
     law: Law | None = None
     temperature: float | None = None
     payne: Payne | None = None
+    bulk: BulkRelaxation | None = None
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
         values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
@@ -256,7 +271,8 @@ class PowerLaw(Softening):
     def at(self, T: float) -> PowerLaw:
         """The same material at T, °C; warnings and errors as :meth:`Maxwell.at`."""
         factor = _factor("PowerLaw", self.law, self.temperature, T)
-        return replace(self, frequency=self.frequency / factor, temperature=float(T))
+        bulk = None if self.bulk is None else self.bulk.moved(factor)
+        return replace(self, frequency=self.frequency / factor, temperature=float(T), bulk=bulk)
 
     def maxwell(
         self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02
@@ -265,7 +281,7 @@ class PowerLaw(Softening):
         made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
-        return made.with_payne(self.payne)
+        return replace(made.with_payne(self.payne), bulk=self.bulk)
 
 
 @dataclass(frozen=True)
@@ -286,6 +302,8 @@ class FractionalZener(Softening):
         Shift law, and the temperature, °C, at which tau holds, for :meth:`at`.
     payne
         Law of softening with the amplitude of strain; None for none.
+    bulk
+        Relaxation of the bulk modulus, whose value at rest K then is; None: K is constant.
 
     Raises
     ------
@@ -306,6 +324,10 @@ class FractionalZener(Softening):
     law: Law | None = field(default=None)
     temperature: float | None = None
     payne: Payne | None = None
+    bulk: BulkRelaxation | None = None
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
         values = {"G_inf": self.G_inf, "tau": self.tau, "K": self.K, "density": self.density}
@@ -326,11 +348,9 @@ class FractionalZener(Softening):
 
     def at(self, T: float) -> FractionalZener:
         """The same material at T, °C; warnings and errors as :meth:`Maxwell.at`."""
-        return replace(
-            self,
-            tau=self.tau * _factor("FractionalZener", self.law, self.temperature, T),
-            temperature=float(T),
-        )
+        factor = _factor("FractionalZener", self.law, self.temperature, T)
+        bulk = None if self.bulk is None else self.bulk.moved(factor)
+        return replace(self, tau=self.tau * factor, temperature=float(T), bulk=bulk)
 
     def maxwell(
         self, n: int | Literal["auto"] = 5, *, band: tuple[float, float], tolerance: float = 0.02
@@ -339,4 +359,4 @@ class FractionalZener(Softening):
         made = _approximate(
             self.complex_modulus, band, n, self.K, self.density, self.law, self.temperature, tolerance
         )
-        return made.with_payne(self.payne)
+        return replace(made.with_payne(self.payne), bulk=self.bulk)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from bearingdyn.checks import number, positive
 from bearingdyn.magnitude import check_density, check_waves, plausible
+from bearingdyn.pictures import picture
 from bearingdyn.units import takes
 
 
@@ -39,6 +40,9 @@ class Elastic:
     E: float
     nu: float
     density: float
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
         positive("Elastic.E", self.E, "Young's modulus must be positive and finite, Pa")

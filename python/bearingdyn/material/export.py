@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import positive
+from bearingdyn.checks import positive, require
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrhenius
 
@@ -26,8 +26,8 @@ def elastic_constants(G: float, K: float) -> tuple[float, float]:
 def to_abaqus_frequency(material: Maxwell, frequency: ArrayLike, name: str = "RUBBER") -> str:
     """Export a material to Abaqus for steady-state dynamics: *VISCOELASTIC, FREQUENCY=TABULAR.
 
-    Columns ωRe(g*) = G″/G∞, ωIm(g*) = 1 − G′/G∞, none for the bulk, f; the dashpot is contained. G∞ = G0 is
-    the long-term modulus *ELASTIC gives.
+    Columns ωRe(g*) = G″/G∞, ωIm(g*) = 1 − G′/G∞, the same of the bulk modulus, f; the dashpot is contained.
+    G∞ = G0 and K are the long-term moduli *ELASTIC gives.
 
     Parameters
     ----------
@@ -54,11 +54,16 @@ def to_abaqus_frequency(material: Maxwell, frequency: ArrayLike, name: str = "RU
     if not material.G0 > 0:
         raise ValueError("Maxwell.G0 is 0; Abaqus refers frequency data to a long-term modulus above zero")
     modulus = material.complex_modulus(2 * np.pi * f) / material.G0
-    rows = zip(modulus.imag, 1 - modulus.real, f, strict=True)
+    bulk = material.bulk_modulus(2 * np.pi * f) / material.K
+    rows = zip(modulus.imag, 1 - modulus.real, bulk.imag, 1 - bulk.real, f, strict=True)
     lines = _abaqus_head(material, name, material.G0, "LONG TERM")
     lines += ["*VISCOELASTIC, FREQUENCY=TABULAR"]
-    lines += [f"{a:.9e}, {b:.9e}, 0., 0., {hertz:.9e}" for a, b, hertz in rows]
+    lines += [f"{a:.9e}, {b:.9e}, {_or_none(c)}, {_or_none(d)}, {hertz:.9e}" for a, b, c, d, hertz in rows]
     return "\n".join(lines) + "\n"
+
+
+def _or_none(value: float) -> str:
+    return f"{value:.9e}" if value != 0.0 else "0."
 
 
 def to_abaqus_prony(material: Maxwell, name: str = "RUBBER") -> str:
@@ -82,7 +87,7 @@ def to_abaqus_prony(material: Maxwell, name: str = "RUBBER") -> str:
     Raises
     ------
     ValueError
-        If there is a dashpot, no branch, or a law that Abaqus does not have.
+        If there is a dashpot, no branch, a bulk modulus that relaxes, or a law that Abaqus does not have.
     """
     _check_prony(material, "Abaqus")
     total = material.G_instantaneous
@@ -127,7 +132,7 @@ def to_ansys(material: Maxwell, number: int = 1) -> str:
     Raises
     ------
     ValueError
-        If there is a dashpot, no branch, or a law that ANSYS does not have.
+        If there is a dashpot, no branch, a bulk modulus that relaxes, or a law that ANSYS does not have.
     """
     _check_prony(material, "ANSYS")
     if not (isinstance(number, int) and number > 0):
@@ -192,7 +197,7 @@ def to_calculix(material: Maxwell, frequency: float, name: str = "RUBBER") -> st
     """
     positive("frequency", frequency, "it must be positive and finite, Hz")
     modulus = complex(material.complex_modulus(2 * math.pi * frequency))
-    E, nu = elastic_constants(modulus.real, material.K)
+    E, nu = elastic_constants(modulus.real, float(material.bulk_modulus(2 * math.pi * frequency).real))
     return "\n".join(
         [
             f"** holds at {frequency:.6g} Hz only; the loss factor acts on the volume too",
@@ -224,6 +229,12 @@ def _check_prony(material: Maxwell, program: str) -> None:
             f"Maxwell.eta0 is {material.eta0:g} Pa s; {program}'s Prony series has no dashpot; fit with "
             "dashpot=False"
         )
+    require(
+        material.bulk is None,
+        "Maxwell.bulk",
+        material.bulk,
+        f"{program}'s Prony series is written with a constant bulk modulus: give the material with bulk=None",
+    )
     if material.G.size == 0:
         raise ValueError(f"Maxwell.G is empty; {program}'s Prony series needs a branch")
     if material.vertical is not None:

@@ -13,11 +13,13 @@ from numpy.typing import ArrayLike
 from bearingdyn.checks import instance, nonnegative, number, positive, real, require, vector
 from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
 from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
+from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
+from bearingdyn.material.spread import Drawable, Spread
 from bearingdyn.notice import warn
 from bearingdyn.pictures import picture
 from bearingdyn.types import Array, Complex
@@ -41,12 +43,12 @@ def _branches(name: str, values: ArrayLike) -> Array:
 
 @takes(G0="Pa", G="Pa", tau="s", eta0="Pa s", K="Pa", density="kg/m³", temperature="°C", band="Hz")
 @dataclass(frozen=True, init=False, eq=False)
-class Maxwell(Retunable, Softening):
-    """The generalised Maxwell model, viscoelastic in shear, elastic in volume.
+class Maxwell(Retunable, Softening, Drawable):
+    """The generalised Maxwell model, viscoelastic in shear, and elastic in volume unless `bulk` is given.
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
     G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).
-    Two materials are equal if they agree in everything but `band`, `fit` and `low_end`.
+    Two materials are equal if they agree in everything but `band`, `fit`, `low_end` and `spread`.
 
     Parameters
     ----------
@@ -57,8 +59,9 @@ class Maxwell(Retunable, Softening):
     eta0
         Viscosity of the parallel dashpot, Pa s, ≥ 0.
     K
-        Bulk modulus, Pa, constant; at least 2/3 of the shear modulus right after a step (or at the upper end
-        of the band, if there is one), as Poisson's ratio would otherwise be negative.
+        Bulk modulus at rest, Pa, constant unless `bulk` is given; at least 2/3 of the shear modulus right
+        after a step (or at the upper end of the band, if there is one), as Poisson's ratio would otherwise be
+        negative.
     density
         Mass density, kg/m³, 10 to 30000; 1e-4 to 0.1 stand for a layer without inertia.
     law
@@ -79,6 +82,11 @@ class Maxwell(Retunable, Softening):
     payne
         Law of softening with the amplitude of strain; G0, G and tau are then those at the law's gamma_r. None
         for none: the material is linear.
+    bulk
+        Relaxation of the bulk modulus: K is then complex, with loss in volume. None: K is constant.
+    spread
+        How far the parameters may be off; that of the fit unless given. It goes along to another temperature,
+        modulus or loss factor, whose factors count as exact; see `with_spread` and `draws`.
 
     Raises
     ------
@@ -109,6 +117,8 @@ class Maxwell(Retunable, Softening):
     fit: FitReport | None = field(repr=False)
     low_end: LowEnd | None = field(repr=False)
     payne: Payne | None = field(repr=False)
+    bulk: BulkRelaxation | None = field(repr=False)
+    spread: Spread | None = field(repr=False)
 
     def _repr_html_(self) -> str:
         return str(picture("as_html", self))
@@ -144,7 +154,10 @@ class Maxwell(Retunable, Softening):
         fit: FitReport | None = None,
         low_end: LowEnd | None = None,
         payne: Payne | None = None,
+        bulk: BulkRelaxation | None = None,
+        spread: Spread | None = None,
     ) -> None:
+        instance("Maxwell.bulk", bulk, (BulkRelaxation, type(None)), "give a bd.BulkRelaxation, or None")
         instance("Maxwell.fit", fit, (FitReport, type(None)), "it must be the report of a fit, or None")
         shifts = law is None or (callable(getattr(law, "log_shift", None)) and hasattr(law, "T_ref"))
         require(
@@ -155,6 +168,9 @@ class Maxwell(Retunable, Softening):
         )
         if band is None and fit is not None:
             band = fit.band
+        instance("Maxwell.spread", spread, (Spread, type(None)), "it must be a bd.material.Spread, or None")
+        if spread is None and fit is not None:
+            spread = Spread.of(fit)
         edges = band if band is None else vector("Maxwell.band", band, (2,), "lowest and highest, in Hz")
         if temperature is None and law is not None:
             temperature = law.T_ref
@@ -172,10 +188,14 @@ class Maxwell(Retunable, Softening):
             "fit": fit,
             "low_end": low_end if low_end is not None or fit is None else fit.low_end,
             "payne": payne,
+            "bulk": bulk,
+            "spread": spread,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
         self._validate()
+        if self.spread is not None and self.spread.fits > self.tau.size:  # branches were taken away since
+            object.__setattr__(self, "spread", None)
         if self.low_end is None and self.band is not None:
             known = LowEnd.of_band(self.band[0], self._at(self.band[0]).real)
             object.__setattr__(self, "low_end", known)
@@ -240,6 +260,7 @@ class Maxwell(Retunable, Softening):
             self.temperature,
             self.vertical,
             self.payne,
+            self.bulk,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -300,6 +321,12 @@ class Maxwell(Retunable, Softening):
                 f"fitted in, {self.band[0]:.4g} to {self.band[1]:.4g} Hz: there it extrapolates",
                 OutsideBand,
             )
+
+    def bulk_modulus(self, omega: ArrayLike) -> Complex:
+        """Complex bulk modulus K*(ω), Pa, at ω rad/s, any shape; K everywhere without `bulk`."""
+        if self.bulk is None:
+            return np.full(np.shape(omega), complex(self.K))
+        return self.bulk.modulus(self.K, omega)
 
     def loss_factor(self, omega: ArrayLike) -> Array:
         """Loss factor η = tan δ = G″/G′ at angular frequencies ω, rad/s; infinite where G′ = 0."""
@@ -426,6 +453,7 @@ class Maxwell(Retunable, Softening):
             fit=None,
             low_end=None if self.low_end is None else self.low_end.moved(aT, bT),
             payne=None if self.payne is None else self.payne.scaled(bT),
+            bulk=None if self.bulk is None else self.bulk.moved(aT),
         )
 
     def to_json(self) -> str:
@@ -454,6 +482,10 @@ class Maxwell(Retunable, Softening):
                 for name, v in vars(self.payne).items()
                 if name != "fit"
             }
+        if self.bulk is not None:
+            data["bulk"] = {name: list(v) for name, v in vars(self.bulk).items()}
+        if self.spread is not None:
+            data["spread"] = self.spread.told_as
         return json.dumps(data, indent=1)
 
     @classmethod
@@ -477,6 +509,8 @@ class Maxwell(Retunable, Softening):
                 "band",
                 "low_end",
                 "payne",
+                "bulk",
+                "spread",
             }
         )
         if unknown:
@@ -485,7 +519,13 @@ class Maxwell(Retunable, Softening):
         vertical = data.pop("vertical", None)
         known = data.pop("low_end", None)
         softens = data.pop("payne", None)
+        relaxes = data.pop("bulk", None)
+        spread = data.pop("spread", None)
         try:
+            if relaxes is not None:
+                data["bulk"] = BulkRelaxation(**relaxes)
+            if spread is not None:
+                data["spread"] = Spread(**spread)
             if softens is not None:
                 data["payne"] = Payne(**softens)
             if known is not None:

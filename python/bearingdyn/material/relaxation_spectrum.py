@@ -25,6 +25,16 @@ def branch_columns(omega: Array, tau: Array) -> tuple[Array, Array]:
     return x * loss, loss
 
 
+def unit_columns(omega: Array, tau: Array) -> tuple[Array, Array]:
+    """Storage and loss modulus at ω (p,) of a unit spring, unit branches, τ (n,), and a unit dashpot.
+
+    Two arrays (p, n + 2).
+    """
+    storage, loss = branch_columns(omega, tau)
+    one, none = np.ones((omega.size, 1)), np.zeros((omega.size, 1))
+    return np.hstack([one, storage, none]), np.hstack([none, loss, omega[:, None]])
+
+
 def branch_slopes(omega: Array, tau: Array) -> tuple[Array, Array]:
     """Slopes of a spectrum's :func:`branch_columns` with respect to ln ω, or ln τ: (p, n) each."""
     storage, loss = branch_columns(omega, tau)

@@ -11,6 +11,7 @@ import numpy as np
 from bearingdyn.checks import positive, require
 from bearingdyn.material.amplitude import Payne
 from bearingdyn.material.low_end import LowEnd
+from bearingdyn.material.spread import Spread
 from bearingdyn.types import Array, Complex
 
 
@@ -23,6 +24,7 @@ class Retunable:
     eta0: float
     low_end: LowEnd | None
     payne: Payne | None
+    spread: Spread | None
 
     def complex_modulus(self, omega: Any) -> Complex:
         """Complex shear modulus at ω rad/s, Pa; given by the model."""
@@ -111,4 +113,6 @@ class Retunable:
         strength = 2 * (loss_factor * modulus.real - modulus.imag) / (1 - loss_factor)
         G, tau = np.append(self.G, strength), np.append(self.tau, 1 / omega)
         order = np.argsort(tau)
-        return self._with(G=G[order], tau=tau[order], fit=None).with_modulus(abs(modulus), omega)
+        spread = None if self.spread is None else self.spread.renumbered(order)
+        more = self._with(G=G[order], tau=tau[order], fit=None, spread=spread)
+        return more.with_modulus(abs(modulus), omega)

@@ -17,16 +17,20 @@ from bearingdyn.fem import (
     revolution_mesh,
 )
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import Elastic, Hyperelastic
+from bearingdyn.material import Elastic, Hyperelastic, is_volume
+from bearingdyn.notice import VolumeCounts, warn
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
+from bearingdyn.parts.shape_moduli import shape_moduli
 from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
 from bearingdyn.parts.strain import Strain
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
+
+VOLUME_COUNTS = 0.1  # share of volume in the radial stiffness, from which the doubt in K is told
 
 
 @takes(r_inner="m", r_outer="m", width="m", moduli="Pa", recess="m")
@@ -236,8 +240,35 @@ class Layer:
         return self.body.stiffness(omega, after)
 
     def superelement(self) -> Superelement:
-        """Reduced matrices: 12 interface coordinates, and up to 5 internal ones for each further modulus."""
-        return replace(self.body.superelement(), faces=self.round_faces())
+        """Reduced matrices: 12 interface coordinates, and up to 5 internal ones for each further modulus.
+
+        Warns
+        -----
+        VolumeCounts
+            Where the radial stiffness hangs on the bulk modulus.
+        """
+        element = self.body.superelement()
+        self._warn_of_volume(element)
+        return replace(element, faces=self.round_faces())
+
+    def _warn_of_volume(self, element: Superelement) -> None:
+        """Warn where volume has a share in the radial stiffness: it is d ln k/d ln K, at constant shapes."""
+        if not element.viscoelastic:
+            return
+        G = shape_moduli(self.body.regions, self.moduli)[0][0]
+        volume = element.K[0, 0] + sum(
+            2.0 * self.material.K * t.H[0, 0] for t in element.viscoelastic if is_volume(t.material)
+        )
+        share = volume / (volume + 2.0 * G * element.viscoelastic[0].H[0, 0])
+        if share < VOLUME_COUNTS:
+            return
+        warn(
+            f"layer of {1e3 * self.thickness:.3g} mm: {share:.0%} of its radial stiffness is volume, so that "
+            f"a bulk modulus of 1 or 3 GPa instead of {self.material.K / 1e9:.3g} makes it "
+            f"{(1e9 / self.material.K) ** share - 1:+.0%} or {(3e9 / self.material.K) ** share - 1:+.0%} "
+            f"stiffer; DMA does not measure it",
+            VolumeCounts,
+        )
 
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""

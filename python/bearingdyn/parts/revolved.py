@@ -40,7 +40,7 @@ from bearingdyn.fem import (
     revolution_mesh,
 )
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
+from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic, constant_bulk, volume_of
 from bearingdyn.parts.mesh_waves import check_waves
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
@@ -56,7 +56,7 @@ from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.revolved_strain import concentrations, strain_of_motion
 from bearingdyn.parts.shape_moduli import moduli_at, shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
-from bearingdyn.parts.static_modulus import quasi_static
+from bearingdyn.parts.static_modulus import quasi_static, quasi_static_bulk
 from bearingdyn.parts.strain import Strain
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -265,11 +265,13 @@ class Revolved:
         if not self.interfaces:
             raise ValueError("interfaces is empty; a stiffness needs at least one")
         shear = [quasi_static(q.material, omega, after) for q in self.regions]
+        bulk = [quasi_static_bulk(q.material, omega, after) for q in self.regions]
+        maker = replace(self._shape_maker(), bulk=bulk)
         rigid = Boundaries(self._boundaries.faces, {})
         S = np.zeros((rigid.n, rigid.n), dtype=np.complex128)
         for order, components, copies in rigid.families():
             h = self._harmonic(order, components)
-            _, k = self._shape_maker().constraint_shapes(h, shear)
+            _, k = maker.constraint_shapes(h, shear)
             for copy in range(copies):
                 index, sign = rigid.place(h, copy)
                 S[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (k + k.T)
@@ -339,6 +341,13 @@ class Revolved:
         require(not self.grooves, "grooves", sorted(self.grooves), "a body with raceways cannot be squeezed")
         require(self.prestress is None, "prestress", "there", "squeeze the body once, from its state at rest")
         require(bool(press), "press", press, f"name one of the interfaces {sorted(self.interfaces)}")
+        for q in self.regions:
+            require(
+                getattr(q.material, "bulk", None) is None,
+                "bulk",
+                getattr(q.material, "bulk", None),
+                "of a squeezed body the bulk modulus must be constant: give the material without, bulk=None",
+            )
         check_branches(branches)
         rubber = check_law(law)
         prestress = squeeze(
@@ -543,7 +552,8 @@ class Revolved:
     def superelement(self) -> Superelement:
         """Reduced matrices with rigid interfaces, projections of the full model's (paper (21)-(23)).
 
-        M includes the viscoelastic regions; K their volumetric part; G is zero, for the body does not
+        M includes the viscoelastic regions; K their volumetric part, unless their bulk modulus relaxes: it
+        then is a term of its own after those in shear; G is zero, for the body does not
         turn. Condensed quasi-statically it is the matrix of `stiffness` exactly at the moduli of the
         shapes, and elsewhere too stiff: for two moduli 1:10 within 0.01 % from half the lower to twice
         the higher, for 1:100 within 0.3 % between them; for
@@ -558,11 +568,13 @@ class Revolved:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
         n = self._size
         rubbers, owner = self._rubbers
-        bulk = np.array(self._bulk)
+        bulk = np.array([constant_bulk(q.material) for q in self.regions])
         shear = np.array([q.material.G if isinstance(q.material, Elastic) else 0.0 for q in self.regions])
+        volumes = {j: v for j, m in enumerate(rubbers) if (v := volume_of(m)) is not None}
 
         M, K, E = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
         H = [np.zeros((n, n)) for _ in rubbers]
+        swelling = {j: np.zeros((n, n)) for j in volumes}
         rows = {name: np.zeros((3, n)) for name in self.outputs}
         for h, Psi, places in self._placed():
             parts = [(M, h.mass_matrix(self._density)), (K, h.stiffness(bulk, shear))]
@@ -570,6 +582,7 @@ class Revolved:
             parts += [
                 (H[j], h.matrix((owner == j).astype(float) @ h.deviatoric)) for j in range(len(rubbers))
             ]
+            parts += [(S, h.matrix(0.5 * (owner == j) @ h.volumetric)) for j, S in swelling.items()]
             reduced = [(full, Psi.T @ (A @ Psi)) for full, A in parts]
             whole = h.complete(Psi.copy())
             for copy, (index, sign) in enumerate(places):
@@ -593,9 +606,12 @@ class Revolved:
             K=P @ K @ P,
             interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(self.interfaces)},
             outputs=rows,
-            viscoelastic=tuple(
-                Viscoelastic(m, P @ h @ P, *concentrations(self.mesh, self._soft(j), self._placed(), n))
-                for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
+            viscoelastic=(
+                *(
+                    Viscoelastic(m, P @ h @ P, *concentrations(self.mesh, self._soft(j), self._placed(), n))
+                    for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
+                ),
+                *(Viscoelastic(volumes[j], P @ S @ P) for j, S in swelling.items()),
             ),
             faces=self.round_faces(),
             raceways={

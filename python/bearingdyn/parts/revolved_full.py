@@ -10,7 +10,7 @@ import scipy
 
 from bearingdyn.cms import Basis, FullModel, RigidInterface, Viscoelastic
 from bearingdyn.fem import Harmonic
-from bearingdyn.material import Elastic
+from bearingdyn.material import Elastic, constant_bulk, volume_of
 from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved_faces import MeshFace
 from bearingdyn.types import Array
@@ -36,7 +36,8 @@ def full_model(
         if not isinstance(q.material, Elastic) and not any(q.material is m for m in rubbers):
             rubbers.append(q.material)
     owner = np.array([next((i for i, m in enumerate(rubbers) if q.material is m), -1) for q in regions])
-    bulk = np.array([q.material.K for q in regions])
+    bulk = np.array([constant_bulk(q.material) for q in regions])
+    volumes = {i: v for i, m in enumerate(rubbers) if (v := volume_of(m)) is not None}
     shear = np.array([q.material.G if isinstance(q.material, Elastic) else 0.0 for q in regions])
     density = np.array([q.material.density for q in regions])
 
@@ -44,6 +45,7 @@ def full_model(
     K: list[Any] = []
     E: list[Any] = []
     H: list[list[Any]] = [[] for _ in rubbers]
+    swelling: list[list[Any]] = [[] for _ in volumes]
     dofs: dict[str, list[Array]] = {name: [] for name in faces}
     T: dict[str, list[Array]] = {name: [] for name in faces}
     rows: dict[str, list[Any]] = {name: [] for name in outputs}
@@ -54,12 +56,13 @@ def full_model(
             h.stiffness(bulk, shear),
             h.stiffness(np.where(owner < 0, bulk, 0.0), shear),
             *(h.matrix((owner == i).astype(float) @ h.deviatoric) for i in range(len(rubbers))),
+            *(h.matrix(0.5 * (owner == i) @ h.volumetric) for i in volumes),
         ]
         own = [A[h.free][:, h.free] for A in own]
         place = np.full(h.n, -1)
         place[h.free] = np.arange(h.free.size)
         for copy, (coordinates, signs) in enumerate(copies):
-            for store, A in zip([M, K, E, *H], own, strict=True):
+            for store, A in zip([M, K, E, *H, *swelling], own, strict=True):
                 store.append(A)
             for name, face in faces.items():
                 at = place[h.coordinates(face.nodes)]
@@ -82,7 +85,10 @@ def full_model(
             for name, face in faces.items()
         },
         outputs={name: scipy.sparse.hstack(parts) for name, parts in rows.items()},
-        viscoelastic=tuple(Viscoelastic(m, stack(parts)) for m, parts in zip(rubbers, H, strict=True)),
+        viscoelastic=tuple(
+            Viscoelastic(m, stack(parts))
+            for m, parts in zip([*rubbers, *volumes.values()], [*H, *swelling], strict=True)
+        ),
     )
 
 

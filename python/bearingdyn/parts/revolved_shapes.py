@@ -34,7 +34,7 @@ class ShapeMaker:
     """
 
     boundaries: Boundaries
-    bulk: Sequence[float]
+    bulk: Sequence[complex]
     density: Sequence[float]
     f_max: float
     size: float

@@ -34,6 +34,8 @@ def moduli_at(regions: Sequence[Region | Patch], omega: float) -> list[complex]:
             found.append(complex(q.material.G))
             continue
         material: Any = q.material
-        bare = replace(material, fit=None, band=None) if isinstance(material, Maxwell) else material
+        bare = (
+            replace(material, fit=None, band=None, spread=None) if isinstance(material, Maxwell) else material
+        )
         found.append(complex(np.asarray(bare.complex_modulus(omega)).item()))
     return found

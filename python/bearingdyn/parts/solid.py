@@ -41,7 +41,7 @@ from bearingdyn.fem import (
     rigid_motion,
 )
 from bearingdyn.magnitude import plausible
-from bearingdyn.material import Elastic
+from bearingdyn.material import Elastic, constant_bulk, volume_of
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
 from bearingdyn.parts.static_modulus import quasi_static
@@ -259,6 +259,7 @@ class Solid:
         M, E, bulk = (scipy.sparse.csr_matrix((n, n)) for _ in range(3))
         rubbers: list[tuple[ViscoelasticSolid, Any]] = []
         volumes: list[float] = []
+        swelling: list[Viscoelastic] = []
         for name, elements in self.mesh.regions.items():
             material = self._materials[name]
             unit = assemble_solid(self.mesh, elements, incompressible=is_rubber(material))
@@ -266,7 +267,9 @@ class Solid:
             if isinstance(material, Elastic):
                 E = E + unit.stiffness(material)
                 continue
-            bulk = bulk + material.K * unit.volumetric
+            bulk = bulk + constant_bulk(material) * unit.volumetric
+            if (volume := volume_of(material)) is not None:
+                swelling.append(Viscoelastic(volume, 0.5 * unit.volumetric))
             same = [k for k, (other, _) in enumerate(rubbers) if other is material]
             if same:
                 rubbers[same[0]] = (material, rubbers[same[0]][1] + unit.deviatoric)
@@ -286,9 +289,12 @@ class Solid:
             E=E if rubbers else None,
             interfaces=interfaces,
             outputs=self._rows,
-            viscoelastic=tuple(
-                Viscoelastic(material, H, volume)
-                for (material, H), volume in zip(rubbers, volumes, strict=True)
+            viscoelastic=(
+                *(
+                    Viscoelastic(material, H, volume)
+                    for (material, H), volume in zip(rubbers, volumes, strict=True)
+                ),
+                *swelling,
             ),
         )
 

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from bearingdyn.checks import positive, require
-from bearingdyn.material import Elastic, warn_beyond
+from bearingdyn.material import Elastic, volume_of, warn_beyond
 
 
 def quasi_static(material: Any, omega: float, after: float | None) -> complex:
@@ -35,3 +35,11 @@ def quasi_static(material: Any, omega: float, after: float | None) -> complex:
             "in shear to solve with; give a material with G0 > 0, or omega > 0"
         )
     return G
+
+
+def quasi_static_bulk(material: Any, omega: float, after: float | None) -> complex:
+    """Bulk modulus, Pa, beside `quasi_static`: K, or where it relaxes K*(ω), or K(t) after a time, s."""
+    volume = volume_of(material)
+    if volume is None:
+        return complex(material.K)
+    return complex(volume.complex_modulus(omega) if after is None else float(volume.relaxation(after)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.types import Array
+from bearingdyn.units import suited
 
 if TYPE_CHECKING:
     import xarray
@@ -37,9 +37,6 @@ STYLE: Mapping[str, Any] = {
 LEGEND_COLUMNS = 4
 WRITTEN_OUT = 4.0  # decades of a log axis; beyond, its ticks are powers of ten
 RPM = 30.0 / math.pi  # per rad/s
-PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-# units that take a prefix, to the first power, at the head of a compound; a long time stays in seconds
-PREFIXED = re.compile(r"^(\(?)(m|N|Pa|W|J|Hz|rad|s)(?=$|[/ )])")
 
 
 @contextmanager
@@ -136,13 +133,8 @@ def engineering(axis: Axis, values: Array, unit: str) -> str:
     low, high = (float(size.min()), float(size.max())) if size.size else (1.0, 1.0)
     log = axis.get_scale() == "log"
     decades = math.log10(high / low)
-    head = PREFIXED.match(unit)
-    least, most = (1.0, 1e4) if head else (1e-2, 1e5)
-    power = 0 if least <= high < most else 3 * math.floor(math.log10(high) / 3 + 1e-9)
-    if head:
-        power = min(max(power, min(PREFIXES)), 0 if head[2] == "s" else max(PREFIXES))
-        unit = f"{head[1]}{PREFIXES[power]}{unit[head.end(1) :]}"
-    elif power:
+    power, unit, prefixed = suited(high, unit)
+    if power and not prefixed:
         unit = f"{_power_of_ten(power)} {unit}".rstrip()
 
     def written(value: float, _: object = None) -> str:

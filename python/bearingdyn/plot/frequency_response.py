@@ -40,7 +40,7 @@ def frequency_response(
     """Magnitude of a response by bd.frequency_response against frequency, several by label, on a log axis.
 
     With `phase` the axes are halved, and the phase stands below. It is unwrapped: it begins between −225° and
-    135° and goes on without jumps.
+    135° and goes on without jumps. The band of a response with `uncertainty` is shaded.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def frequency_response(
             known = [str(c) for c in data[kind].values]
             if wanted not in known:
                 raise ValueError(f"{label!r} has no {kind} {wanted!r}; there are {known}")
-        curves[label] = data["response"].sel(output=output, input=input)
+        curves[label] = data.sel(output=output, input=input)
     quantity = one_quantity(several)
     unit = _response_unit(quantity, output, input)
     with style():
@@ -87,7 +87,10 @@ def frequency_response(
         lower = halve(ax, share=0.3) if phase else None
         for k, (label, curve) in enumerate(curves.items()):
             look: dict[str, Any] = {"color": colour(k), "linestyle": DASHES[k % len(DASHES)]}
-            f, value = curve["frequency"].values, curve.values
+            f, value = curve["frequency"].values, curve["response"].values
+            if "lower" in curve:
+                low, high = curve["lower"].values, curve["upper"].values
+                ax.fill_between(f, low, high, color=look["color"], alpha=0.2, linewidth=0)
             ax.plot(f, np.abs(value), label=label, **look)
             if lower is not None:
                 lower.plot(f, continuous_phase(value), **look)

@@ -7,7 +7,7 @@ import math
 import warnings
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -15,7 +15,14 @@ from bearingdyn.analysis import Equilibrium, static_summary
 from bearingdyn.application import GRAVITY, GROUND, Application, loose_motions
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import instance
-from bearingdyn.material import Maxwell
+from bearingdyn.material import (
+    Elastic,
+    FractionalZener,
+    MasterCurve,
+    Maxwell,
+    PowerLaw,
+    TabulatedModulus,
+)
 from bearingdyn.plot.drawing.bearing_section import draw_bearing
 from bearingdyn.plot.drawing.loads import course, value
 from bearingdyn.plot.drawing.sheet import draw
@@ -26,6 +33,7 @@ from bearingdyn.units import mm
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Material: TypeAlias = Elastic | FractionalZener | MasterCurve | Maxwell | PowerLaw | TabulatedModulus
 CELL = "padding:2px 10px 2px 0;text-align:left;vertical-align:top;border:none"
 HEAD = f"{CELL};opacity:.65;font-weight:normal"
 
@@ -67,13 +75,13 @@ def box(title: str, *blocks: str) -> str:
     return f'<div class="bearingdyn"><div><strong>{escape(title)}</strong></div>{"".join(blocks)}</div>'
 
 
-def as_html(thing: Application | BallBearing | Maxwell | Equilibrium) -> str:
+def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
     """What an object shows in a notebook, as HTML.
 
     Parameters
     ----------
     thing
-        An application, a bearing, a Maxwell model or an equilibrium.
+        An application, a bearing, an equilibrium, a material or a master curve.
 
     Raises
     ------
@@ -83,10 +91,15 @@ def as_html(thing: Application | BallBearing | Maxwell | Equilibrium) -> str:
     makers: dict[type, Any] = {
         Application: application_html,
         BallBearing: bearing_html,
-        Maxwell: maxwell_html,
         Equilibrium: equilibrium_html,
+        Elastic: elastic_html,
+        FractionalZener: zener_html,
+        MasterCurve: master_html,
+        Maxwell: maxwell_html,
+        PowerLaw: power_law_html,
+        TabulatedModulus: tabulated_html,
     }
-    instance("thing", thing, tuple(makers), "give an application, a bearing, a Maxwell model, an equilibrium")
+    instance("thing", thing, tuple(makers), "give an application, a bearing, an equilibrium or a material")
     page: str = next(make for kind, make in makers.items() if isinstance(thing, kind))(thing)
     return page
 
@@ -182,6 +195,37 @@ def maxwell_html(material: Maxwell) -> str:
     low, high = 0.01 / (2 * np.pi * times.max()), 100.0 / (2 * np.pi * times.min())
     if material.band is not None:
         low, high = min(low, material.band[0] / 3), max(high, 3 * material.band[1])
+    at = "" if material.temperature is None else f" at {material.temperature:g} °C"
+    facts = [
+        ("relaxed modulus G0", f"{material.G0 / 1e6:.4g} MPa"),
+        ("at once", f"{(material.G0 + material.G.sum()) / 1e6:.4g} MPa"),
+        *_stated(material),
+    ]
+    if material.fit is not None:
+        fit = material.fit
+        told = f"{fit.points} points, storage within {100 * fit.storage_rms:.2g} % rms"
+        facts.append(("fit", f"{told}, from {fit.covered[0]:.4g} to {fit.covered[1]:.4g} Hz"))
+    branches = [(f"{tau:.4g}", f"{G / 1e6:.4g}") for G, tau in zip(material.G, material.tau, strict=True)]
+    return box(
+        f"Maxwell model of rubber{at}",
+        _modulus(material, low, high, material.band),
+        rows(("", ""), facts),
+        rows(("τ, s", "G, MPa"), branches),
+    )
+
+
+def _stated(material: Any) -> list[tuple[str, str]]:
+    """What every rubber states beside its modulus."""
+    facts = [("bulk modulus K", f"{material.K / 1e9:.4g} GPa"), ("density", f"{material.density:g} kg/m³")]
+    if material.law is not None:
+        facts.append(("shift law", type(material.law).__name__))
+    if material.payne is not None:
+        facts.append(("softens with strain", f"from {100 * material.payne.gamma_c:.3g} % on"))
+    return facts
+
+
+def _modulus(material: Any, low: float, high: float, band: tuple[float, float] | None) -> str:
+    """The picture of a modulus over frequency."""
     f = np.geomspace(low, high, 200)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the picture shows the band itself
@@ -190,31 +234,89 @@ def maxwell_html(material: Maxwell) -> str:
         figure, ax = _figure(5.6, 2.8)
         ax.loglog(f, G.real / 1e6, label="storage G′")
         ax.loglog(f, np.maximum(G.imag, 1e-12) / 1e6, "--", label="loss G″")
-        if material.band is not None:
-            ax.axvspan(*material.band, color="#f2b632", alpha=0.18, linewidth=0, label="band of the data")
+        if band is not None:
+            ax.axvspan(*band, color="#f2b632", alpha=0.18, linewidth=0, label="band of the data")
         ax.set_xlabel("frequency, Hz")
         ax.set_ylabel("MPa")
         ax.set_ylim(bottom=0.5 * min(float(G.real.min()), float(np.quantile(G.imag, 0.1)) or 1e3) / 1e6)
         finish(ax, legend=True)
-    at = "" if material.temperature is None else f" at {material.temperature:g} °C"
+    return svg(figure, "storage and loss modulus over frequency")
+
+
+def zener_html(material: FractionalZener) -> str:
+    """A fractional Zener model: its modulus over six decades about its transition, and its parameters."""
+    middle = 1.0 / (2 * np.pi * material.tau)
     facts = [
         ("relaxed modulus G0", f"{material.G0 / 1e6:.4g} MPa"),
-        ("at once", f"{(material.G0 + material.G.sum()) / 1e6:.4g} MPa"),
-        ("bulk modulus K", f"{material.K / 1e9:.4g} GPa"),
+        ("at once", f"{material.G_inf / 1e6:.4g} MPa"),
+        ("τ", f"{material.tau:.4g} s"),
+        ("order α", f"{material.alpha:.4g}"),
+        *_stated(material),
+    ]
+    picture = _modulus(material, 1e-3 * middle, 1e3 * middle, None)
+    return box(f"Fractional Zener model of rubber{_at(material)}", picture, rows(("", ""), facts))
+
+
+def power_law_html(material: PowerLaw) -> str:
+    """A power law: its modulus over four decades about the frequency that it is stated at."""
+    facts = [
+        (f"|G*| at {material.frequency:g} Hz", f"{material.modulus / 1e6:.4g} MPa"),
+        ("exponent", f"{material.exponent:.4g}"),
+        *_stated(material),
+    ]
+    picture = _modulus(material, 1e-2 * material.frequency, 1e2 * material.frequency, None)
+    return box(f"Power law of rubber{_at(material)}", picture, rows(("", ""), facts))
+
+
+def tabulated_html(material: TabulatedModulus) -> str:
+    """A modulus as measured: its curve, and where it is known."""
+    low, high = float(material.frequency[0]), float(material.frequency[-1])
+    facts = [("points", f"{material.frequency.size}, {low:.4g} to {high:.4g} Hz"), *_stated(material)]
+    picture = _modulus(material, low, high, (low, high))
+    return box(f"Tabulated modulus of rubber{_at(material)}", picture, rows(("", ""), facts))
+
+
+def _at(material: Any) -> str:
+    return "" if material.temperature is None else f" at {material.temperature:g} °C"
+
+
+def elastic_html(material: Elastic) -> str:
+    """A metal: its constants."""
+    facts = [
+        ("E", f"{material.E / 1e9:.4g} GPa"),
+        ("ν", f"{material.nu:.4g}"),
+        ("G", f"{material.G / 1e9:.4g} GPa"),
+        ("K", f"{material.K / 1e9:.4g} GPa"),
         ("density", f"{material.density:g} kg/m³"),
     ]
-    if material.law is not None:
-        facts.append(("shift law", type(material.law).__name__))
-    if material.fit is not None:
-        fit = material.fit
-        told = f"{fit.points} points, storage within {100 * fit.storage_rms:.2g} % rms"
-        facts.append(("fit", f"{told}, from {fit.covered[0]:.4g} to {fit.covered[1]:.4g} Hz"))
-    branches = [(f"{tau:.4g}", f"{G / 1e6:.4g}") for G, tau in zip(material.G, material.tau, strict=True)]
+    return box("Elastic material", rows(("", ""), facts))
+
+
+def master_html(curve: MasterCurve) -> str:
+    """A master curve: its points, the law of its shifts, and what is doubted of it."""
+    with style():
+        figure, ax = _figure(5.6, 2.8)
+        ax.loglog(curve.frequency, curve.storage / 1e6, ".", markersize=3, label="storage")
+        ax.loglog(curve.frequency, curve.loss / 1e6, ".", markersize=3, label="loss")
+        ax.set_xlabel(f"frequency at {curve.T_ref:g} °C, Hz")
+        ax.set_ylabel("MPa")
+        finish(ax, legend=True)
+    reach = f"{curve.frequency.min():.3g} to {curve.frequency.max():.3g} Hz"
+    facts = [
+        ("measured in", curve.mode),
+        ("points", f"{curve.frequency.size} of {len(curve.shifts)} isotherms, {reach}"),
+        (
+            "shift law",
+            f"{type(curve.law).__name__}, rms {curve.law_residual:.2g} decades" if curve.law else "none",
+        ),
+        ("G′ and G″ against causality, rms", ", ".join(f"{100 * x:.3g} %" for x in curve.kk_residual)),
+        ("source", curve.source or "not stated"),
+    ]
+    notes = "".join(f"<li>{escape(note)}</li>" for note in curve.notes)
+    doubts = f'<ul style="margin:.3em 0;color:#a3541b">{notes}</ul>' if notes else ""
+    title = f"Master curve at {curve.T_ref:g} °C"
     return box(
-        f"Maxwell model of rubber{at}",
-        svg(figure, "storage and loss modulus over frequency"),
-        rows(("", ""), facts),
-        rows(("τ, s", "G, MPa"), branches),
+        title, svg(figure, "storage and loss modulus of the master curve"), rows(("", ""), facts), doubts
     )
 
 

@@ -1,8 +1,18 @@
 """Results: Datasets with units, inputs and versions, in one file each; and their export."""
 
 from bearingdyn.results.datasets import dataset, march_dataset
-from bearingdyn.results.provenance import inputs_of, versions
+from bearingdyn.results.provenance import inputs_of, stamp, versions
 from bearingdyn.results.result_file import groups, open_result, save
 from bearingdyn.results.uff import write_uff
 
-__all__ = ["dataset", "groups", "inputs_of", "march_dataset", "open_result", "save", "versions", "write_uff"]
+__all__ = [
+    "dataset",
+    "groups",
+    "inputs_of",
+    "march_dataset",
+    "open_result",
+    "save",
+    "stamp",
+    "versions",
+    "write_uff",
+]

@@ -21,7 +21,7 @@ Variable: TypeAlias = tuple[str | tuple[str, ...], Any, str, str]
 def dataset(
     variables: Mapping[str, Variable],
     attrs: Mapping[str, Any],
-    coords: Mapping[str, tuple[Any, str]] | None = None,
+    coords: Mapping[str, tuple[Any, str] | Variable] | None = None,
 ) -> xarray.Dataset:
     """A result as a Dataset whose variables carry units and meaning, and what made it, and when (UTC).
 
@@ -32,17 +32,26 @@ def dataset(
     attrs
         Attributes of the whole.
     coords
-        Name -> (values, unit).
+        Name -> (values, unit) of a dimension; or, beside one, as a variable.
     """
     import xarray
 
+    def whole(name: str, coord: tuple[Any, str] | Variable) -> tuple[Any, ...]:
+        if len(coord) == 2:
+            return name, np.asarray(coord[0]), {"units": coord[1]}
+        dims, values, unit, meaning = coord
+        return dims, values, {"units": unit, "long_name": meaning}
+
     made_by = ", ".join(f"{name} {number}" for name, number in versions().items())
-    made = xarray.Dataset(attrs={"made_by": made_by, "made_at": stamp(), **attrs})
-    for name, (values, unit) in (coords or {}).items():
-        made = made.assign_coords({name: (name, np.asarray(values), {"units": unit})})
-    for name, (dims, values, unit, meaning) in variables.items():
-        made[name] = (dims, values, {"units": unit, "long_name": meaning})
-    return made
+    # all at once: each assignment to a Dataset aligns and copies all that it holds
+    return xarray.Dataset(
+        {
+            name: (dims, values, {"units": unit, "long_name": meaning})
+            for name, (dims, values, unit, meaning) in variables.items()
+        },
+        {name: whole(name, coord) for name, coord in (coords or {}).items()},
+        {"made_by": made_by, "made_at": stamp(), **attrs},
+    )
 
 
 def march_dataset(
@@ -74,7 +83,7 @@ def march_dataset(
     last = count - count % decimate
     time = origin + (last - decimate * np.arange(len(rows))[::-1]) * facts["dt"]
     constant = len(speeds) == 1
-    data = dataset(
+    return dataset(
         {
             "record": (("time", "channel"), rows, "", "recorded channels; their units are in `unit`"),
             "state": ("word", state, "", "state of the march in the core's own order"),
@@ -96,7 +105,9 @@ def march_dataset(
             **{name: facts[name] for name in ("system_hash",) if name in facts},
             **(attrs or {}),
         },
-        {"time": (time, "s"), "channel": (facts["channels"], "")},
+        {
+            "time": (time, "s"),
+            "channel": (facts["channels"], ""),
+            "unit": ("channel", facts["units"], "", "unit of each channel"),
+        },
     )
-    meaning = {"units": "", "long_name": "unit of each channel"}
-    return data.assign_coords(unit=("channel", facts["units"], meaning))

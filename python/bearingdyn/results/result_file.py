@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 # netCDF has no complex type: a trailing axis of two of this name holds real and imaginary part
 PARTS = "part"
+# its name where results have parts of a machine
+PARTS_BESIDE = "real_imaginary"
 
 
 def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
@@ -175,7 +177,8 @@ def _plain(data: Any) -> Any:
     for name, variable in data.data_vars.items():
         if np.iscomplexobj(variable.values):
             values = np.stack([variable.values.real, variable.values.imag], axis=-1)
-            plain[name] = xarray.Variable((*variable.dims, PARTS), values, {**variable.attrs, "complex": 1})
+            dims = (*variable.dims, PARTS_BESIDE if PARTS in data.dims else PARTS)
+            plain[name] = xarray.Variable(dims, values, {**variable.attrs, "complex": 1})
     return plain
 
 
@@ -183,7 +186,7 @@ def _complex(data: xarray.Dataset) -> xarray.Dataset:
     import xarray
 
     for name, variable in data.data_vars.items():
-        if variable.attrs.get("complex") == 1 and variable.dims[-1] == PARTS:
+        if variable.attrs.get("complex") == 1 and variable.dims[-1] in (PARTS, PARTS_BESIDE):
             attrs = {k: v for k, v in variable.attrs.items() if k != "complex"}
             # by parts: re + 1j·im makes NaN of an infinite part
             values = np.empty(variable.shape[:-1], dtype=np.complex128)

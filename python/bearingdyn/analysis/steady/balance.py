@@ -233,7 +233,7 @@ class Linearised:
         g = np.zeros((b.lines.samples, m))
         for own, T in zip(b.slots, self.tangents, strict=True):
             both = np.concatenate([signal[:, own], signal[:, m + own.start : m + own.stop]], axis=1)
-            g[:, own] = np.matmul(T, both[:, :, None])[:, :, 0]
+            g[:, own] = np.einsum("nij,nj->ni", T, both)
         return b.lines.amplitudes(g)
 
     def product(self, vector: Array) -> Array:

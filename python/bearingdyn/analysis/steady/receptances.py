@@ -9,14 +9,15 @@ out; what the reference takes away the balance gives back.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from bearingdyn.analysis.linearised import Linear
 from bearingdyn.material import Maxwell
-from bearingdyn.system import System, natural
+from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
 # digits that joining floating blocks may cost, as in csrc/harmonic.c
@@ -35,43 +36,40 @@ class Poles:
 
     @classmethod
     def of(cls, block: System) -> Poles | None:
-        """Poles of a block at rest, or None where they do not give its answer back."""
+        """Poles of a block at rest, in modes that something holds; or None where they miss its answer.
+
+        From u = (ω q, q̇, √(2G) of each branch's strain), in which the block is a skew matrix and what
+        dissipates: its poles are then well conditioned.
+        """
         n = block.n
-        C, K = block.viscous(), block.stiffness("relaxed")
+        w = np.sqrt(np.diag(block.stiffness("relaxed")))
         branches = [
-            (term.L, 2.0 * G, tau)
+            (math.sqrt(2.0 * G) * term.L, tau)
             for term in block.layers
             for G, tau in zip(term.material.G, term.material.tau, strict=True)
             if G > 0.0
         ]
-        ranks = [L.shape[1] for L, _, _ in branches]
-        A = np.zeros((2 * n + sum(ranks),) * 2)
-        A[:n, n : 2 * n] = np.eye(n)
-        inverse = np.linalg.inv(block.M)
-        A[n : 2 * n, :n], A[n : 2 * n, n : 2 * n] = -inverse @ K, -inverse @ C
-        at = 2 * n
-        for (L, G, tau), rank in zip(branches, ranks, strict=True):
-            own = slice(at, at + rank)
-            A[n : 2 * n, own] = -inverse @ L
-            A[own, n : 2 * n] = G * L.T
-            A[own, own] = -np.eye(rank) / tau
-            at += rank
+        strength = np.hstack([np.zeros((n, 0)), *(S for S, _ in branches)])
+        rates = np.concatenate([np.zeros(0), *(np.full(S.shape[1], 1.0 / tau) for S, tau in branches)])
+        A = np.zeros((2 * n + len(rates),) * 2)
+        A[:n, n : 2 * n] = np.diag(w)
+        A[n : 2 * n, :n] = -np.diag(w)
+        A[n : 2 * n, n : 2 * n] = -block.viscous()
+        A[n : 2 * n, 2 * n :] = -strength
+        A[2 * n :, n : 2 * n] = strength.T
+        A[2 * n :, 2 * n :] = -np.diag(rates)
         values, vectors = np.linalg.eig(A)
         try:
-            left = np.linalg.solve(vectors, np.vstack([np.zeros((n, n)), inverse, np.zeros((at - 2 * n, n))]))
+            found = cls(values, vectors[:n] / w[:, None], np.linalg.inv(vectors)[:, n : 2 * n])
+            scale = np.sort(np.abs(values))[: max(len(values) // 2, 1)].max()
+            for omega in (1e-3 * scale, 0.1 * scale, scale):
+                exact = np.linalg.inv(dynamic_stiffness(block, np.array([omega]), 0.0)[0])
+                with np.errstate(all="ignore"):  # undamped, it may stand on a pole: then it does not agree
+                    own = found.right @ (found.left / (1j * omega - values)[:, None])
+                if not np.abs(own - exact).max() <= POLES_AGREE * np.abs(exact).max():
+                    return None
         except np.linalg.LinAlgError:
             return None
-        found = cls(values, vectors[:n], left)
-        fast = np.abs(values).max()
-        scale = np.sort(np.abs(values))[: max(len(values) // 2, 1)].max()
-        for omega in (1e-3 * scale, 0.1 * scale, scale):
-            if omega <= 0.0 or not fast:
-                return None
-            exact = np.linalg.inv(dynamic_stiffness(block, np.array([omega]), 0.0)[0])
-            with np.errstate(all="ignore"):  # undamped, it may stand on a pole: then it does not agree
-                own = found.right @ (found.left / (1j * omega - found.values)[:, None])
-            if not np.abs(own - exact).max() <= POLES_AGREE * np.abs(exact).max():
-                return None
         return found
 
     def answer(self, omega: Array, rows: Array, forces: Array | Complex) -> Complex:
@@ -96,13 +94,16 @@ def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
 
 
 def part_of(system: System, block: Index) -> System:
-    """The coordinates of one block as a system by itself."""
-    keep = np.zeros((system.n, len(block)))
-    keep[block, np.arange(len(block))] = 1.0
-    own = system.transformed(keep)
-    from dataclasses import replace
-
-    return replace(own, layers=tuple(t for t in own.layers if np.abs(t.L).any()), bearings=(), parts=())
+    """The coordinates of one block as a system by itself: its matrices and layers alone."""
+    inside = np.ix_(block, block)
+    return System(
+        M=system.M[inside],
+        C=system.C[inside],
+        G=system.G[inside],
+        K=system.K[inside],
+        N=system.N[inside],
+        layers=tuple(replace(t, L=t.L[block]) for t in system.layers if np.abs(t.L[block]).any()),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +119,8 @@ class Block:
         """A block, its poles found if it has any to keep."""
         own = part_of(system, index)
         still = not (own.G.any() or own.N.any()) and all(isinstance(t.material, Maxwell) for t in own.layers)
-        floats = bool((natural(own.stiffness("relaxed"), own.M)[0] <= 0.0).any()) if still else True
-        return cls(index, own, Poles.of(own) if still and not floats else None)
+        held = still and bool((np.diag(own.stiffness("relaxed")) > 0.0).all())
+        return cls(index, own, Poles.of(own) if held else None)
 
     def answer(self, omega: Array, speed: float, rows: Array, forces: Array | Complex) -> Complex:
         """rows (k, n) D⁻¹ forces (n, i), (f, k, i)."""

@@ -1,7 +1,7 @@
 """Maxwell models identified from a master curve, and the law of softening from a strain sweep.
 
-`points` are the data inside the band, `bounds` what the parameters may be; `projection` and `polish` are the
-two stages of the fit that `fit` makes of them.
+`points_in_band` are the data, `bounds` what the parameters may be; `spectrum_start` and `projection` give
+first guesses, `polish` moves all parameters together, and `fit_master_curve` chooses.
 """
 
 from bearingdyn.material.identification.fit_master_curve import fit_dense, fit_maxwell

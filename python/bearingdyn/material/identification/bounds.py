@@ -20,6 +20,27 @@ class Limits:
     log_lower: Array
     log_upper: Array
 
+    @property
+    def plain(self) -> bool:
+        """Whether no branch has bounds of its own."""
+        return bool(
+            not self.lower[1:-1].any()
+            and np.isinf(self.upper[1:-1]).all()
+            and np.all(self.log_lower == self.log_lower[0])
+            and np.all(self.log_upper == self.log_upper[0])
+        )
+
+    def alike(self, n: int) -> Limits:
+        """Limits of n branches without bounds of their own, the ends as here; these limits if n is theirs."""
+        if n == self.log_lower.size:
+            return self
+        return Limits(
+            np.concatenate([self.lower[:1], np.zeros(n), self.lower[-1:]]),
+            np.concatenate([self.upper[:1], np.full(n, np.inf), self.upper[-1:]]),
+            np.full(n, self.log_lower.min()),
+            np.full(n, self.log_upper.max()),
+        )
+
     @classmethod
     def of(
         cls,

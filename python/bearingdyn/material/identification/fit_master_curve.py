@@ -1,8 +1,9 @@
 """A Maxwell model with few branches fitted to a master curve.
 
-Two stages. First the relaxation times are sought by variable projection on the relative deviations of G′ and
-G″, the strengths being a non-negative least-squares problem inside, from a few fixed starts. Then everything
-is polished on the deviations of ln G′ and ln tan δ, which are what the user is told.
+The dense non-negative spectrum, merged to n branches, is polished on the deviations of ln G′ and ln tan δ,
+which are what the user is told. Where branches are left over, those that help most are added. Where n are too
+few for the data, the times are sought by variable projection too, from fixed starts: the relative deviations
+of G′ and G″, the strengths being a non-negative least-squares problem inside. The best of all is taken.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from bearingdyn.material.identification.low_end_of_fit import low_end
 from bearingdyn.material.identification.points_in_band import Points
 from bearingdyn.material.identification.polish import Polished, polish
 from bearingdyn.material.identification.projection import Projection
+from bearingdyn.material.identification.spectrum_start import merged_spectrum, most_useful
 from bearingdyn.material.low_end import SLACK
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.relaxation_data import RelaxationData
@@ -34,7 +36,12 @@ from bearingdyn.notice import CoarseModel, TensionAsShear, warn
 from bearingdyn.types import Array
 
 _MOST = 20  # branches tried by n = "auto"
-_SPREADS = (0.0, 0.4, -0.3)  # decades by which the starts are wider than the band
+_SPREADS = (0.0, 0.4)  # decades by which the starts are wider than the band
+# Shares of the sum of squares; its own standard error is sqrt(2 / points), some tens of per cent. A gain
+# below the first is no reason for a branch more; of fits closer than the second the first is taken: where the
+# later ones end may hang on the last bits of the arithmetic.
+_WORTH = 1e-3
+_TIE = 2e-3
 
 
 def fit_maxwell(
@@ -230,8 +237,30 @@ def _covered(points: Points) -> tuple[float, float]:
 
 
 def _best(points: Points, limits: Limits) -> Polished:
-    guesses = [Projection(points, limits).run(spread) for spread in _SPREADS]
-    return min((polish(points, limits, *guess) for guess in guesses), key=lambda p: p.cost)
+    """The best fit with n branches, by a path that the last bits of the data do not turn."""
+    found = polish(points, limits, *merged_spectrum(points, limits))
+    found, settled = _completed(points, limits, found)
+    if settled:
+        return found
+    others = [polish(points, limits, *Projection(points, limits).run(spread)) for spread in _SPREADS]
+    tried = [found, *others]
+    least = min(fit.cost for fit in tried)
+    return next(fit for fit in tried if (1 - _TIE) * fit.cost <= least)
+
+
+def _completed(points: Points, limits: Limits, fit: Polished) -> tuple[Polished, bool]:
+    """The fit with the branches, spring or dashpot it lacks, and whether nothing more would help it."""
+    while limits.plain:
+        gain, tau, strengths = most_useful(points, fit, limits)
+        if not gain > _WORTH:
+            return fit, True
+        if tau.size > limits.log_lower.size:
+            return fit, False
+        more = polish(points, limits.alike(tau.size), tau, strengths)
+        if not more.cost < (1 - _WORTH / 10) * fit.cost:
+            return fit, True
+        fit = more
+    return fit, False
 
 
 def _smallest(
@@ -350,23 +379,10 @@ def _refits(points: Points, best: Polished, limits: Limits, count: int) -> Array
         index = np.concatenate([np.flatnonzero(points.isotherm == k) for k in drawn])
         if index.size < best.theta.size // 2 + 1 or np.unique(drawn).size < 2:
             continue
-        again = polish(points.take(index), _like(limits, best), best.tau, best.strengths)
+        again = polish(points.take(index), limits.alike(best.tau.size), best.tau, best.strengths)
         if again.names == best.names:
             found.append(again.theta)
     return np.array(found).reshape(len(found), best.theta.size)
-
-
-def _like(limits: Limits, best: Polished) -> Limits:
-    """Limits of as many branches as were left, those named by the user kept where none was dropped."""
-    if limits.log_lower.size == best.tau.size:
-        return limits
-    m = best.tau.size
-    return Limits(
-        np.concatenate([limits.lower[:1], np.zeros(m), limits.lower[-1:]]),
-        np.concatenate([limits.upper[:1], np.full(m, np.inf), limits.upper[-1:]]),
-        np.full(m, limits.log_lower.min()),
-        np.full(m, limits.log_upper.max()),
-    )
 
 
 def _report(

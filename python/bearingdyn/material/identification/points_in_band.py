@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.material.low_end import LATE
-from bearingdyn.material.relaxation_spectrum import branch_columns, dense_times, solve_strengths
+from bearingdyn.material.relaxation_spectrum import dense_times, solve_strengths, unit_columns
 from bearingdyn.types import Array, Complex
 
 PIN_WEIGHT = 1e3  # of the pin against one point: it is met to some 1e-4
@@ -76,18 +76,21 @@ class Points:
     def dense_problem(self, per_decade: int) -> tuple[Array, Array, Array]:
         """Times, and A and b of the least-squares problem A x ≈ b for the strengths of a dense spectrum."""
         tau = dense_times(float(self.omega.min()), float(self.omega.max()), per_decade, 1.0)
-        storage, loss = branch_columns(self.omega, tau)
-        one, none = np.ones((self.omega.size, 1)), np.zeros((self.omega.size, 1))
-        A = self.stack(np.hstack([one, storage, none]), np.hstack([none, loss, self.omega[:, None]]))
-        relative, lossy = np.split(A, 2)
-        # to first order the deviations of ln G′ and ln tan δ, linear in the strengths
+        return tau, *self.log_problem(tau)
+
+    def log_problem(self, tau: Array) -> tuple[Array, Array]:
+        """A and b of A x ≈ b for the strengths (spring, branches, dashpot) of branches with these times.
+
+        Rows are the deviations of ln G′ and of ln tan δ to first order, linear in the strengths.
+        """
+        relative, lossy = np.split(self.stack(*unit_columns(self.omega, tau)), 2)
         target = np.concatenate([np.ones(self.omega.size), np.zeros(self.omega.size)])
-        return tau, np.vstack([relative, lossy - relative]), target
+        return np.vstack([relative, lossy - relative]), target
 
     def floor(self) -> tuple[float, float]:
         """rms deviation of ln G′ and ln tan δ of the best dense non-negative spectrum."""
         tau, x = self.dense()
-        storage, loss = branch_columns(self.omega, tau)
-        modulus = x[0] + storage @ x[1:-1] + 1j * (loss @ x[1:-1] + self.omega * x[-1])
+        storage, loss = unit_columns(self.omega, tau)
+        modulus = storage @ x + 1j * (loss @ x)
         ds, dt = self.deviations(modulus)
         return float(np.sqrt(np.mean(ds**2))), float(np.sqrt(np.mean(dt**2)))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from bearingdyn.material.identification.bounds import Limits
 from bearingdyn.material.identification.points_in_band import PIN_WEIGHT, Points
-from bearingdyn.material.relaxation_spectrum import branch_columns, branch_slopes
+from bearingdyn.material.relaxation_spectrum import branch_slopes, unit_columns
 from bearingdyn.types import Array, Index
 
 
@@ -54,7 +54,6 @@ def polish(points: Points, limits: Limits, tau: Array, strengths: Array) -> Poli
     branch = used[1:-1]
     tau, log_lower, log_upper = tau[branch], log_lower[branch], log_upper[branch]
     m, omega = tau.size, points.omega
-    one, none = np.ones((omega.size, 1)), np.zeros((omega.size, 1))
     with np.errstate(divide="ignore"):
         low = np.concatenate([log_lower, np.log(np.maximum(lower[used], 1e-12 * strengths[used]))])
         high = np.concatenate([log_upper, np.log(upper[used])])
@@ -72,8 +71,8 @@ def polish(points: Points, limits: Limits, tau: Array, strengths: Array) -> Poli
         p = full(theta)
         x = np.zeros(m + 2)
         x[present] = np.exp(p[m:])
-        storage, loss = branch_columns(omega, np.exp(p[:m]))
-        return x, np.hstack([one, storage, none]) * x, np.hstack([none, loss, omega[:, None]]) * x
+        storage, loss = unit_columns(omega, np.exp(p[:m]))
+        return x, storage * x, loss * x
 
     def residual(theta: Array) -> Array:
         _, storage, loss = columns(theta)

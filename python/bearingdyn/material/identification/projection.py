@@ -7,7 +7,7 @@ import scipy
 
 from bearingdyn.material.identification.bounds import Limits
 from bearingdyn.material.identification.points_in_band import MARGIN, PIN_WEIGHT, Points
-from bearingdyn.material.relaxation_spectrum import Strengths, branch_columns, branch_slopes, solve_strengths
+from bearingdyn.material.relaxation_spectrum import Strengths, branch_slopes, solve_strengths, unit_columns
 from bearingdyn.types import Array
 
 
@@ -28,9 +28,7 @@ class Projection:
         key = theta.tobytes()
         if self._last is None or self._last[0] != key:
             omega = self.points.omega
-            storage, loss = branch_columns(omega, self._times(theta))
-            one, none = np.ones((omega.size, 1)), np.zeros((omega.size, 1))
-            A = self.points.stack(np.hstack([one, storage, none]), np.hstack([none, loss, omega[:, None]]))
+            A = self.points.stack(*unit_columns(omega, self._times(theta)))
             A = np.vstack([A, PIN_WEIGHT * self.points.pin_row(self._times(theta))])
             target = np.ones(A.shape[0])
             target[2 * omega.size :] = PIN_WEIGHT

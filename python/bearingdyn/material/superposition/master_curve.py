@@ -26,6 +26,7 @@ from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, s
 from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
 from bearingdyn.material.superposition.levels import Levels, find_levels, levelled
 from bearingdyn.notice import LeftOut, OutsideIsotherms, ThinIsotherm, warn
+from bearingdyn.pictures import picture
 from bearingdyn.types import Array
 
 _JITTER = 0.5  # K; as far as a mean temperature may miss the one that was meant
@@ -98,6 +99,9 @@ class MasterCurve:
     K: float | None = None
     levels: Mapping[str, float] = field(default_factory=dict)
     level_errors: Mapping[str, float] = field(default_factory=dict)
+
+    def _repr_html_(self) -> str:
+        return str(picture("as_html", self))
 
     def __repr__(self) -> str:
         """One line: points, ranges, law and errors."""

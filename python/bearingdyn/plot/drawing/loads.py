@@ -18,8 +18,8 @@ from bearingdyn.application import (
     Unbalance,
 )
 from bearingdyn.plot.drawing.machine import Machine
-from bearingdyn.plot.frame import PREFIXES
 from bearingdyn.types import Array
+from bearingdyn.units import PREFIXES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

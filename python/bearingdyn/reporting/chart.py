@@ -1,0 +1,121 @@
+"""Curves for the page's own script: numbers as 32-bit floats in base64, thinned where they are too many."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from html import escape
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from bearingdyn.types import Array
+
+MOST = 6000  # points of a curve that are kept whole; more are thinned to their extremes
+BINS = 2000  # of a thinned curve, two points each
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a chart: its name, and x (n,) ascending and y (n,), NaN where there is nothing."""
+
+    name: str
+    x: Array
+    y: Array
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A chart to zoom and read off: a title, what its axes are, and its curves.
+
+    Parameters
+    ----------
+    title
+        Above it.
+    x, y
+        What the axes are, with units.
+    curves
+        At least one.
+    log_x, log_y
+        Whether an axis is logarithmic; values that are not positive are then left out.
+    note
+        Below it.
+    dots
+        Whether points are drawn instead of a line.
+    """
+
+    title: str
+    x: str
+    y: str
+    curves: Sequence[Curve] = field(default_factory=list)
+    log_x: bool = False
+    log_y: bool = False
+    note: str = ""
+    dots: bool = False
+
+    def html(self) -> str:
+        """The chart as the page holds it; for readers who do not see it, its ranges as text."""
+        curves = [thinned(c) for c in self.curves]
+        shared: list[Array] = []
+        rows: list[dict[str, Any]] = []
+        for curve in curves:
+            at = next((k for k, x in enumerate(shared) if np.array_equal(x, curve.x)), len(shared))
+            if at == len(shared):
+                shared.append(curve.x)
+            rows.append({"name": curve.name, "x": at, "y": floats(curve.y)})
+        held = {
+            "x": {"label": self.x, "log": self.log_x},
+            "y": {"label": self.y, "log": self.log_y},
+            "grids": [floats(x) for x in shared],
+            "curves": rows,
+            "dots": self.dots,
+        }
+        note = f"<p class=note>{escape(self.note)}</p>" if self.note else ""
+        return (
+            f"<figure class=chart><figcaption>{escape(self.title)}</figcaption>"
+            f'<div class=plot role=img tabindex=0 aria-label="{escape(self.told(), True)}"></div>'
+            f"<script type=application/json>{json_text(held)}</script>{note}</figure>"
+        )
+
+    def told(self) -> str:
+        """What is drawn, in words."""
+        said = []
+        for curve in self.curves:
+            y = curve.y[np.isfinite(curve.y)]
+            if y.size:
+                k = int(np.nanargmax(curve.y))
+                said.append(
+                    f"{curve.name}: {y.min():.4g} to {y.max():.4g}, largest at {float(curve.x[k]):.4g}"
+                )
+        return f"{self.title}; {self.y} over {self.x}. " + "; ".join(said)
+
+
+def thinned(curve: Curve) -> Curve:
+    """A curve of many points by the lowest and the highest of each of BINS pieces, in their order."""
+    n = curve.x.size
+    if n <= MOST:
+        return curve
+    edges = np.linspace(0, n, BINS + 1).astype(np.intp)
+    y = np.asarray(curve.y, dtype=np.float64)
+    kept = []
+    for first, last in pairwise(edges):
+        piece = y[first:last]
+        if np.isfinite(piece).any():
+            kept += [first + int(np.nanargmin(piece)), first + int(np.nanargmax(piece))]
+        else:
+            kept.append(int(first))
+    at = np.unique([0, *kept, n - 1])
+    return Curve(curve.name, curve.x[at], y[at])
+
+
+def floats(values: Array) -> str:
+    """Numbers as little-endian 32-bit floats in base64."""
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
+
+
+def json_text(held: object) -> str:
+    """JSON that may stand inside a script element: no end of it within."""
+    return json.dumps(held, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
