@@ -38,7 +38,7 @@ def logarithms(model: HasParameters, names: Sequence[str]) -> Array:
             found.append(model.G[k - 1] if k else model.G0)
         else:
             found.append(model.tau[k - 1] if kind == "tau" else model.eta0)
-    return np.log(np.array(found))
+    return np.asarray(np.log(found))
 
 
 def moved(model: HasParameters, names: Sequence[str], step: Array) -> tuple[float, Array, Array, float]:
