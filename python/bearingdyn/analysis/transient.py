@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -180,19 +180,22 @@ def transient(
     True
     """
     record = name_list("record", record)
-    motion = initial if isinstance(initial, Mapping) and "motion" in initial else None
-    if initial is not None and motion is None:
-        initial = named("initial", initial, "it must be displacements by place, as {'shaft.left': [...]}")
+    places: Mapping[str, ArrayLike] | None = None
+    motion: xarray.Dataset | None = None
+    if isinstance(initial, Mapping) and "motion" in initial:
+        motion = cast("xarray.Dataset", initial)
+    elif initial is not None:
+        places = named("initial", initial, "it must be displacements by place, as {'shaft.left': [...]}")
     if stream is not None:
         instance("stream", stream, (str, os.PathLike), "it must be the path of a file")
     if resume is not None and stream is not None:
         raise ValueError(
             "resume and stream are both given; a stream continues by itself, so give one of them"
         )
-    if resume is not None and initial is not None and len(initial):
+    if resume is not None and (places or motion is not None):
         raise ValueError("resume and initial both set the state at the start; give one of them")
     speed = one_speed(speed, rpm)
-    if motion is not None and isinstance(source, Application):
+    if isinstance(source, Application):
         source = equilibrium(source)
     march = March.of(
         source,
@@ -220,7 +223,7 @@ def transient(
 
         state = march.begun(model, beginning(source, motion, speed))
     else:
-        state = march.start(model, initial)
+        state = march.start(model, places)
     facts = march.facts(record, [unit for _, unit in found])
     with told(progress, "step") as tell:
         rows, state, report, tail = march.run(
