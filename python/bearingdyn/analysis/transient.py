@@ -121,12 +121,13 @@ def transient(
     method
         "newmark", the paper's, or "exact": at a constant speed structure, gyroscopic forces and layers move
         in modes of their own, without an error of the step; what is left is that the bearing forces are held
-        as a parabola through three steps' ends. Of the same error it takes some four times fewer steps. A
-        constant, harmonic or rotating load is exact, a table is linear from step to step. It does not take a
-        speed that varies, nor layers with a law of softening; `scheme`'s β and γ do not count. Unlike
-        Newmark's it is stable for small steps alone: a motion at ω that balls alone hold grows by (ωΔt)⁴/48 a
-        step, against its damping, and by 2 % at ωΔt = 1; `GrowingStep` warns of it. Without damping in its
-        contacts a machine with modes to 8 kHz leaves its rest at Δt = 11 µs, and not at 5.6 µs.
+        as a parabola through three steps' ends, the jump of a damper that closes by its share of a step. Of
+        the same error it takes some four times fewer steps. A constant, harmonic or rotating load is exact, a
+        table is linear from step to step. It does not take a speed that varies, nor layers with a law of
+        softening; `scheme`'s β and γ do not count. Unlike Newmark's it is stable for small steps alone: a
+        motion at ω that balls alone hold grows by (ωΔt)⁴/48 a step, against its damping, and by 2 % at ωΔt =
+        1; `GrowingStep` warns of it. Without damping in its contacts a machine with modes to 8 kHz leaves its
+        rest at Δt = 11 µs, and not at 5.6 µs.
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
