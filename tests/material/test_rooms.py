@@ -15,11 +15,13 @@ FOUND = re.compile(r"^from bearingdyn\.material\.(\w+)(\.\w+)? import (.+?)$", r
 
 # A room may import those of earlier rows, by their doors.
 ORDER = (
-    ("amplitude", "isotherms", "low_end", "shear_from_tension"),
-    ("beyond_data", "creep", "dma", "elastic", "fit_report", "relaxation_spectrum", "retuning", "shift_laws"),
+    ("amplitude", "bulk_relaxation", "isotherms", "low_end", "shear_from_tension"),
+    ("beyond_data", "creep", "dma", "elastic", "fit_report", "relaxation_spectrum", "shift_laws"),
+    ("spread",),
+    ("retuning",),
     ("maxwell", "relaxation_data"),
-    ("reading", "superposition"),
-    ("identification",),
+    ("reading", "superposition", "volume"),
+    ("doubts", "identification"),
     ("complex_moduli", "export"),
 )
 ROW = {room: row for row, rooms in enumerate(ORDER) for room in rooms}
