@@ -55,8 +55,8 @@ def steady_state(
 
     The motion is a sum of lines, Σ Re z_n e^{iω_n t}, whose amplitudes balance at every line; the structure
     answers with G*(ω) of any law, the balls are pressed in time; films of oil have their damping of low
-    frequency, as in a march, unless `contacts` says otherwise. Of two steady motions at one speed it finds the
-    one near its start; `speed_map` follows them all.
+    frequency, as in a march, unless `contacts` says otherwise. Of two steady motions at one speed it finds
+    the one near its start; `speed_map` follows them all.
 
     Parameters
     ----------
