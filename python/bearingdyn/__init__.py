@@ -135,6 +135,7 @@ PUBLIC = {
             "estimated_network",
             "export_stiffness",
             "frequency_response",
+            "gradient",
             "mode_shapes",
             "mode_surfaces",
             "modes",
@@ -173,7 +174,7 @@ PUBLIC = {
         ),
     },
     "model": {
-        "model": ("Analysis", "Model", "read_model", "write_model"),
+        "model": ("Analysis", "Model", "read_model", "read_ross", "write_model"),
     },
     "result": {
         "results": (

@@ -15,10 +15,9 @@ FOUND = re.compile(r"^from bearingdyn\.material\.(\w+)(\.\w+)? import (.+?)$", r
 
 # A room may import those of earlier rows, by their doors.
 ORDER = (
-    ("amplitude", "bulk_relaxation", "isotherms", "low_end", "shear_from_tension"),
-    ("beyond_data", "creep", "dma", "elastic", "fit_report", "relaxation_spectrum", "shift_laws"),
-    ("spread",),
-    ("retuning",),
+    ("log_parameters",),
+    ("amplitude", "bulk_relaxation", "isotherms", "low_end", "shear_from_tension", "spread"),
+    ("beyond_data", "creep", "dma", "elastic", "fit_report", "relaxation_spectrum", "retuning", "shift_laws"),
     ("maxwell", "relaxation_data"),
     ("reading", "superposition", "volume"),
     ("doubts", "identification"),

@@ -14,6 +14,7 @@ from bearingdyn.analysis.energy_shares import energy_shares
 from bearingdyn.analysis.envelope import envelope_spectrum
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, state_of
 from bearingdyn.analysis.frequency_response import frequencies, frequency_response
+from bearingdyn.analysis.gradient import Gradient, gradient
 from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.analysis.loaded_cage import cage_ratios, with_loaded_cages
@@ -46,6 +47,7 @@ __all__ = [
     "Band",
     "BearingState",
     "Equilibrium",
+    "Gradient",
     "Input",
     "MovedSurface",
     "OperatingPoint",
@@ -66,6 +68,7 @@ __all__ = [
     "export_stiffness",
     "frequencies",
     "frequency_response",
+    "gradient",
     "linear",
     "mode_shapes",
     "mode_surfaces",

@@ -9,6 +9,7 @@ from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.housing import Feet, Housing
 from bearingdyn.parts.imported import Imported
 from bearingdyn.parts.layer import Layer
+from bearingdyn.parts.layer_slopes import DIMENSIONS, LayerSlopes, layer_slopes
 from bearingdyn.parts.node_set import NodeSet, at_radius
 from bearingdyn.parts.o_ring import ORing
 from bearingdyn.parts.outline import Outline, Outlined
@@ -29,6 +30,7 @@ from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.strain import Strain
 
 __all__ = [
+    "DIMENSIONS",
     "BoreShape",
     "Cylinder",
     "Disc",
@@ -41,6 +43,7 @@ __all__ = [
     "Housing",
     "Imported",
     "Layer",
+    "LayerSlopes",
     "Line",
     "Matter",
     "MeshNodes",
@@ -70,6 +73,7 @@ __all__ = [
     "at_radius",
     "cut",
     "damping_sample",
+    "layer_slopes",
     "quadrilaterals",
     "specimen_factor",
 ]

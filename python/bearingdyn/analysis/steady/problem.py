@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +15,13 @@ from bearingdyn.analysis.steady.balance import Balance
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
+from bearingdyn.checks import require
 from bearingdyn.material import Maxwell
 from bearingdyn.system import LayerTerm, System, system_of
-from bearingdyn.types import Array, Complex
+from bearingdyn.types import Array, Complex, Index
+
+if TYPE_CHECKING:
+    import xarray
 
 # of the mean of the bearings' own stiffness, that the reference adds to each coefficient: what holds a rotor
 # whose loaded balls stand on one side. Any value gives the same motion
@@ -95,6 +100,20 @@ class Problem:
         z = np.zeros((lines.count, len(self.rest)), dtype=np.complex128)
         z[0] = self.rest
         return z
+
+
+def motion_of(field: str, problem: Problem, result: xarray.Dataset) -> tuple[Index, Complex]:
+    """Index and amplitudes of an earlier result; ValueError for one of another application."""
+    require("motion" in result, field, sorted(map(str, result)), "give a result of steady_state")
+    index, z = np.asarray(result["index"].values, dtype=np.intp), np.asarray(result["motion"].values)
+    names = [b.name for b in problem.bases.bases]
+    require(
+        z.shape[1] == len(problem.rest) and [str(b) for b in result["base"].values] == names,
+        field,
+        list(map(str, result["base"].values)),
+        f"it must be a motion of the same bearings over the base frequencies {names}",
+    )
+    return index, np.ascontiguousarray(z, dtype=np.complex128)
 
 
 def _plain(system: System) -> bool:

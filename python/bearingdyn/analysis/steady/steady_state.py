@@ -15,13 +15,12 @@ from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.choosing import balanced
 from bearingdyn.analysis.steady.motion import Motion
-from bearingdyn.analysis.steady.problem import Problem
+from bearingdyn.analysis.steady.problem import Problem, motion_of
 from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability, floquet, pooled
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
 from bearingdyn.system import System
-from bearingdyn.types import Complex, Index
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
@@ -146,7 +145,9 @@ def steady_state(
     channels = [channel_of(problem.system, name) for name in record]
     balance, found, left = _found(problem, speed, harmonics, subharmonic, start, tolerance)
     state = stability_of(problem, balance, found) if stability and found.converged else None
-    result = _dataset(problem, balance, found, record, channels, state, left)
+    several = len(problem.bases.bases) > 1
+    asked = {"harmonics": harmonics or (SEVERAL if several else HARMONICS), "subharmonic": subharmonic}
+    result = _dataset(problem, balance, found, record, channels, state, {**asked, "lines_left": left})
     if not found.converged:
         raise _failed(problem, balance, found, result)
     return result
@@ -161,7 +162,7 @@ def _found(
     tolerance: float,
 ) -> tuple[Balance, Found, float]:
     """The balance, its motion, and what share of it the lines left out are."""
-    begun = None if start is None else _begun(problem, start)
+    begun = None if start is None else motion_of("start", problem, start)
     if len(problem.bases.bases) > 1:
         return balanced(problem, speed, harmonics or SEVERAL, tolerance, begun)
     lines = Lines.harmonics((harmonics or HARMONICS) * subharmonic)
@@ -176,21 +177,6 @@ def _found(
 
         found = reached(problem, lines, speed, tolerance) or found
     return balance, found, math.nan
-
-
-def _begun(problem: Problem, start: xarray.Dataset) -> tuple[Index, Complex]:
-    """Index and amplitudes of an earlier result; ValueError for one of another application."""
-    require("motion" in start, "start", sorted(map(str, start)), "give a result of steady_state")
-    index, z = np.asarray(start["index"].values, dtype=np.intp), np.asarray(start["motion"].values)
-    names = [b.name for b in problem.bases.bases]
-    same = z.shape[1] == len(problem.rest) and [str(b) for b in start["base"].values] == names
-    require(
-        same,
-        "start",
-        list(map(str, start["base"].values)),
-        f"it must be a motion of the same bearings over the base frequencies {names}",
-    )
-    return index, np.ascontiguousarray(z, dtype=np.complex128)
 
 
 def stability_of(
@@ -241,7 +227,7 @@ def _dataset(
     record: Sequence[str],
     channels: Sequence[tuple[tuple[int, object, int, int], str]],
     state: Stability | None,
-    left: float,
+    attrs: dict[str, float],
 ) -> xarray.Dataset:
     from bearingdyn.results import dataset, inputs_of
 
@@ -296,7 +282,7 @@ def _dataset(
             "iterations": found.iterations,
             "converged": int(found.converged),
             "energy_balance": abs(missed) / through if through > 0.0 else 0.0,
-            "lines_left": left,
+            **attrs,
             **state_of(problem.source),
             **inputs_of(problem.system.inputs),
         },
