@@ -73,7 +73,9 @@ def transient(
         Channels: "shaft.left.y" (displacement), "shaft.left.y.velocity", "….acceleration"; of a bearing:
         "left.loaded" (number of loaded balls), "left.ball3" (load of one ball, counted from 1),
         "left.force.x" (force of the inner ring on the balls, x, y or z), "left.loss" (power that its
-        contacts turn into heat); of a part that softens "layer.strain", its running strain amplitude.
+        contacts turn into heat); of a part that softens "layer.strain", its running strain amplitude; of a
+        flexible ring "ring.raceway.radial-cos2", a coefficient of its race, or "ring.raceway.axial@-90", the
+        race at an azimuth in whole degrees.
         Motions are relative to the ground where `Application.base_motion` moves it.
     decimate
         Every how many steps a sample is kept.
