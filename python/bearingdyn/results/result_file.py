@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -139,7 +139,7 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
     Returns
     -------
     list[str]
-        Sorted; empty for a file of one result, and for a run file.
+        Sorted, those within others as "outer/inner"; empty for a file of one result, and for a run file.
 
     Raises
     ------
@@ -153,9 +153,17 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
         return []
     try:
         with h5netcdf.File(path, "r") as file:
-            return sorted(file.groups)
+            return sorted(_holding(file, ""))
     except Exception as error:  # as in open_result
         raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def _holding(group: Any, above: str) -> Iterator[str]:
+    """Names of the groups below one that hold a result, those within others by "outer/inner"."""
+    for name, inner in group.groups.items():
+        if inner.variables or not inner.groups:
+            yield above + name
+        yield from _holding(inner, f"{above}{name}/")
 
 
 def _run_dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
