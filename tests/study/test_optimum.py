@@ -193,3 +193,14 @@ def test_a_search_with_twenty_times_as_many_designs_finds_no_better_mount():
         if all(y[name] <= most for name, most in LIMITS.items()):
             found = max(found, y["isolation"])
     assert best.objective[1] - found > 1e-3 * best.objective[1]
+
+
+def test_a_layer_with_the_mesh_of_another_is_as_stiff_as_one_meshed_anew():
+    rubber = bd.Maxwell(1e6, [1.5e6], [2e-4], K=2e9, density=1150.0)
+    shape = {"moduli": (1e6, 3e6), "material": rubber}
+    anew = bd.Layer(0.020, 0.026, 0.014, **shape).stiffness()
+    moved = bd.Layer(0.020, 0.026, 0.014, **shape, meshed_as=(0.022, 0.029, 0.017)).stiffness()
+    # .02 %: what the mesh is good for
+    assert np.diag(moved).real == pytest.approx(np.diag(anew).real, rel=4e-4)
+    with pytest.raises(ValueError, match="meshed_as is"):
+        bd.Layer(0.020, 0.026, 0.014, **shape, meshed_as=(0.03, 0.02, 0.017))
