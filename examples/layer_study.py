@@ -109,7 +109,8 @@ def searched(case: Mapping[str, float]) -> motor.Design:
     )
     # shapes at moduli that do not move with the design
     moduli = base.G0, 4 * abs(complex(base.complex_modulus(motor.ONE_KHZ)))
-    return motor.Design("layer", case["thickness"], case["width"], material, BORE, moduli)
+    middle = BORE - 0.007, BORE, 0.021  # of one mesh for all
+    return motor.Design("layer", case["thickness"], case["width"], material, BORE, moduli, middle)
 
 
 def parameters(variant: motor.Design) -> dict[str, dict[str, float]]:
@@ -174,7 +175,8 @@ def told(found: study.Optimum) -> str:
     layer, values, prices = found.parameters, found.values, found.prices
     lines = [
         f"{layer['thickness'] * 1e3:.2f} mm thick, {layer['width'] * 1e3:.1f} mm wide, "
-        f"{layer['hardness']:.2f} times as hard, a damper of {layer['damper'] / 1e6:.2f} MPa: {values['isolation']:.2f} dB",
+        f"{layer['hardness']:.2f} times as hard, a damper of {layer['damper'] / 1e6:.2f} MPa: "
+        f"{values['isolation']:.2f} dB",
         f"sag {values['sag'] * 1e6:.0f} µm, strain {values['strain']:.1%}; {found.evaluations} designs, "
         f"residual {found.kkt:.1e}",
     ]

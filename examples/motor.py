@@ -69,7 +69,7 @@ class Design:
     """One variant of the motor: a layer's thickness and width, m, and its rubber; or none.
 
     bore: radius of the housing's bore, m, a sleeve of steel on the ring filling what ring and layer leave;
-    0: as ring and layer need it. moduli: of the layer's shapes, Pa.
+    0: as ring and layer need it. moduli, meshed_as: of the layer.
     """
 
     label: str
@@ -78,6 +78,7 @@ class Design:
     rubber: bd.Maxwell | None = None
     bore: float = 0.0
     moduli: tuple[float, ...] | None = None
+    meshed_as: tuple[float, float, float] | None = None
 
     @property
     def inside(self) -> float:
@@ -100,7 +101,9 @@ class Design:
         if self.rubber is None:
             return None
         outside = self.inside + self.thickness
-        return bd.Layer(self.inside, outside, self.width, self.rubber, moduli=self.moduli)
+        return bd.Layer(
+            self.inside, outside, self.width, self.rubber, moduli=self.moduli, meshed_as=self.meshed_as
+        )
 
 
 def rubber(path: Path = MEASURED) -> tuple[bd.Maxwell, bd.DMAData, bd.MasterCurve]:

@@ -112,3 +112,19 @@ print(
     f"{best.peak * 1e9:.0f} nm/N.\n"
     f"{allowed.sizes['case']} of {found.sizes['case']} designs keep both limits and are not beaten."
 )
+
+# %% [markdown]
+# ## Between the designs of a grid
+#
+# A grid says roughly where to look. From there gradients go: thickness, width, hardness and one more
+# relaxation at 1 kHz (a more lossy mixture) move together until isolation cannot be had without more sag or
+# strain. The bore of the housing stays as it is, and a steel sleeve on the ring fills what a thinner layer
+# leaves. Two starts end at the same design; `layer_study.best` with more of them only confirms it.
+
+# %%
+optimum = layer_study.best(starts=2)
+print(layer_study.told(optimum))
+
+# %% [markdown]
+# A limit that is reached has its price: what the next µm of air gap, or the next per cent of strain, would
+# bring. That is what to talk about with those who set the limits.

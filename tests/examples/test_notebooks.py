@@ -117,6 +117,11 @@ def test_the_designs_of_notebook_4_sag_by_what_their_layers_give(monkeypatch: py
     # from one design to the next only the layers change, two in parallel, half the load each; they also tilt
     expected = 10e3 / 2 * (give[1] - give[0])
     assert float(cases[1]["sag"][0] - cases[0]["sag"][0]) == pytest.approx(expected, rel=0.25)
+    optimum = found["optimum"]
+    assert optimum.values["sag"] <= 0.7e-3 * (1 + 1e-5)
+    assert optimum.values["strain"] <= 0.05 * (1 + 1e-5)
+    assert "sag" in optimum.prices or "strain" in optimum.prices
+    assert max(optimum.ends) - min(optimum.ends) < 1e-3 * optimum.objective[1]
     assert bool(found["best"]["front"])
     assert float(found["best"]["sag"]) <= 0.7e-3
     assert float(found["best"]["strain"]) <= 0.05

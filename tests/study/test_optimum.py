@@ -27,9 +27,8 @@ def can(d):
 
 def test_the_can_of_least_surface_is_as_high_as_wide_and_a_litre_more_costs_what_the_closed_form_says():
     V = 2.0
-    best = study.optimise(
-        can, {"r": (0.1, 3.0), "h": (0.1, 5.0)}, minimise="surface", limits={"volume": (V, None)}, starts=4
-    )
+    box, limits = {"r": (0.1, 3.0), "h": (0.1, 5.0)}, {"volume": (V, None)}
+    best = study.optimise(can, box, minimise="surface", limits=limits, starts=4, tolerance=1e-10)
     r = (V / (2 * math.pi)) ** (1 / 3)
     assert best.parameters["r"] == pytest.approx(r, rel=1e-4)
     assert best.parameters["h"] == pytest.approx(2 * r, rel=1e-4)
@@ -67,7 +66,7 @@ def test_of_several_hills_the_highest_is_found():
         x = d["x"]
         return {"f": (math.sin(5 * x) + 0.1 * x, {"x": 5 * math.cos(5 * x) + 0.1})}
 
-    best = study.optimise(hills, {"x": (0.0, 6.0)}, maximise="f", starts=16)
+    best = study.optimise(hills, {"x": (0.0, 6.0)}, maximise="f", starts=16, tolerance=1e-10)
     grid = np.linspace(0, 6, 100_001)
     assert best.objective[1] == pytest.approx((np.sin(5 * grid) + 0.1 * grid).max(), abs=1e-7)
 
@@ -139,17 +138,18 @@ def test_what_is_no_problem_is_named():
 
 
 def mount(d, derivatives=True):
-    """A block on a rubber ring: isolation at 400 Hz, dB, sag under its weight and strain, with their slopes."""
+    """A block on a rubber ring: isolation at 400 Hz, dB, sag and strain under a preload."""
     rubber = bd.Maxwell(d["G0"], [1.5e6], [2e-4], K=2e9, density=1150.0)
     app = bd.Application()
-    app.add("block", bd.RigidBody(mass=d["m"], inertia=(1e-1, 1e-1, 1e-1)))
-    app.add("layer", bd.Layer(0.02, 0.02 + d["t"], d["b"], rubber, moduli=(1e6, 3e6), refinement=0.5))
+    app.add("block", bd.RigidBody(mass=20.0, inertia=(1e-1, 1e-1, 1e-1)))
+    shape = {"moduli": (1e6, 3e6), "refinement": 0.5, "meshed_as": (0.02, 0.027, 0.015)}
+    app.add("layer", bd.Layer(0.02, 0.02 + d["t"], d["b"], rubber, **shape))
     app.connect("block.centre", "layer.inner")
     app.ground("layer.outer")
-    app.gravity((0, -9.81, 0))
+    app.load("block.centre", (0, -d["F"], 0, 0, 0, 0))
     eq = bd.equilibrium(app)
-    names = {"t": "layer.r_outer", "b": "layer.width", "G0": "layer.G0", "m": "block.mass"}
-    slope = bd.gradient(eq, names if derivatives else {"m": "block.mass"})
+    names = {"t": "layer.r_outer", "b": "layer.width", "G0": "layer.G0", "F": {"load.block.centre.y": -1.0}}
+    slope = bd.gradient(eq, names if derivatives else ["layer.G0"])
     H = slope.response([400.0], ["ground.y"], ["block.centre.y"])
     size = abs(complex(H["response"].values.item()))
     by = H["magnitude_derivative"].values.ravel() * 20 / math.log(10) / size
@@ -166,8 +166,8 @@ def mount(d, derivatives=True):
     }
 
 
-RANGES = {"t": (0.003, 0.012), "b": (0.010, 0.020), "G0": (0.4e6, 2e6), "m": (10.0, 40.0)}
-LIMITS = {"sag": 9e-5, "strain": 0.012}
+RANGES = {"t": (0.003, 0.012), "b": (0.010, 0.020), "G0": (0.4e6, 2e6), "F": (50.0, 300.0)}
+LIMITS = {"sag": 8e-5, "strain": 0.012}
 
 
 def test_the_best_mount_is_the_same_from_every_start():
@@ -177,7 +177,7 @@ def test_the_best_mount_is_the_same_from_every_start():
     assert max(best.ends) - min(best.ends) < 1e-3 * best.objective[1]
     assert best.kkt < 1e-3
     assert best.prices["sag"] > 0
-    wider = study.optimise(mount, RANGES, maximise="isolation", limits=LIMITS | {"sag": 9.2e-5}, starts=1)
+    wider = study.optimise(mount, RANGES, maximise="isolation", limits=LIMITS | {"sag": 8.2e-5}, starts=1)
     gained = (wider.objective[1] - best.objective[1]) / 0.2e-5
     # the price falls a little on the way: 2 % of the limit
     assert best.prices["sag"] == pytest.approx(gained, rel=0.05)
@@ -193,3 +193,14 @@ def test_a_search_with_twenty_times_as_many_designs_finds_no_better_mount():
         if all(y[name] <= most for name, most in LIMITS.items()):
             found = max(found, y["isolation"])
     assert best.objective[1] - found > 1e-3 * best.objective[1]
+
+
+def test_a_layer_with_the_mesh_of_another_is_as_stiff_as_one_meshed_anew():
+    rubber = bd.Maxwell(1e6, [1.5e6], [2e-4], K=2e9, density=1150.0)
+    shape = {"moduli": (1e6, 3e6), "material": rubber}
+    anew = bd.Layer(0.020, 0.026, 0.014, **shape).stiffness()
+    moved = bd.Layer(0.020, 0.026, 0.014, **shape, meshed_as=(0.022, 0.029, 0.017)).stiffness()
+    # .02 %: what the mesh is good for
+    assert np.diag(moved).real == pytest.approx(np.diag(anew).real, rel=4e-4)
+    with pytest.raises(ValueError, match="meshed_as is"):
+        bd.Layer(0.020, 0.026, 0.014, **shape, meshed_as=(0.03, 0.02, 0.017))

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, one_of, positive, require
+from bearingdyn.checks import nonnegative, one_of, positive, require, vector
 from bearingdyn.cms import RoundFace, Superelement, check_moduli
 from bearingdyn.fem import (
     NoBalance,
@@ -55,6 +55,10 @@ class Layer:
     recess
         Depth, m, to which both ends are hollowed out as a parabola from bond to bond; 0: flat. A ring that is
         bonded before it is squeezed needs it, or its ends fold over the edges of the bonds.
+    meshed_as
+        (r_inner, r_outer, width), m, of the layer whose mesh is moved to these dimensions; None: it is meshed
+        anew, and where the number of elements changes stiffnesses jump by some 1e-4. A search for the best
+        dimensions wants one mesh for all of them.
 
     Raises
     ------
@@ -83,6 +87,7 @@ class Layer:
     moduli: tuple[float, ...] | None = None
     refinement: float = 1.0
     recess: float = 0.0
+    meshed_as: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
@@ -97,6 +102,12 @@ class Layer:
         require(nonnegative("recess", self.recess, remedy) < 0.5 * self.width, "recess", self.recess, remedy)
         if self.moduli is not None:
             object.__setattr__(self, "moduli", check_moduli(self.moduli))
+        if self.meshed_as is not None:
+            meaning = "r_inner, r_outer and width in m"
+            r, R, width = vector("meshed_as", self.meshed_as, (3,), meaning).tolist()
+            good = 0 < r < R and width > 0
+            require(good, "meshed_as", self.meshed_as, f"it must be the dimensions of a layer: {meaning}")
+            object.__setattr__(self, "meshed_as", (r, R, width))
         _ = self.body
 
     @property
@@ -107,11 +118,14 @@ class Layer:
     @cached_property
     def body(self) -> Revolved:
         """The layer as a body of revolution."""
-        half = (-0.5 * self.width, 0.5 * self.width)
-        region = Region((self.r_inner, self.r_outer), half, self.material, graded=True)
+        r, R, width = self.meshed_as or (self.r_inner, self.r_outer, self.width)
+        region = Region((r, R), (-0.5 * width, 0.5 * width), self.material, graded=True)
         section = None
-        if self.recess > 0.0:
+        if self.recess > 0.0 or self.meshed_as is not None:
             section = revolution_mesh([region.rectangle], self.refinement)
+            moved = self.r_inner + self.thickness * (section.r - r) / (R - r)
+            section = replace(section, r=moved, z=self.width / width * section.z)
+        if self.recess > 0.0 and section is not None:
             across = (2.0 * section.r - self.r_inner - self.r_outer) / self.thickness
             hollow = 1.0 - 2.0 * self.recess / self.width * (1.0 - across**2)
             section = replace(section, z=section.z * hollow)

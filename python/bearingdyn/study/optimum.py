@@ -19,10 +19,12 @@ from bearingdyn.types import Array
 Slopes: TypeAlias = Mapping[str, float]
 Design: TypeAlias = Callable[[dict[str, float]], Mapping[str, Any]]
 
-# of a limit, or of the range of a parameter: what stands on it
-ACTIVE = 1e-5
+# of the range of a parameter: at its end
+ACTIVE = 1e-6
 # of a scaled limit: kept
 KEPT = 1e-6
+# of a limit: reached
+NEAR = 1e-4
 DIFFERENCE = 1e-6
 
 
@@ -181,7 +183,7 @@ def optimise(
     limits: Mapping[str, Sequence[float | None] | float] | None = None,
     starts: int = 10,
     seed: int = 0,
-    tolerance: float = 1e-8,
+    tolerance: float = 1e-6,
 ) -> Optimum:
     """Find the best design within limits, by sequential quadratic programming from several starts.
 
@@ -321,7 +323,7 @@ def _descend(problem: _Problem, u: Array, tolerance: float) -> Array:
         method="SLSQP",
         bounds=[(0.0, 1.0)] * u.size,
         constraints=constraints,
-        options={"ftol": tolerance, "maxiter": 100},
+        options={"ftol": tolerance, "maxiter": 60},
     )
     return np.asarray(np.clip(found.x, 0.0, 1.0))
 
@@ -333,7 +335,7 @@ def _told(problem: _Problem, u: Array, ends: tuple[float, ...], failed: tuple[st
     columns, owners = [], []
     for limit in problem.limits:
         left, slope = problem.scaled(limit, u)
-        if left <= 10 * ACTIVE:
+        if left <= NEAR:
             columns.append(slope)
             owners.append(limit)
     edges = []
@@ -429,7 +431,7 @@ def front(
     points: int = 7,
     starts: int = 4,
     seed: int = 0,
-    tolerance: float = 1e-8,
+    tolerance: float = 1e-6,
 ) -> list[Optimum]:
     """The Pareto front of two values that should both be small, by the ε-constraint method.
 
