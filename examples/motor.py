@@ -66,19 +66,41 @@ SEAT = 0.0185  # m, of the left bearing from the shaft's end
 
 @dataclass(frozen=True)
 class Design:
-    """One variant of the motor: a layer's thickness and width, m, and its rubber; or none."""
+    """One variant of the motor: a layer's thickness and width, m, and its rubber; or none.
+
+    bore: radius of the housing's bore, m, a sleeve of steel on the ring filling what ring and layer leave;
+    0: as ring and layer need it. moduli: of the layer's shapes, Pa.
+    """
 
     label: str
     thickness: float = 0.0
     width: float = 0.0
     rubber: bd.Maxwell | None = None
+    bore: float = 0.0
+    moduli: tuple[float, ...] | None = None
+
+    @property
+    def inside(self) -> float:
+        """Inner radius of the layer, m."""
+        return self.bore - self.thickness if self.bore else RING[1]
+
+    @property
+    def ring(self) -> bd.RigidBody:
+        """The bearing's outer ring, and the sleeve on it."""
+        ring = bd.RigidBody.ring(*RING)
+        if self.inside == RING[1]:
+            return ring
+        sleeve = bd.RigidBody.ring(RING[1], self.inside, RING[2])
+        inertia = tuple(a + b for a, b in zip(ring.inertia, sleeve.inertia, strict=True))
+        return bd.RigidBody(ring.mass + sleeve.mass, inertia, measures=RING)
 
     @property
     def layer(self) -> bd.Layer | None:
         """The ring of rubber around the outer ring."""
         if self.rubber is None:
             return None
-        return bd.Layer(RING[1], RING[1] + self.thickness, self.width, self.rubber)
+        outside = self.inside + self.thickness
+        return bd.Layer(self.inside, outside, self.width, self.rubber, moduli=self.moduli)
 
 
 def rubber(path: Path = MEASURED) -> tuple[bd.Maxwell, bd.DMAData, bd.MasterCurve]:
@@ -167,7 +189,7 @@ def pedestal(bore_diameter: float) -> bd.Superelement:
 
 def bore(design: Design) -> float:
     """Diameter of the bore that takes ring and layer."""
-    return 2 * (RING[1] + design.thickness)
+    return 2 * (design.inside + design.thickness)
 
 
 def motor(design: Design, radial: float = 0.0) -> bd.Application:
@@ -179,7 +201,7 @@ def motor(design: Design, radial: float = 0.0) -> bd.Application:
     for side in ("left", "right"):
         ring, house = f"{side}_ring", f"{side}_housing"
         app.add(f"{side}_inner", bd.RigidBody.ring(*INNER, rotating=True))
-        app.add(ring, bd.RigidBody.ring(*RING))
+        app.add(ring, design.ring)
         app.add(house, pedestal(bore(design)))
         app.connect(f"shaft.{side}", f"{side}_inner.centre")
         app.ground(f"{house}.feet")

@@ -239,10 +239,11 @@ const bd_model *bd_py_model_of(PyObject *object)
     return ((model_object *)object)->model;
 }
 
-PyDoc_STRVAR(model_state_doc,
-             "state(t, x, v, stress=None) -> state\n\n"
-             "A flat state, at rest in its branches or with what they bear: layer by layer, branch by "
-             "branch.");
+PyDoc_STRVAR(
+    model_state_doc,
+    "state(t, x, v, stress=None) -> state\n\n"
+    "A flat state, at rest in its branches or with what they bear: layer by layer, branch by "
+    "branch.");
 
 static PyObject *model_state(PyObject *object, PyObject *args)
 {

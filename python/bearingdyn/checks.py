@@ -71,6 +71,14 @@ def real(value: ArrayLike) -> Array:
         raise ValueError(str(error)) from None
 
 
+def reals(field: str, value: ArrayLike, remedy: str) -> Array:
+    """Check real numbers of any shape, finite or not, as a new array; ValueError for anything else."""
+    try:
+        return real(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; {remedy}") from None
+
+
 def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> Array:
     """Check a vector: a finite float array of the given shape; ValueError if it is anything else."""
     try:

@@ -27,7 +27,7 @@ from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.steady import balance
 from bearingdyn.application import Application
-from bearingdyn.bearing import BallBearing, FilmDamping
+from bearingdyn.bearing import BallBearing, FilmDamping, Waviness
 from bearingdyn.material import FractionalZener, Maxwell, Payne, PowerLaw
 from bearingdyn.parts import Layer, RigidBody, Section, Shaft
 from bearingdyn.results import open_result, save
@@ -178,6 +178,35 @@ def test_lines_of_unbalance_are_those_of_a_march():
         size = np.abs(found["amplitude"].sel(channel=channel).values)
         size[0] = 0.0
         agree(found, run, channel, np.argsort(-size)[:100], 5e-4)
+
+
+def test_lines_of_waviness_and_unbalance_are_those_of_a_march_that_begins_in_them(monkeypatch):
+    wavy = replace(rotors.BEARING, waviness=[Waviness("inner", 5, 2e-7), Waviness("outer", 9, 3e-7)])
+    monkeypatch.setattr(rotors, "BEARING", wavy)
+    app = loaded()
+    app.unbalance("shaft.end", 2e-5)
+    eq = equilibrium(app)
+    found = steady_state(eq, speed=SPEED, record=RECORD, harmonics=12)
+    T = 2 * np.pi / (8 * rotors.BEARING.cage_ratio * SPEED)
+    run = transient(
+        eq,
+        speed=SPEED,
+        dt=T / 512,
+        steps=120 * 512,
+        decimate=8,
+        filter=False,
+        record=RECORD,
+        initial=found,
+        method="exact",
+    )
+    for channel in RECORD[:2]:
+        size = np.abs(found["amplitude"].sel(channel=channel).values)
+        size[0] = 0.0
+        lines = np.argsort(-size)[:80]
+        marched_lines = fitted(run, channel, found["frequency"].values[lines])
+        off = np.abs(found["amplitude"].sel(channel=channel).values[lines] - marched_lines)[:20]
+        # the 1e-3 of each, but for what harmonics above the twelfth would add
+        assert (off <= 1e-3 * size[lines[:20]] + 1e-5 * size.max()).all()
 
 
 def marched(eq, found, passages: int, per: int) -> np.ndarray:

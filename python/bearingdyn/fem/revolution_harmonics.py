@@ -326,6 +326,13 @@ def harmonic_slope(h: Harmonic, dr: Array, dz: Array) -> Harmonic:
 
     By a complex step of the nodes within the element matrices, which is exact to round-off.
 
+    Parameters
+    ----------
+    h
+        Matrices of the mesh where it is.
+    dr, dz
+        Rates of its nodes.
+
     References
     ----------
     W. Squire and G. Trapp, SIAM Rev. 40 (1998) 110.

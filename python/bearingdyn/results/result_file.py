@@ -68,7 +68,7 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     """
     groups = dict(results) if isinstance(results, Mapping) and not hasattr(results, "dims") else {"": results}
     if not groups:
-        raise ValueError(f"{os.fspath(path)}: nothing to save; give at least one result")
+        raise ValueError(f"{path}: nothing to save; give at least one result")
     for name, data in groups.items():
         what = f"results[{name!r}]" if name else "results"
         if not hasattr(data, "to_netcdf") or not hasattr(data, "data_vars"):

@@ -6,6 +6,7 @@ from bearingdyn.study.cases import Case, grid, sobol
 from bearingdyn.study.distributions import Fitted, LogNormal, Normal, Uniform, draw
 from bearingdyn.study.doubt_effects import doubt_effects
 from bearingdyn.study.indices import sobol_indices
+from bearingdyn.study.optimum import Optimum, front, optimise
 from bearingdyn.study.pareto import pareto
 from bearingdyn.study.sweep import sweep
 from bearingdyn.study.table import table
@@ -15,12 +16,15 @@ __all__ = [
     "Fitted",
     "LogNormal",
     "Normal",
+    "Optimum",
     "Robust",
     "Uniform",
     "band",
     "doubt_effects",
     "draw",
+    "front",
     "grid",
+    "optimise",
     "pareto",
     "sobol",
     "sobol_indices",

@@ -12,7 +12,7 @@ from bearingdyn.application import GROUND, Channel
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import meant, named, number, require
 from bearingdyn.material import Maxwell
-from bearingdyn.parts import DIMENSIONS, Layer, RigidBody, layer_slopes
+from bearingdyn.parts import DIMENSIONS, Layer, LayerSlopes, RigidBody, layer_slopes
 from bearingdyn.system import System
 from bearingdyn.types import Array
 
@@ -87,10 +87,12 @@ def changes_of(system: System, parameters: object) -> dict[str, Change]:
         For a parameter that the system has not; says what there is.
     """
     known: dict[str, Change] = {}
+    # equal layers stand on both sides of many machines
+    layers: dict[tuple[int, str], LayerSlopes] = {}
 
     def one(path: str) -> Change:
         if path not in known:
-            known[path] = _change(system, path)
+            known[path] = _change(system, path, layers)
         return known[path]
 
     given: Mapping[str, Any]
@@ -115,7 +117,7 @@ def changes_of(system: System, parameters: object) -> dict[str, Change]:
     return found
 
 
-def _change(system: System, path: str) -> Change:
+def _change(system: System, path: str, layers: dict[tuple[int, str], LayerSlopes]) -> Change:
     """The change by one named parameter."""
     head, _, tail = path.partition(".")
     if head == "load" and tail:
@@ -141,7 +143,10 @@ def _change(system: System, path: str) -> Change:
             material = system.layers[own[0]].material if own else None
             if tail in (*DIMENSIONS, "K", "density"):
                 require(isinstance(material, Maxwell), "parameter", path, "it needs a layer of bd.Maxwell")
-                S, slopes = term.place, layer_slopes(term.source, tail)
+                key = id(term.source), tail
+                if key not in layers:
+                    layers[key] = layer_slopes(term.source, tail)
+                S, slopes = term.place, layers[key]
                 inertia = S.T @ (slopes.M @ term.rigid[:, :3])
                 weights = {(head, tail): 1.0} if tail in DIMENSIONS else {}
                 return Change(

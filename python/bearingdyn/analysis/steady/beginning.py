@@ -14,6 +14,7 @@ from bearingdyn.analysis.steady.motion import Motion
 from bearingdyn.analysis.steady.problem import Problem, motion_of
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.checks import require
+from bearingdyn.results import inputs_of
 from bearingdyn.system import System
 
 if TYPE_CHECKING:
@@ -35,6 +36,13 @@ def beginning(source: Equilibrium | System, result: xarray.Dataset, speed: objec
         f"initial is a steady motion at {result.attrs.get('speed')} rad/s; march it at that speed",
     )
     problem = Problem.of(source, int(result.attrs["subharmonic"]))
+    theirs, here = result.attrs.get("inputs_hash"), inputs_of(problem.system.inputs).get("inputs_hash")
+    require(
+        theirs == here,
+        "initial, by its inputs_hash,",
+        theirs,
+        f"it is the motion of another application, for this one's is {here}; find it anew",
+    )
     index, z = motion_of("initial", problem, result)
     own, harmonics = float(result.attrs["speed"]), int(result.attrs["harmonics"])
     if len(problem.bases.bases) > 1:

@@ -15,10 +15,10 @@ all seven series of deep groove bearings below, their K_Z of 3.1 and both K_rs a
 _STEEP_CENTRIFUGAL) are from memory: no table of them was found. The first program takes a μ_bl of .12 in
 motion instead of .15.
 
-What another maker prints holds both: Koyo's friction coefficients, M = μPd/2, are .0010 to .0015 of deep groove
-and .0012 to .0020 of angular contact bearings (www.koyousa.com/koyocatalog/technical/05/5_5main.htm). At a
-tenth of C, 20 mm²/s and 3000 rpm, a full film, "palmgren" gives .0019 and .0026, "four-term" .0016 and .0029. In
-thin oil, κ well below 1, "four-term" of 40° gives up to .0058, as its sliding goes with μ_bl.
+What another maker prints holds both: Koyo's friction coefficients, M = μPd/2, are .0010 to .0015 of deep
+groove and .0012 to .0020 of angular contact bearings (www.koyousa.com/koyocatalog/technical/05/5_5main.htm).
+At a tenth of C, 20 mm²/s and 3000 rpm, a full film, "palmgren" gives .0019 and .0026, "four-term" .0016 and
+.0029. In thin oil, κ well below 1, "four-term" of 40° gives up to .0058, as its sliding goes with μ_bl.
 """
 
 from __future__ import annotations
