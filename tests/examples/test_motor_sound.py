@@ -27,8 +27,8 @@ def test_levels_are_those_of_the_power_that_the_force_makes(monkeypatch: pytest.
     monkeypatch.setattr(motor_sound.bd, "sound_power", flat)
     levels = motor_sound.heard(None)  # type: ignore[arg-type]
     assert levels["level"].values == pytest.approx(10 * np.log10(2e-6 / 1e-12), abs=1e-9)
-    # A-weighting of IEC 61672-1, table 3: −13.4 dB at 160 Hz, −3.2 at 500, +1.0 at 1.6 kHz; a band's even force
-    # is weighted line by line
+    # A-weighting of IEC 61672-1, table 3: −13.4 dB at 160 Hz, −3.2 at 500, +1.0 at 1.6 kHz;
+    # a band's even force is weighted line by line
     by_band = dict(
         zip(levels["band"].values.tolist(), (levels["weighted_level"] - levels["level"]).values, strict=True)
     )
