@@ -43,6 +43,15 @@ def changed(tmp_path: Path, change: Callable[[dict[str, Any]], object]) -> Path:
     return path
 
 
+def test_coefficients_stand_on_their_axes_and_between_their_speeds() -> None:
+    supports = {str(p): s for p, s in bd.read_ross(FILE, speed=500.0).plan.supports.items()}
+    assert supports["shaft.n0"].stiffness == pytest.approx([1e7, 0.8e7, 1e6, 0, 0, 0])
+    assert supports["shaft.n0"].damping == pytest.approx([100.0, 120.0, 0, 0, 0, 0])
+    # halfway between 0 and 1000 rad/s; ROSS takes cyy from cxx where it is not given
+    assert supports["shaft.n24"].stiffness == pytest.approx([1.5e7, 1.2e7, 0, 0, 0, 0])
+    assert supports["shaft.n24"].damping == pytest.approx([150.0, 150.0, 0, 0, 0, 0])
+
+
 FIRST, DISC, LEFT = "ShaftElement_Shaft Element 0", "DiskElement_Disk 0", "BearingElement_Bearing 0"
 
 
