@@ -62,6 +62,26 @@ def test_the_groove_meets_the_balls() -> None:
     assert INNER.r_inner == 12.5 * MM
 
 
+@pytest.mark.parametrize("designation", ["6305", "7205B"])
+def test_the_footprints_are_where_a_ball_touches(designation: str) -> None:
+    """A ball lies between those of both rings, as long as Hertz's ellipses are under one load."""
+    brg = bd.catalogue.bearing(designation, **({"clearance": 10e-6} if designation[0] == "6" else {}))
+    inner, outer = (FlexibleRing.of(brg, race=race, load=800.0).footprint for race in ("inner", "outer"))
+    assert inner is not None
+    assert outer is not None
+    # from each ring's groove centre to the plane of the balls
+    up = brg.Dw * math.sin(brg.contact_angle or 0.0)
+    ends = np.array([inner.point, outer.point]) + [[0.0, (brg.fi - 0.5) * up], [0.0, -(brg.fo - 0.5) * up]]
+    line = ends[1] - ends[0]
+    # the play of 10 µm stands between them too
+    assert np.hypot(*line) == pytest.approx(brg.Dw, abs=6e-6)
+    np.testing.assert_allclose(ends.mean(axis=0), [0.5 * brg.Dpw, 0.0], atol=3e-6)
+    np.testing.assert_allclose(line / np.hypot(*line), inner.normal, atol=1e-3)
+    lengths = [c.semi_axes(800.0)[0] for c in (brg.inner_contact, brg.outer_contact)]
+    assert [inner.half_length, outer.half_length] == lengths
+    assert lengths[0] != lengths[1]
+
+
 def test_a_stiff_ring_is_the_rigid_one() -> None:
     stiff = FlexibleBearing(B6305, replace(INNER, material=STIFF))
     for load in (LOAD, (500.0, -3000.0, 900.0, 2.0, 1.0, 0.0)):
@@ -117,12 +137,12 @@ def hung(ring: FlexibleRing, as_inner: bool, standing: bool = True) -> bd.Applic
 def test_by_symmetry_an_inner_ring_is_an_outer_one(ring: FlexibleRing) -> None:
     """One ring, hung as outer and as inner one, loads turned round: every motion turns round, at rest and in
     a march."""
+    motions = [*(f"rotor.centre.{c}" for c in "xyz"), "ring.raceway.radial@-60"]
     found = {}
     for as_inner in (False, True):
         eq = bd.equilibrium(hung(ring, as_inner))
         run = bd.transient(
-            eq, speed=300.0, dt=5e-6, steps=2000,
-            record=["rotor.centre.x", "rotor.centre.y", "rotor.centre.z", "b.ball3", "b.force.y"],
+            eq, speed=300.0, dt=5e-6, steps=2000, record=[*motions, "b.ball3", "b.force.y"]
         )["record"].values  # fmt: skip
         found[as_inner] = eq.displacement("rotor.centre"), eq.bearings["b"].loads, run
     np.testing.assert_allclose(found[True][0], -found[False][0], rtol=1e-9, atol=1e-15)
@@ -130,7 +150,7 @@ def test_by_symmetry_an_inner_ring_is_an_outer_one(ring: FlexibleRing) -> None:
     size = np.abs(found[False][2]).max(axis=0)
     # round-off of a march of 2000 steps, and Newton's tolerance
     np.testing.assert_allclose(
-        found[True][2] * [-1, -1, -1, 1, 1] / size, found[False][2] / size, rtol=0, atol=1e-7
+        found[True][2] * [-1, -1, -1, -1, 1, 1] / size, found[False][2] / size, rtol=0, atol=1e-7
     )
 
 

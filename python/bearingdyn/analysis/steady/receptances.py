@@ -61,7 +61,9 @@ class Poles:
         A[2 * n :, 2 * n :] = -np.diag(rates)
         values, vectors = np.linalg.eig(A)
         try:
-            found = cls(values, vectors[:n] / w[:, None], np.linalg.inv(vectors)[:, n : 2 * n])
+            left = np.asarray(np.linalg.inv(vectors)[:, n : 2 * n], dtype=np.complex128)
+            right = np.asarray(vectors[:n] / w[:, None], dtype=np.complex128)
+            found = cls(np.asarray(values, dtype=np.complex128), right, left)
             scale = np.sort(np.abs(values))[: max(len(values) // 2, 1)].max()
             for omega in (1e-3 * scale, 0.1 * scale, scale):
                 exact = np.linalg.inv(dynamic_stiffness(block, np.array([omega]), 0.0)[0])
