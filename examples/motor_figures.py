@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import motor
+import motor_sound
 import numpy as np
 import xarray
 
@@ -34,6 +35,7 @@ class Story:
     bending: Mapping[str, motor.Bending]
     motions: Mapping[str, xarray.Dataset]
     sweeps: Mapping[str, np.ndarray]
+    sounds: Mapping[str, xarray.Dataset]  # levels in third octaves of each design
 
 
 def draw(story: Story, out: Path) -> list[Path]:
@@ -66,6 +68,7 @@ def draw(story: Story, out: Path) -> list[Path]:
     keep("fig10_orbit", orbit(story))
     keep("velocity_spectra", velocity_spectra(story))
     keep("velocity_over_speed", velocity_over_speed(story))
+    keep("sound_thirds", motor_sound.picture(story.sounds))
     return made
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import motor
+import motor_sound
 import numpy as np
 import xarray
 
@@ -369,8 +370,15 @@ def main() -> int:
     motions = steady_part(states, clock)
     sweeps = sweep_part(states, clock)
 
+    with clock.stage("sound power of the pedestals"):
+        sounds = {
+            design.label: motor_sound.heard(states[design.label].rest, out / "radiation") for design in four
+        }
+    motor_sound.table(sounds)
+
     stored = {f"response/{label}": found.response for label, found in harmonics.items()}
     stored |= {f"steady/{label}": found.motion for label, found in motions.items()}
+    stored |= {f"sound/{label}": found for label, found in sounds.items()}
     stored["sweep"] = xarray.Dataset(
         {"rms": (("design", "speed", "channel"), np.array(list(sweeps.values())), {"units": "m/s"})},
         {"design": list(sweeps), "speed": motor.SPEEDS, "channel": list(motor.VELOCITIES)},
@@ -396,6 +404,7 @@ def main() -> int:
             bending={design.label: bending[design.label] for design in four},
             motions={label: found.motion for label, found in motions.items()},
             sweeps=sweeps,
+            sounds=sounds,
         )
         made = motor_figures.draw(story, out)
     clock.table()

@@ -145,6 +145,31 @@ def test_order_of_the_step(state: Equilibrium, capsys: pytest.CaptureFixture[str
     assert orders.min() > 2.5
 
 
+def test_order_where_balls_close_on_their_dampers():
+    """A damper's force jumps as it closes: seen at the steps' ends alone, it would leave the first order."""
+    app = motor()
+    app.load("shaft.end", (0, -600.0, 0, 0, 0, 0))
+    state = equilibrium(app)
+
+    def march(k: int) -> np.ndarray:
+        record = [*RECORD[:3], "left.loaded"]
+        return exact(state, dt=8e-6 / k, steps=3200 * k, decimate=k, filter=False, record=record)[
+            "record"
+        ].values
+
+    fine = march(32)
+    assert np.count_nonzero(np.diff(fine[:, 3]) > 0) >= 5
+    fine = fine[:, :3]
+    error = [
+        np.sqrt(np.mean((march(k)[:, :3] - fine) ** 2, axis=0)) / np.std(fine, axis=0) for k in (1, 2, 4)
+    ]
+    orders = np.log2(np.array(error[:-1]) / np.array(error[1:]))
+    print(np.round(orders, 2).tolist(), np.max(error, axis=1))
+    # the parabola's third, which single closings scatter about
+    assert orders.min() > 1.5
+    assert np.max(error[-1]) < 5e-4
+
+
 def test_a_mass_that_balls_alone_hold_grows_by_the_fourth_power_of_the_step():
     """Nothing damps it: (ωΔt)⁴/48 a step, from the parabola's own error, as the docstring says."""
     app = Application()

@@ -305,3 +305,26 @@ def test_a_damping_by_hand_has_no_answer_by_frequency() -> None:
     with pytest.raises(ValueError, match=r"damping\.answer is 3"):
         FilmDamping(1e-6, np.linspace(0, 1, 65), 3)  # type: ignore[arg-type]
     assert FilmDamping(1e-6, np.linspace(0, 1, 65)).answer is None
+
+
+@pytest.mark.parametrize("frequency", [2000.0, 9000.0])
+def test_a_steady_motion_takes_films_by_the_frequency_of_each_line(frequency: float) -> None:
+    """A small force along the axis, where all balls carry alike: the harmonic response, and its power."""
+    ball = loaded_axially().system.bearings[0].bearing
+    app = Application()
+    app.add("mass", RigidBody(MASS, (1e-5, 1e-5, 1e-5)))
+    app.ground("mass.centre", stiffness=(1e3, 1e3, 0, 1e3, 1e3, 1e3))
+    app.bearing("ball", ball, inner="mass.centre", outer="ground")
+    app.load("mass.centre", (0, 0, LOAD, 0, 0, 0))
+    app.load("mass.centre", (0, 0, 0.1, 0, 0, 0), frequency=frequency)  # 3e-4 of the load: linear
+    state, places = equilibrium(app), ["mass.centre.z", "ball.force.z"]
+    for contacts in ("film", "viscous"):
+        found = bd.steady_state(state, speed=OMEGA, record=places, contacts=contacts, harmonics=3)
+        line = int(np.abs(np.abs(found["frequency"].values) - frequency).argmin())
+        own = np.abs(found["amplitude"].values[line])
+        wanted = frequency_response(state, [frequency], ["mass.centre.z"], places, contacts=contacts)
+        # a ball under 3e-4 more or less of its load bends its law by a part in ten thousand
+        np.testing.assert_allclose(own, 0.1 * np.abs(wanted["response"].values[0, :, 0]), rtol=2e-4)
+        assert abs(found.attrs["energy_balance"]) < 1e-6
+    with pytest.raises(ValueError, match="contacts"):
+        bd.steady_state(state, speed=OMEGA, record=places, contacts="oil")  # type: ignore[arg-type]

@@ -104,7 +104,7 @@ def test_formula_is_divided_by_the_density_under_pressure():
         p = contact.pressure(found.Q)
         rho = (5.9e8 + 1.34 * p) / (5.9e8 + p)
         plain = nijenbanning_venner_moes(contact, found.Q, found.us, found.viscosity, OIL.alpha)
-        assert film == pytest.approx(plain / rho, rel=1e-12)
+        assert film == pytest.approx(plain / rho / 1.009, rel=1e-12)  # the middle of its errors
     equations = lubricate(BRG, OIL, 70.0, SPEED, AXIAL)
     # theory.md §4.3: the divided formula is 3 to 5 % high for narrow contacts
     assert found.film_inner == pytest.approx(equations.film_inner, rel=0.05)

@@ -148,8 +148,7 @@ def fault_bench(layer: Layer | None = None, defects: Sequence[Pit] = ()) -> Appl
         )
         damage = tuple(pits) if side == "left" else ()
         ball = catalogue.bearing("6205", clearance=8e-6, damping=30.0, waviness=waviness, defects=damage)
-        # the shaft is a plain Ø30, without the seats of Ø25 on which the rings are
-        app.bearing(side, ball, inner=f"shaft.{side}", outer=f"{side}_ring.centre", fits=False)
+        app.bearing(side, ball, inner=f"shaft.{side}", outer=f"{side}_ring.centre")
     app.load("shaft.middle", (0, -300.0, 100.0, 0, 0, 0))
     app.unbalance("shaft.middle", 2e-6)
     return app
@@ -159,7 +158,9 @@ def fault_bench(layer: Layer | None = None, defects: Sequence[Pit] = ()) -> Appl
 def _bench_shaft() -> Superelement:
     rotor = Disc.cylinder(0.15, 0.12, 0.03, d_inner=0.03)
     seats = {"left": 0.02, "right": 0.28}
-    whole = Shaft([Section(0.30, 0.03)], seats, {"middle": 0.15}, discs=[rotor], damping=0.005, f_max=12e3)
+    # the inner rings, 15 mm wide on Ø25, stand against the shoulders
+    sections = [Section(0.0275, 0.025), Section(0.245, 0.03), Section(0.0275, 0.025)]
+    whole = Shaft(sections, seats, {"middle": 0.15}, discs=[rotor], damping=0.005, f_max=12e3)
     return whole.superelement()
 
 

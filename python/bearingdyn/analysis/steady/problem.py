@@ -9,6 +9,7 @@ import numpy as np
 
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
+from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.analysis.steady.balance import Balance
 from bearingdyn.analysis.steady.receptances import Receptances
@@ -50,8 +51,15 @@ class Problem:
     rest: Array
 
     @classmethod
-    def of(cls, source: Equilibrium | Application | System, subharmonic: int = 1) -> Problem:
+    def of(
+        cls,
+        source: Equilibrium | Application | System,
+        subharmonic: int = 1,
+        contacts: Contacts = "viscous",
+    ) -> Problem:
         """From an equilibrium, an application (its equilibrium is found) or a system.
+
+        Films answer as their tangents do, as in a march, or with contacts="film" by frequency.
 
         Raises
         ------
@@ -79,9 +87,9 @@ class Problem:
             K[own, own], C[own, own] = s.K, s.C
             at += len(s.z)
         level = EVEN * float(np.trace(K)) / max(len(rest), 1)
-        return cls(
-            source, system, bases, Receptances(system, K + max(level, IDLE) * np.eye(len(rest)), C), rest
-        )
+        K = K + max(level, IDLE) * np.eye(len(rest))
+        balls = source.balls if contacts == "film" and isinstance(source, Equilibrium) else None
+        return cls(source, system, bases, Receptances(system, K, C, balls), rest)
 
     def balance(self, lines: Lines, speed: float, rows: Array | None = None) -> Balance:
         """Its equations on chosen lines at a speed, rad/s; rows (k, n) of motions asked for beside them."""

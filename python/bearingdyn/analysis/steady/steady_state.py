@@ -11,6 +11,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
+from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.choosing import balanced
 from bearingdyn.analysis.steady.motion import Motion
@@ -18,7 +19,7 @@ from bearingdyn.analysis.steady.problem import Problem, motion_of
 from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability, floquet, pooled
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
-from bearingdyn.checks import name_list, number, one_speed, positive, require, whole
+from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
 from bearingdyn.system import System
 from bearingdyn.units import takes
 
@@ -47,13 +48,14 @@ def steady_state(
     stability: bool = True,
     tolerance: float = 1e-11,
     rpm: float | None = None,
+    contacts: Contacts = "viscous",
 ) -> xarray.Dataset:
     """Find the steady motion at one speed, and whether it is stable, without marching to it.
 
     The motion is a sum of lines, Σ Re z_n e^{iω_n t}, whose amplitudes balance at every line; the structure
     answers with G*(ω) of any law, the balls are pressed in time; films of oil have their damping of low
-    frequency, as in a march. Of two steady motions at one speed it finds the one near its start; `speed_map`
-    follows them all.
+    frequency, as in a march, unless `contacts` says otherwise. Of two steady motions at one speed it finds
+    the one near its start; `speed_map` follows them all.
 
     Parameters
     ----------
@@ -78,6 +80,10 @@ def steady_state(
         Of the balance, relative to the largest amplitude.
     rpm
         The speed in revolutions a minute, instead of `speed`.
+    contacts
+        How lubricated contacts answer: "viscous", by the tangents that hold at low frequency, or "film",
+        with what their stiffness and damping at each line's frequency have besides, at the loads that the
+        balls carry at rest. Stability is always that of viscous contacts.
 
     Returns
     -------
@@ -133,7 +139,8 @@ def steady_state(
     positive("tolerance", tolerance)
     if harmonics is not None:
         harmonics = whole("harmonics", harmonics, 1)
-    problem = Problem.of(source, subharmonic)
+    one_of("contacts", contacts, ("film", "viscous"))
+    problem = Problem.of(source, subharmonic, contacts)
     problem.system.check_speed(speed)
     channels = [channel_of(problem.system, name) for name in record]
     balance, found, left = _found(problem, speed, harmonics, subharmonic, start, tolerance)
