@@ -235,7 +235,7 @@ def test_wrong_joints_are_named() -> None:
     with pytest.raises(ValueError, match=r"ring\.raceway carries a bearing already"):
         app.bearing("c", B6305, inner="ring.raceway", outer="ground")
     app = on_shaft(None)
-    with pytest.raises(ValueError, match=r"^inner is 'ground'; a shaft carries the inner ring"):
+    with pytest.raises(ValueError, match="'ground' names no place"):
         app.bearing("c", B6305, inner="ground", outer="shaft.right")
     app.add("on", INNER)
     app.add("in", FlexibleRing.of(B6305, order=9))

@@ -312,8 +312,8 @@ class Application:
         """
         self.plan.check_new("bearing", name)
         joints: list[BearingJoint] = []
-        ends = self.plan.raceway_or_interface(inner), self.plan.raceway_or_interface(outer)
-        require(ends[0] != GROUND, "inner", inner, "a shaft carries the inner ring: name its interface")
+        # the ground carries no inner ring: `place` does not know it
+        ends = self.plan.raceway_or_interface(self.plan.place(inner)), self.plan.raceway_or_interface(outer)
         truth("mirrored", mirrored)
         truth("fits", fits)
         races = [place for place in ends if self.plan.raceway(place) is not None]
