@@ -424,6 +424,12 @@ bd_state bd_state_view(const bd_model *model, double *flat);
  * Returned: a state with branches at rest (relaxed), without acceleration: see bd_start */
 void bd_state_set(const bd_model *model, double *flat, double t, const double *x, const double *v);
 
+/* How many stresses bd_state_stress takes: of every layer, its branches' components. */
+int bd_model_stresses(const bd_model *model);
+
+/* Given: a state from bd_state_set; what the branches bear, layer by layer in the caller's order, branch by branch */
+void bd_state_stress(const bd_model *model, double *flat, const double *stress);
+
 /* Returned: x, v, a (n) in the caller's order; any may be NULL */
 void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,
                   double *a);

@@ -92,6 +92,36 @@ void bd_state_set(const bd_model *model, double *flat, double t, const double *x
     }
 }
 
+int bd_model_stresses(const bd_model *model)
+{
+    int count = 0;
+    for (int l = 0; l < model->n_layers; l++)
+        count += model->layers[l].n_branches * model->layers[l].rank;
+    return count;
+}
+
+/* Where a layer's stresses begin among all in the caller's order. */
+static int stresses_before(const bd_model *model, int source)
+{
+    int before = 0;
+    for (int l = 0; l < model->n_layers; l++)
+        if (model->layers[l].source < source)
+            before += model->layers[l].n_branches * model->layers[l].rank;
+    return before;
+}
+
+void bd_state_stress(const bd_model *model, double *flat, const double *stress)
+{
+    bd_state state = bd_state_view(model, flat);
+    for (int l = 0; l < model->n_layers; l++) {
+        const bd_layer *layer = &model->layers[l];
+        const double *from = stress + stresses_before(model, layer->source);
+        double *to = state.stress + layer->stress;
+        for (int i = 0; i < layer->n_branches; i++, from += layer->rank, to += layer->padded)
+            memcpy(to, from, (size_t)layer->rank * sizeof *to);
+    }
+}
+
 void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,
                   double *a)
 {

@@ -31,9 +31,18 @@ def make() -> None:
     (STATIC / "names.txt").write_text(names(), encoding="utf-8")
     architecture.draw(STATIC / "architecture.svg")
     sheet_figure.draw(STATIC / "sheet.svg")
-    for picture in (pictures.drawing, pictures.squeezed, pictures.ring, pictures.sound, pictures.steady):
+    drawn = (
+        pictures.drawing,
+        pictures.squeezed,
+        pictures.ring,
+        pictures.sound,
+        pictures.steady,
+        pictures.report,
+    )
+    for picture in drawn:
         picture(STATIC / f"{picture.__name__}.png")
     design_figure.design(STATIC / "design.png")
+    pictures.gallery(HERE / "gallery.md", STATIC)
     contact_figure.maps(STATIC / "contact_maps.png")
     contact_figure.damping(STATIC / "contact_damping.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):

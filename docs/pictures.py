@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -74,3 +75,24 @@ def steady(path: Path) -> None:
     ax = bd.plot.speed_map(found)
     ax.figure.savefig(path, dpi=110)
     plt.close(ax.figure)
+
+
+def report(path: Path) -> None:
+    """The drawing as the head of the guide's page on reports shows it."""
+    ax = bd.examples.fan().draw()
+    ax.figure.savefig(path, dpi=90)
+    plt.close(ax.figure)
+
+
+def gallery(page: Path, folder: Path) -> None:
+    """The pictures of the gallery: what each block of its page draws, in order."""
+    names: dict[str, object] = {"__name__": "gallery"}
+    blocks = re.findall(
+        r"^```python\n(.*?)^```\n\n!\[[^]]*\]\(_static/([\w.]+)\)", page.read_text("utf-8"), re.S | re.M
+    )
+    for code, name in blocks:
+        exec(compile(code, str(page), "exec"), names)
+        ax = names["ax"]
+        figure = getattr(ax, "figure", None) or np.ravel(ax)[0].figure  # type: ignore[arg-type, attr-defined]
+        figure.savefig(folder / name, dpi=100)
+        plt.close("all")

@@ -36,9 +36,9 @@ def shaft() -> bd.Superelement:
     """The shaft with its rotor."""
     rotor = bd.Disc.cylinder(0.15, 0.12, 0.03, d_inner=0.03)
     seats = {"left": 0.02, "right": 0.28}
-    whole = bd.Shaft(
-        [bd.Section(0.30, 0.03)], seats, {"middle": 0.15}, discs=[rotor], damping=0.005, f_max=12e3
-    )
+    # the inner rings, 15 mm wide on Ø25, stand against the shoulders
+    sections = [bd.Section(0.0275, 0.025), bd.Section(0.245, 0.03), bd.Section(0.0275, 0.025)]
+    whole = bd.Shaft(sections, seats, {"middle": 0.15}, discs=[rotor], damping=0.005, f_max=12e3)
     return whole.superelement()
 
 
@@ -66,14 +66,7 @@ def bench(layer: bd.Layer | None = None, defects: Sequence[bd.Pit] = ()) -> bd.A
             app.add(f"{side}_layer", layer)
             app.connect(f"{side}_ring.centre", f"{side}_layer.inner")
             app.connect(f"{side}_layer.outer", f"{side}_housing.bore")
-        # the shaft is reduced as a plain Ø30, without the seats of Ø25 on which the rings are
-        app.bearing(
-            side,
-            ball_bearing(side, defects),
-            inner=f"shaft.{side}",
-            outer=f"{side}_ring.centre",
-            fits=False,
-        )
+        app.bearing(side, ball_bearing(side, defects), inner=f"shaft.{side}", outer=f"{side}_ring.centre")
     app.load("shaft.middle", (0, -LOAD, PRELOAD, 0, 0, 0))
     app.unbalance("shaft.middle", 2e-6)
     return app

@@ -51,6 +51,12 @@ AUDIBLE = np.linspace(1000.0, 5000.0, 4001)  # Hz, over which the paper judges t
 
 STEP, STEPS = 2.5e-6, 100_000
 REMAINS = 0.03  # of the slowest mode, when recording begins
+PASSAGES, PER_PASSAGE = 50, 1024  # of the march that checks a steady state, and its exact steps
+# of a steady state; and of each in the sweep: the housing hardly moves above them
+HARMONICS, SWEPT = 60, 24
+# rad/s of the sweep: 2 % from one to the next, as wide as a resonance of ζ = 1 %
+SPEEDS = np.geomspace(500.0, 12_000.0, 160) * math.pi / 30
+VELOCITIES = ("shaft.end.y.velocity", "left_housing.top.y.velocity", "left_housing.top.z.velocity")
 PAPER_MODES = (382.0, 1885.0, 2027.0, 4756.0)  # Hz, bending modes of the paper's shaft without layers
 
 RING = (0.0275, 0.031, 0.017)  # outer ring of the 6305: groove radius taken off, outside radius, width, m
@@ -305,33 +311,78 @@ def run(
     progress: Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
     """The transient at 5000 rpm under the radial load, the first `settle` steps thrown away."""
-    record = [
+    return bd.transient(
+        eq, speed=SPEED, dt=STEP, steps=steps, settle=settle, record=recorded(eq), progress=progress
+    )
+
+
+def recorded(eq: bd.Equilibrium) -> list[str]:
+    """The channels of a motion at speed."""
+    return [
         "shaft.middle.x",
         "shaft.middle.y",
         "shaft.end.x",
         "shaft.end.y",
-        "shaft.end.y.velocity",
-        "left_housing.top.y.velocity",
-        "left_housing.top.z.velocity",
+        *VELOCITIES,
         "left.loaded",
         "right.loaded",
         *bd.ball_channels(eq, "left"),
         *bd.ball_channels(eq, "right"),
     ]
-    return bd.transient(
-        eq, speed=SPEED, dt=STEP, steps=steps, settle=settle, record=record, progress=progress
+
+
+def steady(eq: bd.Equilibrium) -> xarray.Dataset:
+    """The steady motion at 5000 rpm under the radial load: where a ring-down would end."""
+    return bd.steady_state(eq, speed=SPEED, record=recorded(eq), harmonics=HARMONICS)
+
+
+def marched_on(eq: bd.Equilibrium, motion: xarray.Dataset) -> float:
+    """How far PASSAGES of exact steps lead away from a steady motion.
+
+    The largest change of a line of the velocities, by the largest line of the same channel.
+    """
+    dt = 1 / float(motion["base_frequency"].values[0]) / PER_PASSAGE
+    run = bd.transient(
+        eq,
+        speed=SPEED,
+        dt=dt,
+        steps=PASSAGES * PER_PASSAGE,
+        record=VELOCITIES,
+        initial=motion,
+        method="exact",
+        progress=False,
     )
+    wanted = np.abs(motion["amplitude"].sel(channel=list(VELOCITIES)).values[1:])
+    last = run["record"].values[-PER_PASSAGE:]
+    found = np.abs(np.fft.rfft(last, axis=0))[1 : len(wanted) + 1] * (2 / PER_PASSAGE)
+    return float((np.abs(found - wanted) / wanted.max(axis=0)).max())
+
+
+def sweep(eq: bd.Equilibrium, progress: Callable[[int, int], object] | None = None) -> np.ndarray:
+    """Velocities (speed, channel) over SPEEDS, m/s rms, as a slow run-up meets them.
+
+    Each motion begins from that of the speed below; NaN where none was found.
+    """
+    rms = np.full((SPEEDS.size, len(VELOCITIES)), np.nan)
+    motion = None
+    for k, speed in enumerate(SPEEDS.tolist()):
+        try:
+            motion = bd.steady_state(
+                eq, speed=speed, record=VELOCITIES, harmonics=SWEPT, start=motion, stability=False
+            )
+        except bd.SolverError:
+            motion = None  # ended in a fold: the next begins from the equilibrium
+            continue
+        rms[k] = np.sqrt(0.5 * (np.abs(motion["amplitude"].values[1:]) ** 2).sum(axis=0))
+        if progress is not None:
+            progress(k + 1, SPEEDS.size)
+    return rms
 
 
 def ball_pass() -> float:
     """Ball-pass frequency of the outer race, Hz."""
     brg = bearing("6305", balls=BALLS, clearance=10e-6)
     return brg.Z * brg.cage_ratio * SPEED / (2 * math.pi)
-
-
-def heat(eq: bd.Equilibrium, settle: int, steps: int = STEPS) -> xarray.Dataset:
-    """What every part turns into heat in the same transient."""
-    return bd.dissipation(eq, speed=SPEED, dt=STEP, steps=steps, settle=settle)
 
 
 if __name__ == "__main__":

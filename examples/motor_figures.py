@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import motor
+import motor_sound
 import numpy as np
 import xarray
 
@@ -32,7 +33,9 @@ class Story:
     losses: Mapping[str, xarray.Dataset]
     power: Mapping[str, np.ndarray]
     bending: Mapping[str, motor.Bending]
-    runs: Mapping[str, xarray.Dataset]
+    motions: Mapping[str, xarray.Dataset]
+    sweeps: Mapping[str, np.ndarray]
+    sounds: Mapping[str, xarray.Dataset]  # levels in third octaves of each design
 
 
 def draw(story: Story, out: Path) -> list[Path]:
@@ -64,6 +67,8 @@ def draw(story: Story, out: Path) -> list[Path]:
     keep("radiated_power", radiated_power(story))
     keep("fig10_orbit", orbit(story))
     keep("velocity_spectra", velocity_spectra(story))
+    keep("velocity_over_speed", velocity_over_speed(story))
+    keep("sound_thirds", motor_sound.picture(story.sounds))
     return made
 
 
@@ -261,7 +266,7 @@ def _parts_at_rest(ax: Any, design: motor.Design) -> None:
 def orbit(story: Story) -> Any:
     """The paper's figure 10: the orbit of mid-shaft, its mean, which is the static deflection, taken off."""
     orbits = {}
-    for label, run in story.runs.items():
+    for label, run in story.motions.items():
         x, y = (1e6 * float(run["record"].sel(channel=f"shaft.middle.{c}").mean()) for c in "xy")
         orbits[f"{label}, about ({x:.1f}, {y:.1f}) µm"] = bd.orbit(run, "shaft.middle.x", "shaft.middle.y")
     with style():
@@ -270,22 +275,60 @@ def orbit(story: Story) -> Any:
 
 
 def velocity_spectra(story: Story) -> Any:
-    """Velocity of shaft's end and housing's top in the transient, the multiples of the ball pass marked."""
+    """Lines of the velocities of shaft's end and housing's top in the steady motions."""
     import matplotlib.pyplot as plt
 
-    passing = motor.ball_pass()
-    channels = ("shaft.end.y.velocity", "left_housing.top.y.velocity", "left_housing.top.z.velocity")
+    names = ("shaft's end, y", "housing's top, y", "housing's top, z")
     with style():
         _, axes = plt.subplots(
-            len(channels), 1, sharex=True, figsize=(6.8, 8.4), layout="constrained", squeeze=False
+            len(names), 1, sharex=True, figsize=(6.8, 8.4), layout="constrained", squeeze=False
         )
-    for ax, channel in zip(axes[:, 0], channels, strict=True):
-        spectra = {label: bd.spectrum(run, channel) for label, run in story.runs.items()}
-        marks = {"ball pass": passing} | {f"{k}×": k * passing for k in (5, 10, 15, 20)}
-        plot.spectrum(spectra, marks if ax is axes[0, 0] else None, ax, f_max=5000.0)
-        if ax is not axes[0, 0]:
-            ax.get_legend().remove()
-            ax.set_title(ax.get_title(loc="left"), loc="left", fontsize=10, pad=4.0)
-        if ax is not axes[-1, 0]:
-            ax.set_xlabel("")
+        for ax, channel, name in zip(axes[:, 0], motor.VELOCITIES, names, strict=True):
+            sizes = {
+                label: 1e6 * np.abs(found["amplitude"].sel(channel=channel).values[1:])
+                for label, found in story.motions.items()
+            }
+            floor = 0.5 * min(float(size.min()) for size in sizes.values())
+            for k, (label, size) in enumerate(sizes.items()):
+                kilohertz = story.motions[label]["frequency"].values[1:] / 1e3
+                # side by side: they are at the same frequencies
+                ax.vlines(kilohertz + 0.04 * k, floor, size, color=colour(k), linewidth=2.0, label=label)
+            ax.set_yscale("log")
+            ax.set_xlim(0.0, 1e-3 * motor.HARMONICS * motor.ball_pass() + 0.1)
+            ax.set_ylim(bottom=floor)
+            ax.set_ylabel(f"{name}, µm/s")
+            first = ax is axes[0, 0]
+            finish(ax, f"lines at {motor.SPEED * 30 / np.pi:.0f} rpm" if first else "", legend=first)
+        axes[-1, 0].set_xlabel("frequency, kHz")
+    return axes
+
+
+def velocity_over_speed(story: Story) -> Any:
+    """What the layer buys over the whole range: velocity of shaft's end and housing's top over speed."""
+    import matplotlib.pyplot as plt
+
+    names = ("shaft's end, y", "housing's top, y", "housing's top, z")
+    with style():
+        _, axes = plt.subplots(
+            len(names), 1, sharex=True, figsize=(6.8, 8.0), layout="constrained", squeeze=False
+        )
+        for column, (ax, name) in enumerate(zip(axes[:, 0], names, strict=True)):
+            curves = [1e6 * rms[:, column] for rms in story.sweeps.values()]
+            rpm = motor.SPEEDS * 30 / np.pi
+            for k, (label, curve) in enumerate(zip(story.sweeps, curves, strict=True)):
+                ax.plot(rpm, curve, color=colour(k), linestyle=DASHES[k], label=label)
+            bare, layered = curves
+            ax.fill_between(
+                rpm, layered, bare, where=layered < bare, color=colour(1), alpha=0.15, linewidth=0,
+                label="less with the layer",
+            )  # fmt: skip
+            ax.set_xscale("log")
+            ax.set_yscale("log")
+            ax.set_xlim(float(rpm[0]), float(rpm[-1]))
+            ax.set_xticks([500, 1000, 2000, 5000, 10_000], ["500", "1000", "2000", "5000", "10 000"])
+            ax.minorticks_off()
+            ax.set_ylabel(f"{name}, µm/s rms")
+            first = column == 0
+            finish(ax, f"steady motions under {motor.RADIAL / 1e3:g} kN" if first else "", legend=first)
+        axes[-1, 0].set_xlabel("speed, rpm")
     return axes

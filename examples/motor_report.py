@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 import math
+import os
 import time
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
 import motor
+import motor_sound
 import numpy as np
 import xarray
 
 import bearingdyn as bd
 
-MARCHED = ("no layer", "layer, high loss")
+IN_MOTION = ("no layer", "layer, high loss")
 SIDES = ("left", "right")
-VELOCITIES = {
-    "shaft's end y": "shaft.end.y.velocity",
-    "housing's top y": "left_housing.top.y.velocity",
-    "z": "left_housing.top.z.velocity",
-}
+VELOCITIES = dict(zip(("shaft's end y", "housing's top y", "z"), motor.VELOCITIES, strict=True))
 FREQUENCY = np.geomspace(10.0, 6000.0, 6000)  # Hz; a step is a third of the sharpest peak's width
 STRAIN = 0.05  # static, above which the rubber is warned of
+
+
+def spent() -> tuple[float, float]:
+    """Seconds of the clock, and of the CPU, processes that have ended included."""
+    return time.perf_counter(), sum(os.times()[:4])
 
 
 @dataclass
@@ -32,25 +35,23 @@ class Stages:
     """Wall and CPU seconds of every stage, by name; a stage entered again adds up."""
 
     seconds: dict[str, tuple[float, float]] = field(default_factory=dict)
-    began: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), time.process_time()))
+    began: tuple[float, float] = field(default_factory=spent)
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time what is done inside."""
-        wall, cpu = time.perf_counter(), time.process_time()
+        wall, cpu = spent()
         yield
-        before = self.seconds.get(name, (0.0, 0.0))
-        self.seconds[name] = (
-            before[0] + time.perf_counter() - wall,
-            before[1] + time.process_time() - cpu,
-        )
+        before, after = self.seconds.get(name, (0.0, 0.0)), spent()
+        self.seconds[name] = (before[0] + after[0] - wall, before[1] + after[1] - cpu)
 
     def table(self) -> None:
         """Print them, and the whole."""
         print(f"\n{'what it took':<44}{'wall':>8}{'CPU':>10}")
         for name, (wall, cpu) in self.seconds.items():
             print(f"  {name:<42}{wall:6.1f} s{cpu:8.1f} s")
-        whole = (time.perf_counter() - self.began[0], time.process_time() - self.began[1])
+        now = spent()
+        whole = now[0] - self.began[0], now[1] - self.began[1]
         print(f"  {'all of it':<42}{whole[0]:6.1f} s{whole[1]:8.1f} s")
 
 
@@ -92,13 +93,17 @@ class Harmonic:
 
 
 @dataclass(frozen=True)
-class Settled:
-    """A transient: settling steps, the record, the heat by part, and what the march took."""
+class Steady:
+    """A steady motion, how far a march leads away from it, and what it replaces.
 
-    settle: int
-    record: xarray.Dataset
-    heat: xarray.Dataset
-    seconds: float  # of the core that marched
+    motion: of motor.steady. departs: of motor.marched_on. slowest: frequency, Hz, and decay, 1/s, of the mode
+    that rings longest. ring_down: s.
+    """
+
+    motion: xarray.Dataset
+    departs: float
+    slowest: tuple[float, float]
+    ring_down: float
 
 
 def describe_rubber(material: bd.Maxwell) -> None:
@@ -217,48 +222,36 @@ def papers_modes(eq: bd.Equilibrium) -> None:
         print(f"  {paper:6.0f} {here:8.1f} {100 * (here / paper - 1):+6.1f} %")
 
 
-def marched(label: str, eq: bd.Equilibrium) -> Settled:
-    """The transient and, beside it on another core, where its energy goes."""
-    from tqdm import tqdm
-
-    settle = motor.ring_down(eq)
-    total = settle + motor.STEPS
-    with (
-        ThreadPoolExecutor(1) as pool,
-        tqdm(total=total, desc=f"  {label}", unit="step", unit_scale=True, leave=False) as bar,
-    ):
-
-        def advance(done: int, _: int, bar: Any = bar) -> None:
-            bar.update(done - bar.n)
-
-        heat = pool.submit(motor.heat, eq, settle)
-        began = time.thread_time()
-        record = motor.run(eq, settle, progress=advance)
-        seconds = time.thread_time() - began
-        return Settled(settle, record, heat.result(), seconds)
+def line(result: xarray.Dataset, channel: str) -> np.ndarray:
+    """Sizes of the lines of a steady motion, the mean left out."""
+    return np.asarray(np.abs(result["amplitude"].sel(channel=channel).values[1:]))
 
 
 def rms(result: xarray.Dataset, channel: str) -> tuple[float, float]:
     """Effective value of a velocity about its mean, and of what of it lies above 2 kHz, µm/s."""
-    lines = bd.spectrum(result, channel)
-    amplitude = lines["amplitude"].values
-    power = amplitude[1:] ** 2
-    share = power[lines["frequency"].values[1:] > 2000.0].sum() / power.sum()
-    whole = 1e6 * float(np.std(result["record"].sel(channel=channel).values))
-    return whole, whole * math.sqrt(share)
+    power = 0.5 * line(result, channel) ** 2
+    above = power[result["frequency"].values[1:] > 2000.0]
+    return 1e6 * math.sqrt(power.sum()), 1e6 * math.sqrt(above.sum())
 
 
-def transient_table(label: str, run: Settled, eq: bd.Equilibrium) -> None:
-    """What a transient showed: ring-down, orbit, contact loss by bearing, heat by part."""
-    result = run.record
+def steady_table(label: str, found: Steady) -> None:
+    """A steady motion: how it was found and checked, its orbit, contact loss by bearing and heat by part."""
+    result = found.motion
     data = {str(c): result["record"].sel(channel=c).values for c in result["channel"].values}
-    lines = bd.spectrum(result, "shaft.middle.y")
-    strongest = float(lines["frequency"].values[np.argmax(lines["amplitude"].values)])
-    slow, rate = motor.slowest(eq)
+    frequency = result["frequency"].values
+    strongest = float(frequency[1:][np.argmax(line(result, "shaft.middle.y"))])
+    slow, rate = found.slowest
     print(
         f"  {label}\n"
-        f"    ring-down    slowest mode {slow:.0f} Hz, ζ {100 * rate / (2 * math.pi * slow):.3f} %: "
-        f"{run.settle} steps, {run.settle * motor.STEP:.2f} s, thrown away\n"
+        f"    found        {result.attrs['iterations']} iterations, residual {result.attrs['residual']:.0e}, "
+        f"energy balance {result.attrs['energy_balance']:.0e}; "
+        f"{'stable' if result.attrs['stable'] == 1 else 'unstable'}, largest multiplier "
+        f"{result.attrs['multiplier']:.4f}\n"
+        f"    check        marched on from it, {motor.PASSAGES} passages of {motor.PER_PASSAGE} exact steps: "
+        f"lines of velocity to {1e-3 * frequency[-1]:.1f} kHz stay within {100 * found.departs:.2g} % of the "
+        f"largest\n"
+        f"    replaced     a ring-down of {found.ring_down:.2f} s to {100 * motor.REMAINS:g} % of its start, "
+        f"slowest mode {slow:.0f} Hz, ζ {100 * rate / (2 * math.pi * slow):.3f} %\n"
         f"    orbit        {np.ptp(data['shaft.middle.x']) * 1e6:.3f} × "
         f"{np.ptp(data['shaft.middle.y']) * 1e6:.3f} µm about ({data['shaft.middle.x'].mean() * 1e6:.1f}, "
         f"{data['shaft.middle.y'].mean() * 1e6:.1f}) µm; strongest line {strongest:.0f} Hz"
@@ -270,22 +263,19 @@ def transient_table(label: str, run: Settled, eq: bd.Equilibrium) -> None:
     ]
     print(f"    velocity     µm/s rms (above 2 kHz): {', '.join(speeds)}")
     for side in SIDES:
-        found = bd.contact_statistics(result, side)
+        balls = bd.contact_statistics(result, side)
         counts = ", ".join(
             f"{int(n)} for {100 * share:.0f} %"
-            for n, share in zip(found["count"].values, found["loaded"].values, strict=True)
+            for n, share in zip(balls["count"].values, balls["loaded"].values, strict=True)
             if share > 0
         )
         print(
-            f"    {side + ' balls':<12} unloaded {100 * float(found['free'].mean()):.1f} % of the time, at "
-            f"most {1e3 * float(found['longest'].max()):.2f} ms at once; peak "
-            f"{float(found['peak'].max()) / 1e3:.2f} kN; loaded: {counts}"
+            f"    {side + ' balls':<12} unloaded {100 * float(balls['free'].mean()):.1f} % of the time; peak "
+            f"{float(balls['peak'].max()) / 1e3:.2f} kN; loaded: {counts}"
         )
-    power = 1e3 * run.heat["power"].values
-    parts = zip(run.heat["part"].values, power, strict=True)
+    power = 1e3 * result["power"].values
+    parts = zip(result["part"].values, power, strict=True)
     print(f"    heat         {power.sum():.3f} mW: " + ", ".join(f"{p} {w:.3f}" for p, w in parts))
-    total = run.settle + motor.STEPS
-    print(f"    cost         {1e6 * run.seconds / total:.2f} µs a step, {total} steps")
 
 
 def harmonic_part(states: Mapping[str, State], clock: Stages) -> tuple[dict[str, Harmonic], dict[str, Any]]:
@@ -311,20 +301,55 @@ def harmonic_part(states: Mapping[str, State], clock: Stages) -> tuple[dict[str,
     return harmonics, bending
 
 
-def transient_part(states: Mapping[str, State], clock: Stages) -> dict[str, Settled]:
-    """The paper's section 4.2: the march at speed without layer and with."""
+def steady_part(states: Mapping[str, State], clock: Stages) -> dict[str, Steady]:
+    """The paper's section 4.2: the motion at speed without layer and with."""
     print(
-        f"\n{motor.SPEED * 30 / math.pi:.0f} rpm, {motor.RADIAL / 1e3:g} kN: {motor.STEPS} steps of "
-        f"{motor.STEP * 1e6:g} µs, {1 / (motor.STEPS * motor.STEP):g} Hz resolution; ball pass "
-        f"{motor.ball_pass():.1f} Hz; thrown away before: the ring-down to {100 * motor.REMAINS:g} % of the "
-        f"slowest mode"
+        f"\n{motor.SPEED * 30 / math.pi:.0f} rpm, {motor.RADIAL / 1e3:g} kN: steady motions of "
+        f"{motor.HARMONICS} harmonics of the ball pass, {motor.ball_pass():.1f} Hz"
     )
-    runs = {}
-    for label in MARCHED:
-        with clock.stage(f"transient and its heat, {label}"):
-            runs[label] = marched(label, states[label].loaded)
-        transient_table(label, runs[label], states[label].loaded)
-    return runs
+    found = {}
+    for label in IN_MOTION:
+        eq = states[label].loaded
+        with clock.stage("steady motions and their stability"):
+            motion = motor.steady(eq)
+        with clock.stage("marches that check them"):
+            departs = motor.marched_on(eq, motion)
+        found[label] = Steady(motion, departs, motor.slowest(eq), motor.ring_down(eq) * motor.STEP)
+        steady_table(label, found[label])
+    return found
+
+
+def swept(eq: bd.Equilibrium) -> tuple[np.ndarray, float]:
+    """The sweep of a design, and its CPU seconds."""
+    began = time.process_time()
+    return motor.sweep(eq), time.process_time() - began
+
+
+def sweep_part(states: Mapping[str, State], clock: Stages) -> dict[str, np.ndarray]:
+    """Velocities over speed without layer and with, each in a process of its own."""
+    with clock.stage("sweeps of steady motions"), ProcessPoolExecutor(len(IN_MOTION)) as pool:
+        both = list(pool.map(swept, [states[label].loaded for label in IN_MOTION]))
+    rms = {label: found for label, (found, _) in zip(IN_MOTION, both, strict=True)}
+    rpm = motor.SPEEDS * 30 / math.pi
+    print(
+        f"\n{rpm[0]:.0f}–{rpm[-1]:.0f} rpm, {motor.RADIAL / 1e3:g} kN: {rpm.size} steady motions of each "
+        f"design, {', '.join(f'{s:.1f}' for _, s in both)} s of CPU; with the layer against without, dB"
+    )
+    bare, layered = (rms[label] for label in IN_MOTION)
+    for k, name in enumerate(VELOCITIES):
+        known = np.isfinite(bare[:, k] + layered[:, k])
+        mean, curve = falls(bare[known, k] ** 2, layered[known, k] ** 2)
+        less = np.mean(layered[known, k] < bare[known, k])
+        print(
+            f"  {name:<16}{mean:6.1f} of the mean square, {curve:6.1f} mean of the curve; less at "
+            f"{100 * less:.0f} % of the speeds; highest {1e6 * np.nanmax(bare[:, k]):.0f} and "
+            f"{1e6 * np.nanmax(layered[:, k]):.0f} µm/s"
+        )
+    for label, found in rms.items():
+        lost = int(np.isnan(found[:, 0]).sum())
+        if lost:
+            print(f"  {label}: no motion found at {lost} of {rpm.size} speeds")
+    return rms
 
 
 def main() -> int:
@@ -342,11 +367,22 @@ def main() -> int:
     with clock.stage("other parts, assembly and equilibria"):
         states = {design.label: State.of(design) for design in (*four, losses[-1])}
     harmonics, bending = harmonic_part(states, clock)
-    runs = transient_part(states, clock)
+    motions = steady_part(states, clock)
+    sweeps = sweep_part(states, clock)
+
+    with clock.stage("sound power of the pedestals"):
+        sounds = {
+            design.label: motor_sound.heard(states[design.label].rest, out / "radiation") for design in four
+        }
+    motor_sound.table(sounds)
 
     stored = {f"response/{label}": found.response for label, found in harmonics.items()}
-    stored |= {f"transient/{label}": run.record for label, run in runs.items()}
-    stored |= {f"heat/{label}": run.heat for label, run in runs.items()}
+    stored |= {f"steady/{label}": found.motion for label, found in motions.items()}
+    stored |= {f"sound/{label}": found for label, found in sounds.items()}
+    stored["sweep"] = xarray.Dataset(
+        {"rms": (("design", "speed", "channel"), np.array(list(sweeps.values())), {"units": "m/s"})},
+        {"design": list(sweeps), "speed": motor.SPEEDS, "channel": list(motor.VELOCITIES)},
+    )
     with clock.stage("result file"):
         bd.save(
             {name.replace(", ", "_").replace(" ", "_"): data for name, data in stored.items()},
@@ -366,7 +402,9 @@ def main() -> int:
             losses={design.label: harmonics[known].response for design, known in same},
             power={design.label: harmonics[design.label].power for design in four},
             bending={design.label: bending[design.label] for design in four},
-            runs={label: run.record for label, run in runs.items()},
+            motions={label: found.motion for label, found in motions.items()},
+            sweeps=sweeps,
+            sounds=sounds,
         )
         made = motor_figures.draw(story, out)
     clock.table()

@@ -19,20 +19,17 @@
 
 # %%
 import math
-import sys
+from pathlib import Path
 
 import bearingdyn as bd
 from bearingdyn import plot
 
-sys.path.insert(0, "../examples")
-from motor import MEASURED
-
-source = MEASURED if MEASURED.exists() else bd.sample_dma_path()
+# the measurement where it is kept beside the project, else the table that the package ships, which is made;
+# put your own here
+measured = Path("../../shared/data/epdm70/dma.csv")
+source = measured if measured.exists() else bd.sample_dma_path()
 table = bd.read_dma(source)
-print(
-    "measured:" if MEASURED.exists() else "measurement absent, the shipped sample (made) instead:",
-    source.name,
-)
+print("measured:" if measured.exists() else "the shipped sample (made):", source.name)
 print(f"{table.frequency.size} points, {table.frequency.min():g} to {table.frequency.max():g} Hz")
 
 # %% [markdown]

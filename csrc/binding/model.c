@@ -239,23 +239,33 @@ const bd_model *bd_py_model_of(PyObject *object)
     return ((model_object *)object)->model;
 }
 
-PyDoc_STRVAR(model_state_doc, "state(t, x, v) -> state\n\nA flat state at rest in its branches.");
+PyDoc_STRVAR(
+    model_state_doc,
+    "state(t, x, v, stress=None) -> state\n\n"
+    "A flat state, at rest in its branches or with what they bear: layer by layer, branch by "
+    "branch.");
 
 static PyObject *model_state(PyObject *object, PyObject *args)
 {
     const bd_model *model = bd_py_model_of(object);
-    PyObject *x_in, *v_in, *state = NULL;
+    PyObject *x_in, *v_in, *stress_in = Py_None, *state = NULL;
     double t;
-    if (!PyArg_ParseTuple(args, "dOO:state", &t, &x_in, &v_in))
+    if (!PyArg_ParseTuple(args, "dOO|O:state", &t, &x_in, &v_in, &stress_in))
         return NULL;
     PyObject *keep = PyList_New(0);
     if (!keep)
         return NULL;
     const double *x = bd_py_doubles(keep, x_in, "x", 1, bd_model_size(model), -1);
     const double *v = x ? bd_py_doubles(keep, v_in, "v", 1, bd_model_size(model), -1) : NULL;
-    if (v && !bd_py_require_finite(&t, 1, "t") &&
-        (state = bd_py_new_array(1, (npy_intp)bd_state_size(model), 0)))
+    const bool bears = v && stress_in != Py_None;
+    const double *stress =
+        bears ? bd_py_doubles(keep, stress_in, "stress", 1, bd_model_stresses(model), -1) : NULL;
+    if (v && (stress || !bears) && !bd_py_require_finite(&t, 1, "t") &&
+        (state = bd_py_new_array(1, (npy_intp)bd_state_size(model), 0))) {
         bd_state_set(model, bd_py_data(state), t, x, v);
+        if (stress)
+            bd_state_stress(model, bd_py_data(state), stress);
+    }
     Py_DECREF(keep);
     return state;
 }

@@ -174,7 +174,7 @@ PUBLIC = {
         ),
     },
     "model": {
-        "model": ("Analysis", "Model", "read_model", "write_model"),
+        "model": ("Analysis", "Model", "read_model", "read_ross", "write_model"),
     },
     "result": {
         "results": (

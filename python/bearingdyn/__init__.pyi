@@ -113,6 +113,7 @@ from bearingdyn.material import (
 from bearingdyn.model import Analysis as Analysis
 from bearingdyn.model import Model as Model
 from bearingdyn.model import read_model as read_model
+from bearingdyn.model import read_ross as read_ross
 from bearingdyn.model import write_model as write_model
 from bearingdyn.parts import (
     BoreShape,
@@ -264,6 +265,7 @@ __all__ = [
     "read_mesh",
     "read_model",
     "read_nodes",
+    "read_ross",
     "read_strain_sweep",
     "reduction_error",
     "report",

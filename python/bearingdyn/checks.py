@@ -71,6 +71,14 @@ def real(value: ArrayLike) -> Array:
         raise ValueError(str(error)) from None
 
 
+def reals(field: str, value: ArrayLike, remedy: str) -> Array:
+    """Check real numbers of any shape, finite or not, as a new array; ValueError for anything else."""
+    try:
+        return real(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; {remedy}") from None
+
+
 def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> Array:
     """Check a vector: a finite float array of the given shape; ValueError if it is anything else."""
     try:
@@ -175,6 +183,15 @@ def existing(path: str | os.PathLike[str], what: str = "file") -> Path:
     """
     require(isinstance(path, str | os.PathLike), f"the path of a {what}", path, "give a text or a Path")
     p = Path(path)
+    try:
+        p.stat()
+    except FileNotFoundError:
+        pass
+    except OSError as error:  # a name too long, a folder that may not be entered
+        text = f"cannot be read ({error.strerror}); give the path of a {what}"
+        raise OSError(error.errno, text, str(p)) from None
+    except ValueError:
+        raise ValueError(f"{str(p)!r} holds a NUL; give the path of a {what}") from None
     if p.is_dir():
         raise IsADirectoryError(f"{p} is a folder; give the path of a {what}")
     if not p.exists():

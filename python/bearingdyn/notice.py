@@ -27,6 +27,17 @@ class CoarseStep(Notice):
     """
 
 
+class GrowingStep(Notice):
+    """Notice: exact steps of this size make a motion grow that balls hold.
+
+    When: at `method="exact"`, about an equilibrium, a mode at ω of which balls hold the share s gains
+    s (ωΔt)⁴/48 a step, and its damping takes less, so that it is 1 % larger at the end.
+
+    Remedy: march with the dt that the warning names, or with method="newmark"; or give the contacts the
+    damping that they have.
+    """
+
+
 class FitWarning(Notice):
     """Notice: two neighbours at one interface hardly fit, by the radii and widths that are known of them.
 
@@ -102,6 +113,17 @@ class UnloadedBearing(Notice):
 
     Remedy: load the bearing (weight by `app.gravity`, a belt, an axial preload by `offset`), or give it no
     clearance.
+    """
+
+
+class NothingPushes(Notice):
+    """Notice: a march starts at rest and nothing pushes, so its record stays as it begins.
+
+    When: a march from an equilibrium in which no ball is pressed, of an application without any load, from
+    no displacement by `initial=` and no earlier state.
+
+    Remedy: add what pushes (`app.gravity`, `app.load`, `app.unbalance`), or start displaced with
+    `initial=`; zero speed and zero load need no march.
     """
 
 

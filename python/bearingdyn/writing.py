@@ -57,7 +57,8 @@ def check_target(path: str | os.PathLike[str]) -> int | None:
     ValueError
         For what is no path.
     """
-    require(isinstance(path, str | os.PathLike), "the path to write to", path, "give a text or a Path")
+    good = isinstance(path, str | os.PathLike) and "\0" not in os.fsdecode(path)
+    require(good, "the path to write to", path, "give a text or a Path, without a NUL")
     target = Path(os.path.realpath(path))
     if not target.parent.is_dir():
         raise _named(

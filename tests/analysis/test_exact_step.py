@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from typing import Any
 
@@ -16,6 +17,7 @@ from bearingdyn.analysis.exact_step import phi
 from bearingdyn.analysis.march import March
 from bearingdyn.application import Application
 from bearingdyn.material import Payne
+from bearingdyn.notice import GrowingStep
 from bearingdyn.parts import RigidBody
 from bearingdyn.results import open_result
 from bearingdyn.system import LoadTerm, System, assemble
@@ -143,6 +145,31 @@ def test_order_of_the_step(state: Equilibrium, capsys: pytest.CaptureFixture[str
     assert orders.min() > 2.5
 
 
+def test_order_where_balls_close_on_their_dampers():
+    """A damper's force jumps as it closes: seen at the steps' ends alone, it would leave the first order."""
+    app = motor()
+    app.load("shaft.end", (0, -600.0, 0, 0, 0, 0))
+    state = equilibrium(app)
+
+    def march(k: int) -> np.ndarray:
+        record = [*RECORD[:3], "left.loaded"]
+        return exact(state, dt=8e-6 / k, steps=3200 * k, decimate=k, filter=False, record=record)[
+            "record"
+        ].values
+
+    fine = march(32)
+    assert np.count_nonzero(np.diff(fine[:, 3]) > 0) >= 5
+    fine = fine[:, :3]
+    error = [
+        np.sqrt(np.mean((march(k)[:, :3] - fine) ** 2, axis=0)) / np.std(fine, axis=0) for k in (1, 2, 4)
+    ]
+    orders = np.log2(np.array(error[:-1]) / np.array(error[1:]))
+    print(np.round(orders, 2).tolist(), np.max(error, axis=1))
+    # the parabola's third, which single closings scatter about
+    assert orders.min() > 1.5
+    assert np.max(error[-1]) < 5e-4
+
+
 def test_a_mass_that_balls_alone_hold_grows_by_the_fourth_power_of_the_step():
     """Nothing damps it: (ωΔt)⁴/48 a step, from the parabola's own error, as the docstring says."""
     app = Application()
@@ -167,6 +194,43 @@ def test_a_mass_that_balls_alone_hold_grows_by_the_fourth_power_of_the_step():
         rate = math.log(np.abs(x[-part:]).max() / np.abs(x[:part]).max()) / (steps - part)
         # the next power of the step
         assert rate == pytest.approx(turn**4 / 48, rel=0.15)
+
+
+@pytest.mark.parametrize(("times", "grows"), [(0.85, False), (1.2, True)])
+def test_a_step_that_makes_a_motion_grow_is_warned_of_and_one_that_does_not_is_not(times, grows):
+    """At Δt³ = 48 δ/ω⁴ damping and gain balance: by the formula, and as the march itself has it."""
+    mass, damping = 0.1, 1.5
+    app = Application()
+    app.add("body", RigidBody(mass, (0.01,) * 3))
+    still_axes = (1e2, 1e2, 1e2, 1e4, 1e4, 1e4)
+    app.ground("body.centre", stiffness=still_axes, damping=(10.0, 1e2, 1e3, 1e2, 1e2, 1e2))
+    ball = replace(BEARING, damping=damping, clearance=-20e-6)
+    app.bearing("left", ball, inner="body.centre", outer="ground")
+    still = equilibrium(app)
+    w = math.sqrt(still.bearings["left"].K[0, 0] / mass)
+    decay = 0.5 * (still.bearings["left"].C[0, 0] + 10.0) / mass
+    dt = times * (48 * decay / w**4) ** (1 / 3)
+    assert w * dt < 0.7  # where the next power of the step is small
+    swing = {
+        "dt": dt,
+        "speed": 0.0,
+        "record": ["body.centre.x"],
+        "initial": {"body.centre": [1e-9] + 5 * [0]},
+    }
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", GrowingStep)
+        x = exact(still, steps=4000, **swing)["record"].values[:, 0]
+    x = x - still.x @ still.system.row("body.centre.x")
+    assert (np.abs(x[-500:]).max() > np.abs(x[:500]).max()) == grows
+    found = [str(w.message) for w in told if w.category is GrowingStep]
+    assert len(found) == grows
+    if grows:
+        assert f"{w / (2 * math.pi):.4g}"[:3] in found[0]
+        named = float(found[0].split("march with dt=")[1].split()[0])
+        assert named == pytest.approx(dt / times, rel=0.1)
+    with warnings.catch_warnings():  # a march of a few steps does not grow by 1 %
+        warnings.simplefilter("error", GrowingStep)
+        exact(still, steps=1, **swing)
 
 
 def test_newmark_tends_to_the_exact_march(state: Equilibrium):

@@ -121,6 +121,40 @@ def test_low_frequency_is_the_viscous_law(axial: Equilibrium) -> None:
     np.testing.assert_allclose(C, axial.bearings["ball"].C, rtol=1e-12, atol=1e-12 * np.abs(C).max())
 
 
+def test_the_rings_give_lies_in_series_with_the_contacts(axial: Equilibrium) -> None:
+    """1/k = 1/k̂(ω) + give of every ball, and of the kernel's tangents the damper's share in it."""
+    ball = axial.bearings["ball"].balls
+    assert ball is not None
+    dry = 1.5 * ball.kappa * np.sqrt((ball.loads / ball.kappa) ** (2 / 3))
+    give = 0.3 / float(dry.mean())  # of a soft ring: three tenths of the contact's own
+    system = replace(axial.system, bearings=(replace(axial.system.bearings[0], give=give),))
+    soft = equilibrium(system)
+    balls, state = soft.bearings["ball"].balls, soft.bearings["ball"]
+    assert balls is not None
+    # at low frequency the kernel's law, and the stiffness K0 of a slow motion
+    slow = np.array([2 * np.pi])
+    k = balls.stiffness(slow)[0]
+    own = 1.5 * balls.kappa * np.sqrt((balls.loads / balls.kappa) ** (2 / 3))
+    c = balls.law.at((balls.loads / balls.kappa) ** (2 / 3)) / (1 + give * own) ** 2
+    C = (balls.across.T * c) @ balls.across
+    # nodes of the damping are 1/64 apart
+    np.testing.assert_allclose(C, state.C, rtol=5e-3, atol=1e-6 * np.abs(C).max())
+    assert (
+        np.abs(k.imag) < 0.04 * slow * c
+    ).all()  # K0 is softer than dry, and the damper's share rises with it
+    # and at any frequency the series of both
+    f = np.geomspace(10, 30e3, 20)
+    omega = 2 * np.pi * f
+    free = replace(balls, give=0.0)
+    contact = (
+        free.stiffness(omega)
+        + own
+        + 1j * omega[:, None] * balls.law.at((balls.loads / balls.kappa) ** (2 / 3))
+    )
+    whole = balls.stiffness(omega) + own / (1 + give * own) + 1j * omega[:, None] * c
+    np.testing.assert_allclose(whole, 1 / (1 / contact + give), rtol=1e-12)
+
+
 def test_balls_below_the_table_keep_the_damping_of_their_law(axial: Equilibrium) -> None:
     """Loads fade and the law with them; the answer, held at the table's end, is brought down to the law."""
     balls = axial.bearings["ball"].balls
@@ -271,3 +305,26 @@ def test_a_damping_by_hand_has_no_answer_by_frequency() -> None:
     with pytest.raises(ValueError, match=r"damping\.answer is 3"):
         FilmDamping(1e-6, np.linspace(0, 1, 65), 3)  # type: ignore[arg-type]
     assert FilmDamping(1e-6, np.linspace(0, 1, 65)).answer is None
+
+
+@pytest.mark.parametrize("frequency", [2000.0, 9000.0])
+def test_a_steady_motion_takes_films_by_the_frequency_of_each_line(frequency: float) -> None:
+    """A small force along the axis, where all balls carry alike: the harmonic response, and its power."""
+    ball = loaded_axially().system.bearings[0].bearing
+    app = Application()
+    app.add("mass", RigidBody(MASS, (1e-5, 1e-5, 1e-5)))
+    app.ground("mass.centre", stiffness=(1e3, 1e3, 0, 1e3, 1e3, 1e3))
+    app.bearing("ball", ball, inner="mass.centre", outer="ground")
+    app.load("mass.centre", (0, 0, LOAD, 0, 0, 0))
+    app.load("mass.centre", (0, 0, 0.1, 0, 0, 0), frequency=frequency)  # 3e-4 of the load: linear
+    state, places = equilibrium(app), ["mass.centre.z", "ball.force.z"]
+    for contacts in ("film", "viscous"):
+        found = bd.steady_state(state, speed=OMEGA, record=places, contacts=contacts, harmonics=3)
+        line = int(np.abs(np.abs(found["frequency"].values) - frequency).argmin())
+        own = np.abs(found["amplitude"].values[line])
+        wanted = frequency_response(state, [frequency], ["mass.centre.z"], places, contacts=contacts)
+        # a ball under 3e-4 more or less of its load bends its law by a part in ten thousand
+        np.testing.assert_allclose(own, 0.1 * np.abs(wanted["response"].values[0, :, 0]), rtol=2e-4)
+        assert abs(found.attrs["energy_balance"]) < 1e-6
+    with pytest.raises(ValueError, match="contacts"):
+        bd.steady_state(state, speed=OMEGA, record=places, contacts="oil")  # type: ignore[arg-type]

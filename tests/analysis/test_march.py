@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ import bearingdyn as bd
 from bearingdyn import core
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.march_state import system_hash
+from bearingdyn.notice import NothingPushes
 from rotors import motor, oscillator
 
 ARGUMENTS = {"speed": 300.0, "dt": 1e-5, "steps": 50, "record": ["shaft.end.y"]}
@@ -268,3 +270,32 @@ def test_an_impossible_number_in_a_state_is_named(
 def test_a_result_without_a_state_is_named(state: bd.Equilibrium, first: xarray.Dataset) -> None:
     with pytest.raises(ValueError, match=r"resume holds \['record'\] and no state"):
         bd.transient(state, resume=first.drop_vars("state"), **ARGUMENTS)
+
+
+def test_a_march_that_nothing_pushes_says_so():
+    """A rotor in clearance without a load stays; with weight, or started displaced, it moves."""
+    app = bd.Application()
+    app.add("rotor", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+    app.ground("rotor.centre", stiffness=(0, 0, 1e6, 1e3, 1e3, 0), damping=(10, 10, 10, 1, 1, 0))
+    ball = bd.catalogue.bearing("6205", clearance=1e-5)
+    app.bearing("b", ball, inner="rotor.centre", outer="ground")
+    course = {"speed": 100.0, "dt": 1e-5, "steps": 20}
+    with pytest.warns(NothingPushes, match="no ball is pressed, and no load acts"):
+        still = bd.transient(app, **course, record=["rotor.centre.y"])
+    assert not still["record"].values.any()
+    with pytest.warns(NothingPushes):
+        bd.dissipation(app, **course)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", NothingPushes)
+        displaced = {"rotor.centre": [0, 1e-7, 0, 0, 0, 0]}
+        run = bd.transient(app, **course, record=["rotor.centre.y"], initial=displaced)
+        assert run["record"].values.any()
+        app.gravity((0, -9.81, 0))
+        assert bd.transient(app, **course, record=["rotor.centre.y"])["record"].values.any()
+
+
+@pytest.mark.parametrize("plain", [True, False])
+def test_a_record_that_would_keep_no_sample_is_refused(plain: bool):
+    app = oscillator()
+    with pytest.raises(ValueError, match="decimate is 21; of 20 steps no sample would be kept"):
+        bd.transient(app, speed=0.0, dt=1e-5, steps=20, decimate=21, filter=plain, record=["body.centre.y"])

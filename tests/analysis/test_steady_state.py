@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy
+import xarray
 
 import rotors
 from bearingdyn import core
@@ -26,9 +27,10 @@ from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.steady import balance
 from bearingdyn.application import Application
-from bearingdyn.bearing import BallBearing, FilmDamping
+from bearingdyn.bearing import BallBearing, FilmDamping, Waviness
 from bearingdyn.material import FractionalZener, Maxwell, Payne, PowerLaw
 from bearingdyn.parts import Layer, RigidBody, Section, Shaft
+from bearingdyn.results import open_result, save
 from bearingdyn.system import System, assemble
 
 RECORD = ["shaft.end.y", "block.centre.x", "shaft.end.y.velocity"]
@@ -176,6 +178,35 @@ def test_lines_of_unbalance_are_those_of_a_march():
         size = np.abs(found["amplitude"].sel(channel=channel).values)
         size[0] = 0.0
         agree(found, run, channel, np.argsort(-size)[:100], 5e-4)
+
+
+def test_lines_of_waviness_and_unbalance_are_those_of_a_march_that_begins_in_them(monkeypatch):
+    wavy = replace(rotors.BEARING, waviness=[Waviness("inner", 5, 2e-7), Waviness("outer", 9, 3e-7)])
+    monkeypatch.setattr(rotors, "BEARING", wavy)
+    app = loaded()
+    app.unbalance("shaft.end", 2e-5)
+    eq = equilibrium(app)
+    found = steady_state(eq, speed=SPEED, record=RECORD, harmonics=12)
+    T = 2 * np.pi / (8 * rotors.BEARING.cage_ratio * SPEED)
+    run = transient(
+        eq,
+        speed=SPEED,
+        dt=T / 512,
+        steps=120 * 512,
+        decimate=8,
+        filter=False,
+        record=RECORD,
+        initial=found,
+        method="exact",
+    )
+    for channel in RECORD[:2]:
+        size = np.abs(found["amplitude"].sel(channel=channel).values)
+        size[0] = 0.0
+        lines = np.argsort(-size)[:80]
+        marched_lines = fitted(run, channel, found["frequency"].values[lines])
+        off = np.abs(found["amplitude"].sel(channel=channel).values[lines] - marched_lines)[:20]
+        # the issue's 1e-3 of each, but for what harmonics above the twelfth would add
+        assert (off <= 1e-3 * size[lines[:20]] + 1e-5 * size.max()).all()
 
 
 def marched(eq, found, passages: int, per: int) -> np.ndarray:
@@ -339,6 +370,14 @@ def test_more_harmonics_add_what_the_estimate_says():
     added = np.abs(many["amplitude"].values[11:23, 0])
     # an estimate: what those lines would answer to each other is left out
     assert 0.5 < few["cut"].values[0] / np.sqrt((added**2).sum()) < 2.0
+
+
+def test_a_saved_result_is_the_same_when_opened(tmp_path):
+    """It has parts of the machine and complex numbers, whose two parts are an axis of the file."""
+    found = steady_state(loaded(), speed=SPEED, record=RECORD[:1], stability=False)
+    save(found, tmp_path / "steady.nc")
+    xarray.testing.assert_identical(open_result(tmp_path / "steady.nc")["motion"], found["motion"])
+    assert open_result(tmp_path / "steady.nc")["power"].dims == ("part",)
 
 
 def test_a_start_and_a_pickled_result_give_the_same_motion():

@@ -216,3 +216,33 @@ def test_an_imported_body_knows_its_bore():
     with pytest.raises(ValueError, match=r"Ø48 mm.*Ø60 mm: gap of 6 mm"):
         join(layer(0.02, 0.024), "outer", bore, "bore")
     join(layer(0.026, 0.03), "outer", bore, "bore")
+
+
+# OWN has races of Ø31.1 and Ø46.98 mm, balls of 7.94 mm, and no known bore, outside or width
+UNKNOWN_RINGS = [
+    ("rings exchanged", ring(0.0235, 0.026, 0.015), ring(0.0125, 0.0155, 0.015), "the inner ring.*no room"),
+    ("inner beyond race", ring(0.025, 0.027, 0.015), None, "Ø50 mm.*the inner ring.*Ø31.1 mm.*no room"),
+    ("outer within race", shaft((0.1, 0.025)), ring(0.005, 0.006, 0.015), "Ø12 mm.*the outer ring.*no room"),
+    ("narrower than balls", shaft((0.1, 0.025)), ring(0.0245, 0.026, 0.002), "2 mm of it lie on b.centre"),
+]
+
+
+@pytest.mark.parametrize(
+    ("inner", "outer", "found"), [c[1:] for c in UNKNOWN_RINGS], ids=[c[0] for c in UNKNOWN_RINGS]
+)
+def test_hollow_bodies_about_a_bearing_of_unknown_rings(inner, outer, found):
+    """A hollow body may be the ring itself or carry it: either way it lies where the balls do not."""
+    with pytest.raises(ValueError, match=f"(?s){found}.*fits=False"):
+        hang(OWN, inner, outer)
+    hang(OWN, inner, outer, fits=False)
+
+
+def test_a_ring_many_balls_thick_is_doubted():
+    """From a race of Ø46.98 mm to a bore of Ø200 mm: 9.6 balls. Rings, or what carries them, are silent."""
+    with pytest.warns(FitWarning, match=r"76.5\d* mm thick, 9.6\d ball diameters"):
+        hang(OWN, shaft((0.1, 0.025)), ring(0.1, 0.11, 0.015))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        hang(OWN, shaft((0.1, 0.025)), ring(0.0245, 0.026, 0.015))
+        hang(OWN, ring(0.0125, 0.0165, 0.015), ring(0.0228, 0.026, 0.015))
+        hang(OWN, shaft((0.1, 0.008)), ring(0.026, 0.03, 0.015))

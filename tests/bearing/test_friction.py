@@ -59,6 +59,18 @@ def test_moment_is_near_the_rule_of_thumb():
         assert 0.5 < M / (0.0015 * 1400.0 * 0.0125) < 3
 
 
+@pytest.mark.parametrize("model", ["palmgren", "four-term"])
+@pytest.mark.parametrize(("degrees", "least", "most"), [(0.0, 0.0010, 0.0015), (40.0, 0.0012, 0.0020)])
+def test_coefficient_is_near_what_a_maker_prints(model, degrees, least, most):
+    """Koyo's μ of M = μPd/2 (usual load, full film); within a half of its range on either side.
+
+    The only check there is on the 40° constants of "four-term", which no table confirms.
+    """
+    given = {**POINT, "radial": 1400.0, "viscosity": 20e-6, "C0": 7850.0 if degrees == 0 else 10200.0}
+    found = friction(model, **given, contact_angle=math.radians(degrees)).moment / (1400.0 * 0.0125)
+    assert least / 1.5 < found < 1.5 * most
+
+
 def test_load_speed_seals_and_drag_add():
     base = friction("four-term", **POINT, series="62")
     assert friction("four-term", **{**POINT, "radial": 3000.0}, series="62").moment > base.moment

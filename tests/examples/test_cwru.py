@@ -23,20 +23,29 @@ def found():
 def test_lines_stand_where_they_are_measured(found):
     """Of both races, within .5 %: the line of the work's list. The fan end's thrust sets both."""
     for lines in found.values():
-        assert max(abs(frequency) for frequency, _ in lines.values()) < 5e-3
+        assert max(abs(frequency) for frequency, _, _ in lines.values()) < 5e-3
 
 
 @pytest.mark.slow
 def test_levels_of_the_record_that_was_fitted(found):
-    assert max(abs(level) for _, level in found["outer"].values()) < 3.0
+    assert max(abs(level) for _, level, _ in found["outer"].values()) < 3.0
 
 
 @pytest.mark.slow
-def test_levels_of_the_record_that_was_not(found):
-    """The work's list asks for 3 dB; what is reached is 6 for the line, 8 for its sidebands."""
-    lines = found["inner"]
-    assert abs(lines["1"][1]) < 6.0
-    assert max(abs(lines[name][1]) for name in ("1-2", "1-1", "1+1", "1+2")) < 8.0
+def test_sidebands_of_the_record_that_was_not_fitted(found):
+    """Of the force, which knows no housing, within the 3 dB of the line that are asked.
+
+    Found: -0.4, -0.5, -2.5, +1.0 dB. The sensor's are +2.3, +0.7, -3.0, -0.2 in 4 s: half a decibel is left
+    for the length of the record.
+    """
+    assert max(abs(found["force"][name][2]) for name in cwru.SIDEBANDS) < 3.0
+    assert max(abs(found["inner"][name][2]) for name in (*cwru.SIDEBANDS, "2")) < 3.5
+
+
+@pytest.mark.slow
+def test_level_of_the_record_that_was_not_fitted(found):
+    """NOT within 3 dB: +5.4, in another bearing with another path to the sensor (the example says why)."""
+    assert 3.0 < found["inner"]["1"][1] < 6.5
 
 
 @pytest.mark.slow
@@ -47,7 +56,7 @@ def test_made_records_are_known_again(capsys):
     assert "inner race, predicted" in capsys.readouterr().out
     for lines in found.values():
         # a second resolves half a hertz of the lowest line
-        assert max(abs(frequency) for frequency, _ in lines.values()) < 5e-3
+        assert max(abs(frequency) for frequency, _, _ in lines.values()) < 5e-3
     assert abs(found["inner"]["1"][1]) < 3.0
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import warnings
 from pathlib import Path
@@ -99,17 +100,18 @@ def test_the_motor_of_notebook_3_hums_at_multiples_of_the_ball_pass(monkeypatch:
 
 @pytest.mark.slow
 def test_the_designs_of_notebook_4_sag_by_what_their_layers_give(monkeypatch: pytest.MonkeyPatch) -> None:
+    import bearingdyn as bd
+
     found = run("04", monkeypatch)
-    study, table = found["layer_study"], found["found"]
+    table = found["found"]
     assert (table["error"] == "").all()
-    omega = found["motor"].ONE_KHZ
-    material = study.rubber().with_relaxation(0.3, omega)
+    material = found["rubber"].with_relaxation(0.3, 2e3 * np.pi)
     cases = [
         table.isel(case=(table["thickness"].values == t) & (table["loss_factor"].values == 0.3))
         for t in (0.004, 0.006)
     ]
     give = [
-        1 / found["motor"].Design("", t, 0.0255, material).layer.stiffness(after=300.0)[1, 1].real
+        1 / bd.Layer(0.031, 0.031 + t, 0.0255, material).stiffness(after=300.0)[1, 1].real
         for t in (0.004, 0.006)
     ]
     # from one design to the next only the layers change, two in parallel, half the load each; they also tilt
@@ -134,6 +136,63 @@ def test_the_envelope_of_notebook_5_shows_the_published_ball_pass_frequency(
         lines = found["envelopes"][label]["amplitude"].sel(frequency=slice(80.0, 180.0))
         assert float(lines.idxmax()) == pytest.approx(107.36, abs=2.0)  # published; the lines are 2 Hz apart
     assert found["race"] == "BPFO"
+
+
+def test_a_notebook_can_be_copied_out_and_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing of the project is on its path; the shipped rubber serves where the measurement is not."""
+    for path in NOTEBOOKS:
+        text = path.read_text(encoding="utf-8")
+        assert "sys.path" not in text, path.name
+        assert not re.search(r"^(import|from) (motor|layer_study|fault_bench)\b", text, re.MULTILINE), (
+            path.name
+        )
+    monkeypatch.chdir(tmp_path)
+    code = NOTEBOOKS[0].read_text(encoding="utf-8")
+    names: dict[str, Any] = {"__name__": "notebook"}
+    exec(compile(code, "copied.py", "exec"), names)
+    assert not names["measured"].exists()
+    assert names["rubber"].fit.storage_rms < 0.05
+
+
+def test_the_machines_of_the_notebooks_are_those_of_the_examples(monkeypatch: pytest.MonkeyPatch) -> None:
+    import bearingdyn as bd
+    from bearingdyn.bearing import spall
+    from bearingdyn.system import assemble
+
+    monkeypatch.syspath_prepend(str(ROOT / "examples"))
+    import fault_bench
+    import motor
+
+    design = motor.Design("layer", 0.008, 0.0255, bd.examples.rubber())
+    for ours, theirs in (
+        (bd.examples.paper_motor(), motor.motor(motor.Design("no layer"))),
+        (bd.examples.paper_motor(design.layer, 10e3), motor.motor(design, motor.RADIAL)),
+        (bd.examples.fault_bench(), fault_bench.bench()),
+        (
+            bd.examples.fault_bench(defects=[spall("outer", -np.pi / 2, length=0.6e-3, depth=4e-6)]),
+            fault_bench.bench(None, [fault_bench.SPALL]),
+        ),
+    ):
+        assert assemble(ours).inputs == assemble(theirs).inputs
+
+
+@pytest.mark.parametrize(
+    ("machine", "wrong", "said"),
+    [
+        ("paper_motor", {"layer": 3}, "layer is 3"),
+        ("paper_motor", {"radial": float("nan")}, "not finite|finite"),
+        ("fault_bench", {"layer": "rubber"}, "layer is 'rubber'"),
+        ("fault_bench", {"defects": 3}, "defects is 3"),
+        ("fault_bench", {"defects": [3]}, "defects"),
+    ],
+)
+def test_the_machines_of_the_notebooks_name_what_is_wrong(
+    machine: str, wrong: dict[str, Any], said: str
+) -> None:
+    import bearingdyn as bd
+
+    with pytest.raises(ValueError, match=said):
+        getattr(bd.examples, machine)(**wrong)
 
 
 def test_the_motor_stands_on_the_shipped_rubber_too(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,7 @@ from bearingdyn.notice import BeyondData
 matplotlib.use("Agg")
 
 ROOT = Path(__file__).resolve().parents[2]
-GUIDE = sorted((ROOT / "docs" / "guide").glob("*.md"))
+GUIDE = [*sorted((ROOT / "docs" / "guide").glob("*.md")), ROOT / "docs" / "gallery.md"]
 BLOCK = re.compile(r"^```(python|text)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 

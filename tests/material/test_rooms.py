@@ -15,11 +15,12 @@ FOUND = re.compile(r"^from bearingdyn\.material\.(\w+)(\.\w+)? import (.+?)$", r
 
 # A room may import those of earlier rows, by their doors.
 ORDER = (
-    ("amplitude", "isotherms", "low_end", "shear_from_tension", "spread"),
+    ("log_parameters",),
+    ("amplitude", "bulk_relaxation", "isotherms", "low_end", "shear_from_tension", "spread"),
     ("beyond_data", "creep", "dma", "elastic", "fit_report", "relaxation_spectrum", "retuning", "shift_laws"),
     ("maxwell", "relaxation_data"),
-    ("reading", "superposition"),
-    ("identification",),
+    ("reading", "superposition", "volume"),
+    ("doubts", "identification"),
     ("complex_moduli", "export"),
 )
 ROW = {room: row for row, rooms in enumerate(ORDER) for room in rooms}

@@ -122,6 +122,12 @@ def test_a_cut_groove_takes_its_mass_out() -> None:
     # parabolas for arcs: fourth order, some 1e-5 of the cut
     assert ring.body.mass == pytest.approx(STEEL.density * (whole - cut), rel=1e-5)
     assert ring.depth == pytest.approx(R - d)
+    # the rubber around it is a plain tube: the groove ends in the steel
+    around = LAYER.r_outer**2 - LAYER.r_inner**2
+    rubber = RUBBER.density * math.pi * around * LAYER.width
+    assert replace(ring, layer=LAYER).body.mass == pytest.approx(
+        STEEL.density * (whole - cut) + rubber, rel=1e-5
+    )
 
 
 @pytest.mark.parametrize("frequency", [300.0, 2e3, 5e3])

@@ -11,7 +11,7 @@ import pytest
 import bearingdyn as bd
 from bearingdyn.bearing import LooseFit
 from bearingdyn.bearing.raceway_series import RacewaySeries
-from bearingdyn.parts import FlexibleBearing, FlexibleRing, Layer, Revolved, RigidBody
+from bearingdyn.parts import FlexibleBearing, FlexibleRing, Layer, Revolved, RigidBody, RingBed
 from flexible_rings import (
     B6305,
     CUSHIONED,
@@ -26,6 +26,8 @@ from flexible_rings import (
     hung,
     loose,
 )
+
+WAYS = ("radial", "axial")
 
 
 def test_a_stiff_ring_drops_through_the_clearance_of_its_bore() -> None:
@@ -212,3 +214,33 @@ def test_bad_input_is_named() -> None:
         RacewaySeries(((1, 0, 0), (0, 1, 0)))
     with pytest.raises(ValueError, match="grooves"):
         Revolved(RING.body.regions, {"raceway": RING.body.interfaces["outer"]}, grooves=RING.body.grooves)
+
+
+def test_channels_of_a_raceway() -> None:
+    """Against the bearing by itself at rest, and against each other in a march."""
+    ring = replace(RING, outside=RingBed(1e11))
+    eq, alone = bd.equilibrium(hung(ring)), FlexibleBearing(B6305, ring)
+    q = eq.displacement("rotor.centre")
+    degrees = [-90, 0, 45]
+    names = [f"ring.raceway.{way}@{d}" for d in degrees for way in WAYS]
+    orders = [
+        f"ring.raceway.radial-{wave}{n}" for n in range(9) for wave in (("cos", "sin") if n else ("cos",))
+    ]
+    rate = "ring.raceway.radial@-90.velocity"
+    run = bd.transient(eq, speed=300.0, dt=5e-6, steps=50, record=[*names, *orders, rate])["record"]
+    got = [[float(eq.system.row(f"ring.raceway.{way}@{d}") @ eq.x) for way in WAYS] for d in degrees]
+    wanted = alone.race(q, np.radians(degrees))
+    # both are minima of one energy
+    np.testing.assert_allclose(got, wanted, rtol=0, atol=1e-6 * np.abs(wanted).max())
+    values = run.sel(channel=orders).values
+    psi = math.radians(45)
+    shares = [f(n * psi) for n in range(9) for f in ((math.cos, math.sin) if n else (math.cos,))]
+    np.testing.assert_allclose(values @ shares, run.sel(channel="ring.raceway.radial@45").values, rtol=1e-9)
+    assert run["unit"].sel(channel=rate) == "m/s"
+
+
+@pytest.mark.parametrize("name", ["x", "radial", "radial-sin0", "radial-cos9", "axial@12.5", "radial@"])
+def test_wrong_channels_of_a_raceway_are_named(name: str) -> None:
+    eq = bd.equilibrium(hung(RING))
+    with pytest.raises(ValueError, match=r"ring\.raceway is a raceway; it offers radial-cos0 to radial-sin8"):
+        bd.transient(eq, speed=0.0, dt=5e-6, steps=1, record=[f"ring.raceway.{name}"])

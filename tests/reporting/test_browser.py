@@ -42,7 +42,7 @@ def visit(chromium: Any, file: Path, width: int, scheme: str) -> tuple[Any, list
     view.on("pageerror", lambda error: said.append(str(error)))
     view.on("request", lambda request: asked.append(request.url))
     view.goto(file.as_uri())
-    view.wait_for_function("document.documentElement.dataset.drawn === 'yes'")
+    view.wait_for_selector("html[data-drawn=yes]", state="attached")
     return view, said, [url for url in asked if not url.startswith(("file:", "data:"))]
 
 
@@ -104,6 +104,9 @@ def test_a_curve_is_read_off_and_zoomed(chromium: Any, page_file: Path) -> None:
 
 def test_a_sound_can_be_played(chromium: Any, page_file: Path) -> None:
     view, _, _ = visit(chromium, page_file, 1300, "light")
-    view.wait_for_function("document.querySelector('audio').readyState >= 1")
-    assert view.evaluate("document.querySelector('audio').duration") == pytest.approx(0.5, abs=1e-3)
+    lasts = view.evaluate(
+        "new Promise(done => { const a = document.querySelector('audio');"
+        " if (a.readyState) done(a.duration); else a.onloadedmetadata = () => done(a.duration); })"
+    )
+    assert lasts == pytest.approx(0.5, abs=1e-3)
     view.close()

@@ -160,3 +160,10 @@ def test_an_interrupted_write_leaves_nothing_beside_the_old_file(tmp_path: Path,
         write_whole(path, b"new")
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_results_within_results_are_named_by_both(tmp_path: Path) -> None:
+    bd.save({"response/soft": small(1.0), "response/hard": small(2.0), "a": small()}, tmp_path / "r.nc")
+    assert groups(tmp_path / "r.nc") == ["a", "response/hard", "response/soft"]
+    for name in groups(tmp_path / "r.nc"):
+        assert bd.open_result(tmp_path / "r.nc", name).sizes == small().sizes

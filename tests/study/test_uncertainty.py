@@ -231,6 +231,17 @@ def test_band_about_an_equilibrium_counts_the_equilibrium_too(rubber):
     assert frf["upper"].values.item() == pytest.approx(high, rel=1e-3)
 
 
+def test_named_doubts_are_drawn_in_a_study():
+    rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
+    unknown = bd.doubts(rubber, K=(1e9, 3e9), specimen=(1.0, 1.034))
+    drawn = [case["rubber"] for case in study.draw(256, {"rubber": study.Fitted(unknown), "width": 0.016})]
+    K, G0 = np.array([(m.K, m.G0) for m in drawn]).T
+    # intervals are uniform; 256 points of a Sobol sequence meet their moments to 1 %
+    assert [K.mean(), K.std()] == pytest.approx([2e9, 2e9 / math.sqrt(12)], rel=0.01)
+    assert [G0.min(), G0.max()] == pytest.approx([1e6, 1.034e6], rel=2e-4)
+    assert abs(np.corrcoef(K, G0)[0, 1]) < 0.02
+
+
 def test_band_of_a_function_covers_what_it_says():
     def line(case):
         return case["a"] * np.array([1.0, 2.0]) + 0j

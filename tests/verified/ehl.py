@@ -11,7 +11,7 @@ import numpy as np
 
 from bearingdyn.bearing import BallBearing, Lubricant, OilSupply, Walther, ehl, lubricated
 from bearingdyn.bearing.ehl.dimensionless_groups import Groups, scales
-from bearingdyn.bearing.film_thickness import dimensionless_film
+from bearingdyn.bearing.film_thickness import YIELDING, dimensionless_film
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.material import Elastic
 from verified.row import INDEPENDENT, Row, rows
@@ -88,7 +88,7 @@ def closed_form(least: float = 3.0) -> tuple[float, float, int]:
         if M >= least * ehl.turning_load(D):
             film = dimensionless_film(M, L, D)
             rho = float(ehl.relative_density(Groups(M, L, D).piezo / 2.2e-8))
-            corrected.append(abs(film / rho / Hc - 1))
+            corrected.append(abs(film / rho / YIELDING / Hc - 1))
             bare.append(abs(film / Hc - 1))
     return max(corrected), max(bare), len(bare)
 

@@ -59,3 +59,26 @@ def annulus_compliance(n: int, E: float, nu: float, a: float, b: float) -> float
     ratio = b / a
     c = np.linalg.solve([radial(1.0), shear(1.0), radial(ratio), shear(ratio)], [-1.0, 0.0, 0.0, 0.0])
     return float(np.dot([kappa - n - 1, kappa + n - 1, -n, n], c)) * a / (2 * mu)
+
+
+def annulus_on_bed(n: int, E: float, nu: float, a: float, b: float, bed: float) -> float:
+    """u_r at r = b, m, for the traction cos nφ of 1 Pa there, plane stress, on radial springs at r = a.
+
+    bed in N/m³. Michell's solution as in annulus_compliance; n ≥ 2.
+    """
+    mu, kappa = E / (2 * (1 + nu)), (3 - nu) / (1 + nu)
+
+    def rows(r: float) -> tuple[list[float], list[float], list[float]]:
+        up, down = r**n, r**-n
+        stress = [-(n + 1) * (n - 2) * up, -(n + 2) * (n - 1) * down]
+        stress += [-n * (n - 1) * up / r**2, -n * (n + 1) * down / r**2]
+        shear = [n * (n + 1) * up, -n * (n - 1) * down, n * (n - 1) * up / r**2, -n * (n + 1) * down / r**2]
+        move = [(kappa - n - 1) * up * r, (kappa + n - 1) * down * r, -n * up / r, n * down / r]
+        return stress, shear, move
+
+    # lengths in units of b
+    stress, shear, move = rows(a / b)
+    held = np.array(stress) - bed * b / (2 * mu) * np.array(move)
+    outer_stress, outer_shear, outer_move = rows(1.0)
+    c = np.linalg.solve([held, shear, outer_stress, outer_shear], [0.0, 0.0, 1.0, 0.0])
+    return float(np.dot(outer_move, c)) * b / (2 * mu)

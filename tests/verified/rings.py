@@ -9,8 +9,8 @@ import scipy.linalg
 
 from bearingdyn.bearing import BallBearing
 from bearingdyn.material import STEEL
-from bearingdyn.parts import Cylinder, FlexibleBearing, FlexibleRing, Patch, Revolved, quadrilaterals
-from verified.ring_theory import annulus_compliance, thick_ring, thin_ring
+from bearingdyn.parts import Cylinder, FlexibleBearing, FlexibleRing, Patch, Revolved, RingBed, quadrilaterals
+from verified.ring_theory import annulus_compliance, annulus_on_bed, thick_ring, thin_ring
 from verified.row import INDEPENDENT, MM, Row, as_printed, rows, steel, unit_rubber
 
 
@@ -54,6 +54,31 @@ def pinched_rings() -> list[Row]:
                 float(row @ flexible @ row),
                 2e-5,
                 "a section 1 mm wide is in plane stress to this",
+            )
+        )
+    element = FlexibleRing(
+        a,
+        b,
+        width,
+        arm=R,
+        groove=width,
+        outside=RingBed(1e13, axial=0.0),
+        refinement=2.0,
+        race="inner",
+    ).superelement()
+    raceway = element.raceways["raceway"]
+    rest = np.setdiff1d(np.arange(element.n), element.interfaces["inner"])
+    flexible = np.linalg.pinv(element.K[np.ix_(rest, rest)], rcond=1e-13)
+    for n in (2, 4, 8):
+        row = raceway.rows[raceway.series.index(0, n, 0), rest]
+        cases.append(
+            Row(
+                f"inner ring 40/60 mm on a bed of 1e13 N/m³, radial compliance of order {n} (m/N)",
+                "plane elasticity, Michell",
+                annulus_on_bed(n, STEEL.E, STEEL.nu, a, b, 1e13) / (width * b * math.pi),
+                float(row @ flexible @ row),
+                1e-4,
+                "plane stress, and a bed that holds the mean across the width",
             )
         )
     return cases

@@ -19,6 +19,7 @@ from bearingdyn.bearing import (
     Lubricant,
     Phase,
     Supply,
+    contamination_factor,
     equivalent_life,
     equivalent_load,
     equivalent_static_load,
@@ -29,6 +30,7 @@ from bearingdyn.bearing import (
     modified_life,
     nijenbanning_venner_moes,
     ratings_of,
+    reliability_factor,
 )
 from bearingdyn.bearing import catalogue as listed
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
@@ -182,12 +184,17 @@ def bearing_sheet(
     if oil is not None:
         instance("oil", oil, Lubricant, "give a bd.bearing.Lubricant")
     sigma = plausible("roughness", "roughness", nonnegative("roughness", roughness))
+    # what cannot be meant is refused, even where no oil asks for it
+    reliability_factor(reliability)
+    contamination_factor(contamination, 0.0)
     own = {"C": C, "C0": C0, "shoulder": shoulder}
     given = {
         key: named(key, value or {}, "give values by the names of bearings") for key, value in own.items()
     }
     if isinstance(temperature, Mapping):
         given["temperature"] = named("temperature", temperature, "give °C by the names of bearings")
+    for value in given.get("temperature", {"": temperature}).values():
+        plausible("oil temperature", "temperature", value, "it must be one finite temperature in °C")
     for key, values in given.items():
         for name, value in values.items():
             require(name in hung, key, name, meant(name, hung))

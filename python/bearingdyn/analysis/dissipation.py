@@ -103,6 +103,7 @@ def dissipation(
         memory=memory,
         least_steps=1,
     )
+    march.warn_if_still()
     losing = sinks(march.modal)
     channels = [sink.channels() for sink in losing]
     model = march.model([channel for own in channels for channel in own])

@@ -132,6 +132,11 @@ class Equilibrium:
                 across.append(wide)
         return (np.hstack(added), np.vstack(across)) if added else None
 
+    @property
+    def presses(self) -> bool:
+        """Whether any ball is pressed."""
+        return any((state.loads > PARTED).any() for state in self.bearings.values())
+
     def warn_of_unloaded(self) -> None:
         """Warn of every bearing without a pressed ball: about this state it has no stiffness."""
         for name, state in self.bearings.items():

@@ -142,9 +142,22 @@ class ExactModes:
             system, speed, squares, tuple(_modes_of(system, b, squares, speed) for b in system.blocks())
         )
 
-    def start(self, x: Array) -> Array:
-        """Numbers (k,) of a state at rest at x (n,), layers relaxed."""
-        return np.concatenate([np.zeros(0), *(_start(g, self.squares, x) for g in self.groups)])
+    def start(self, x: Array, v: Array, stress: Array) -> Array:
+        """Numbers (k,) of a state: x, v (n,), and what the branches bear, layer by layer."""
+        system, groups, at = self.system, self.groups, 0
+        # σ = stress/√(2G), by block
+        scaled: list[list[Array]] = [[np.zeros(0)] for _ in groups]
+        for layer in system.layers:
+            rank = layer.L.shape[1]
+            for G in layer.material.G:
+                for own, group in zip(scaled, groups, strict=True):
+                    if np.abs(layer.L[group.block]).max(initial=0.0) > 0:
+                        own.append(stress[at : at + rank] / math.sqrt(2 * G))
+                at += rank
+        starts = (
+            _start(g, self.squares, x, v, np.concatenate(own)) for g, own in zip(groups, scaled, strict=True)
+        )
+        return np.concatenate([np.zeros(0), *starts])
 
     def step(self, dt: float) -> dict[str, Array]:
         """What the core needs for steps of size dt, s: arrays by name, of bd_exact_data."""
@@ -283,12 +296,11 @@ def _motions(group: _Group, squares: Array) -> tuple[Complex, Complex, Complex]:
     return position, group.shapes[e : e + n], group.inverse[:, e : e + n]
 
 
-def _start(group: _Group, squares: Array, x: Array) -> Array:
-    """Numbers of a group at rest at x (n,)."""
+def _start(group: _Group, squares: Array, x: Array, v: Array, branches: Array) -> Array:
+    """Numbers of a group at x, v (n,), with its branches' σ."""
     held = squares[group.block] > 0
-    scaled = np.zeros(group.inverse.shape[1])
-    scaled[: held.sum()] = (np.sqrt(np.where(held, squares[group.block], 0.0)) * x[group.block])[held]
-    out = group.split(group.inverse @ scaled)
+    swung = (np.sqrt(np.where(held, squares[group.block], 0.0)) * x[group.block])[held]
+    out = group.split(group.inverse @ np.concatenate([swung, v[group.block], branches]))
     out[group.modes : group.modes + len(group.loose)] = x[group.loose]
     return out
 

@@ -31,12 +31,15 @@ class LubricatedBalls:
         Of the balls (b,), N.
     across
         Of each, how its approach follows from the bearing's coefficients (b, n), over √(number of angles).
+    give
+        Compliance of the ring at a ball of its own, m/N, in series with the contacts.
     """
 
     law: FilmDamping
     kappa: float
     loads: Array
     across: Array
+    give: float = 0.0
 
     __repr__ = short
 
@@ -57,11 +60,13 @@ class LubricatedBalls:
         """What the frequency adds to each ball's stiffness, N/m, (f, b), at omega (f,), rad/s.
 
         K(ω) + iω(c(ω) − c) − (3/2)κ√s. c(ω) is in proportion to the answer's, so that it is c at low
-        frequency where contact fades too.
+        frequency where contact fades too. With a give, of both in series, less what the tangents then have.
         """
         dry, c, share = self._low
         k = dry * self._answer.stiffness(omega)
-        return np.asarray(k.real - dry + 1j * (share * k.imag - omega[:, None] * c))
+        k = k.real + 1j * share * k.imag
+        soft = 1 + self.give * dry
+        return np.asarray(k / (1 + self.give * k) - dry / soft - 1j * omega[:, None] * c / soft**2)
 
 
 def lubricated_balls(term: BearingTerm, z: Array, loads: Array) -> LubricatedBalls | None:
@@ -74,7 +79,7 @@ def lubricated_balls(term: BearingTerm, z: Array, loads: Array) -> LubricatedBal
     phi = azimuth_terms(kernel, kernel.angle0)
     angle = contact_angles(kernel, z, kernel.angle0)[:, None]
     across = np.where(np.asarray(kernel.axial, dtype=bool), np.sin(angle), np.cos(angle)) * phi
-    return LubricatedBalls(law, kernel.kappa, loads[pressed], across[pressed])
+    return LubricatedBalls(law, kernel.kappa, loads[pressed], across[pressed], kernel.give)
 
 
 def averaged(found: Sequence[LubricatedBalls | None]) -> LubricatedBalls | None:
@@ -87,6 +92,7 @@ def averaged(found: Sequence[LubricatedBalls | None]) -> LubricatedBalls | None:
         balls[0].kappa,
         np.concatenate([one.loads for one in balls]),
         np.concatenate([one.across for one in balls]) / math.sqrt(len(balls)),
+        balls[0].give,
     )
 
 

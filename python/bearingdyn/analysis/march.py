@@ -16,15 +16,15 @@ from bearingdyn.analysis.core_channels import CoreChannel, channel_of
 from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
-from bearingdyn.analysis.march_state import check_state, moved, system_hash
+from bearingdyn.analysis.march_state import Beginning, check_state, moved, system_hash
 from bearingdyn.analysis.shaft_speed import drive_of
 from bearingdyn.analysis.softening import memory_of, softening_layers
-from bearingdyn.analysis.step_size import step_error, warn_if_coarse
+from bearingdyn.analysis.step_size import step_error, warn_if_coarse, warn_if_growing
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import instance, one_of, positive, require, whole
 from bearingdyn.magnitude import plausible
-from bearingdyn.notice import OpenSideWarning, warn
+from bearingdyn.notice import NothingPushes, OpenSideWarning, warn
 from bearingdyn.progress import part_of
 from bearingdyn.results import inputs_of
 from bearingdyn.system import System, system_of
@@ -65,6 +65,8 @@ class March:
         Time, s, over which layers that soften remember their amplitude; None where none does.
     method
         One of METHODS.
+    pressed
+        Whether a ball is pressed where the march starts, or that is not known.
     """
 
     system: System
@@ -78,6 +80,7 @@ class March:
     filter: bool = False
     memory: float | None = None
     method: str = "newmark"
+    pressed: bool = True
 
     @classmethod
     def of(
@@ -113,6 +116,10 @@ class March:
             "settle": whole("settle", settle, 0),
             "decimate": whole("decimate", decimate, 1),
         }
+        if 0 < counts["steps"] < counts["decimate"]:
+            raise ValueError(
+                f"decimate is {decimate}; of {steps} steps no sample would be kept; it must be at most steps"
+            )
         drive = drive_of(speed)
         one_of("method", method, METHODS)
         if scheme is not None:
@@ -138,6 +145,8 @@ class March:
         if method == "exact":
             drive = _exact_speed(system, drive)
         warn_if_coarse(system, fastest, dt)
+        if method == "exact" and isinstance(source, Equilibrium):
+            warn_if_growing(source, dt, counts["settle"] + counts["steps"])
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
         return cls(
@@ -149,6 +158,7 @@ class March:
             filter=bool(filter),
             memory=memory_of(system, drive, memory),
             method=method,
+            pressed=not isinstance(source, Equilibrium) or source.presses,
             **counts,
         )
 
@@ -160,6 +170,17 @@ class March:
     def total(self) -> int:
         """Steps of the whole march, those before the record included."""
         return self.settle + self.steps
+
+    def warn_if_still(self) -> None:
+        """Warn that nothing pushes, for a march that starts at rest in its equilibrium."""
+        if self.pressed or any(term.p_cos.any() or term.p_sin.any() for term in self.system.loads):
+            return
+        warn(
+            "nothing pushes: the march starts at rest in an equilibrium in which no ball is pressed, and no "
+            "load acts; every record stays as it begins. Add what pushes (app.gravity, app.load, "
+            "app.unbalance), or start displaced with initial=",
+            NothingPushes,
+        )
 
     @property
     def filters(self) -> bool:
@@ -176,9 +197,18 @@ class March:
             these motions together.
         """
         x = moved(self.system, self.x, initial) if initial else self.x
-        q = self.T.T @ self.system.M @ x
-        state = model.state(0.0, q, np.zeros(self.system.n))
-        return state if self.method == "newmark" else np.concatenate([state, self._modes.start(q)])
+        return self.begun(model, Beginning(x, np.zeros_like(x), None))
+
+    def begun(self, model: core.Model, beginning: Beginning) -> Array:
+        """State that moves as the beginning says."""
+        x, v = (self.T.T @ self.system.M @ each for each in (beginning.x, beginning.v))
+        stress = beginning.stress
+        state = model.state(0.0, x, v, stress)
+        if self.method == "newmark":
+            return state
+        if stress is None:
+            stress = np.zeros(sum(t.L.shape[1] * len(t.material.G) for t in self.modal.layers))
+        return np.concatenate([state, self._modes.start(x, v, stress)])
 
     @cached_property
     def _modes(self) -> ExactModes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +17,23 @@ from bearingdyn.types import Array
 
 # a number of a state beyond this belongs to no machine in SI units, and its cube would still be finite
 ABSURD = 1e100
+
+
+@dataclass(frozen=True, eq=False)
+class Beginning:
+    """How a march begins.
+
+    Parameters
+    ----------
+    x, v
+        (n,) in the system's own coordinates.
+    stress
+        What the branches of the layers bear, layer by layer, branch by branch; None: nothing.
+    """
+
+    x: Array
+    v: Array
+    stress: Array | None
 
 
 def system_hash(system: System) -> str:

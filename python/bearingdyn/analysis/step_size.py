@@ -9,14 +9,16 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.analysis.driving_periods import rhythms
-from bearingdyn.notice import CoarseStep, warn
-from bearingdyn.system import System
+from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.notice import CoarseStep, GrowingStep, warn
+from bearingdyn.system import System, natural
 from bearingdyn.types import Array
 
 # most of a period that a step may be: the average acceleration's frequencies are short by (ωΔt)²/12, 0.8 % at
 # this share, which grows with its square; measured forced amplitudes are 24 % off at 0.17
 SHARE = 0.05
 NAMED = 12  # lines of a warning; the fastest come first
+GROWN = 0.01  # growth of a mode over a march, as ln of its factor, that is no matter
 CHECKED = 2000  # steps of the stretch that is repeated at half the step
 
 
@@ -38,6 +40,47 @@ def warn_if_coarse(system: System, speed: float, dt: float) -> None:
         + "\n".join(lines)
         + f"\nmarch with dt={enough:g} or less; check_step=True says how far off the record is",
         CoarseStep,
+    )
+
+
+def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
+    """Warn of exact steps that make a mode about the equilibrium grow, by what the bearings' parabola leaves.
+
+    A force held by a parabola through the last three steps lags by (ωΔt)³/24: what balls hold gains
+    (ωΔt)⁴/48 a step. Modes are those of the relaxed structure on the balls' tangents.
+    """
+    system = eq.system
+    if not system.bearings:
+        return
+    B = system.B
+    squares, shapes = natural(system.stiffness(system.marched_moduli()) + B.T @ eq.bearing_K @ B, system.M)
+    moving = squares > 0.0
+    omega, shapes = np.sqrt(squares[moving]), shapes[:, moving]
+    z = B @ shapes
+    share = np.einsum("ij,ij->j", z, eq.bearing_K @ z) / omega**2
+    decay = 0.5 * np.einsum("ij,ij->j", shapes, system.viscous() @ shapes)
+    decay += 0.5 * np.einsum("ij,ij->j", z, eq.bearing_C @ z)
+    for layer in system.layers:
+        material = layer.material if layer.strain is None else layer.material.rest
+        loss = np.imag(np.asarray(material.complex_modulus(omega))) - omega * getattr(material, "eta0", 0.0)
+        decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)
+    gain = np.maximum(share, 0.0) * (omega * dt) ** 4 / (48.0 * dt)
+    grown = gain - decay
+    worst = int(np.argmax(grown))
+    if not grown[worst] * steps * dt > GROWN:
+        return
+    cubes = 48.0 * decay[gain > 0.0] / (share * omega**4)[gain > 0.0]
+    enough = float(cubes.min()) ** (1 / 3)
+    remedy = (
+        f"march with dt={_rounded_down(enough):g} or less, or with method='newmark'"
+        if enough > 0.0
+        else "march with method='newmark', or give the contacts the damping that they have"
+    )
+    warn(
+        f"dt = {dt:g} s with method 'exact' makes a mode at {omega[worst] / (2 * np.pi):.5g} Hz grow by "
+        f"{grown[worst]:.3g} 1/s: balls hold {100 * share[worst]:.0f} % of it, which gains "
+        f"{gain[worst]:.3g} 1/s, and its damping takes {decay[worst]:.3g} 1/s; {remedy}",
+        GrowingStep,
     )
 
 

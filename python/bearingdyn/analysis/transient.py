@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.analysis.core_channels import channel_of
-from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
@@ -40,7 +40,7 @@ def transient(
     decimate: int = 1,
     filter: bool = True,
     settle: int = 0,
-    initial: Mapping[str, ArrayLike] | None = None,
+    initial: Mapping[str, ArrayLike] | xarray.Dataset | None = None,
     resume: xarray.Dataset | None = None,
     stream: str | os.PathLike[str] | None = None,
     audit: bool = False,
@@ -73,7 +73,9 @@ def transient(
         Channels: "shaft.left.y" (displacement), "shaft.left.y.velocity", "….acceleration"; of a bearing:
         "left.loaded" (number of loaded balls), "left.ball3" (load of one ball, counted from 1),
         "left.force.x" (force of the inner ring on the balls, x, y or z), "left.loss" (power that its
-        contacts turn into heat); of a part that softens "layer.strain", its running strain amplitude.
+        contacts turn into heat); of a part that softens "layer.strain", its running strain amplitude; of a
+        flexible ring "ring.raceway.radial-cos2", a coefficient of its race, or "ring.raceway.axial@-90", the
+        race at an azimuth in whole degrees.
         Motions are relative to the ground where `Application.base_motion` moves it.
     decimate
         Every how many steps a sample is kept.
@@ -87,7 +89,8 @@ def transient(
     settle
         Steps marched before the record begins, so that the ring-down of the start has passed.
     initial
-        Displacement (6,) or (3,) of interfaces or outputs at the start, instead of the equilibrium's.
+        Displacement (6,) or (3,) of interfaces or outputs at the start, instead of the equilibrium's; or a
+        result of `steady_state` on the same source and at the same speed: the march begins in that motion.
     resume
         Result of an earlier call on the same application; the march continues where it ended, bit for bit.
         Speed, dt and record may differ; where dt, decimate or record do, and where the result was opened
@@ -120,12 +123,13 @@ def transient(
     method
         "newmark", the paper's, or "exact": at a constant speed structure, gyroscopic forces and layers move
         in modes of their own, without an error of the step; what is left is that the bearing forces are held
-        as a parabola through three steps' ends. Of the same error it takes some four times fewer steps. A
-        constant, harmonic or rotating load is exact, a table is linear from step to step. It does not take a
-        speed that varies, nor layers with a law of softening; `scheme`'s β and γ do not count. Unlike
-        Newmark's it is stable for small steps alone: a motion at ω that balls alone hold grows by (ωΔt)⁴/48 a
-        step, against its damping, and by 2 % at ωΔt = 1. Without damping in its contacts a machine with modes
-        to 8 kHz leaves its rest at Δt = 11 µs, and not at 5.6 µs.
+        as a parabola through three steps' ends, the jump of a damper that closes by its share of a step. Of
+        the same error it takes some four times fewer steps. A constant, harmonic or rotating load is exact, a
+        table is linear from step to step. It does not take a speed that varies, nor layers with a law of
+        softening; `scheme`'s β and γ do not count. Unlike Newmark's it is stable for small steps alone: a
+        motion at ω that balls alone hold grows by (ωΔt)⁴/48 a step, against its damping, and by 2 % at ωΔt =
+        1; `GrowingStep` warns of it. Without damping in its contacts a machine with modes to 8 kHz leaves its
+        rest at Δt = 11 µs, and not at 5.6 µs.
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
@@ -156,6 +160,8 @@ def transient(
     -----
     BearingWarning
         Where a contact pressure was above 4.2 GPa (ISO 76) at the end of a step.
+    NothingPushes
+        Where the march starts at rest, no ball is pressed and no load acts.
     OpenSideWarning
         Where balls of an angular contact bearing were pressed onto its open side, or none onto its shoulder.
 
@@ -177,17 +183,23 @@ def transient(
     True
     """
     record = name_list("record", record)
-    if initial is not None:
-        initial = named("initial", initial, "it must be displacements by place, as {'shaft.left': [...]}")
+    places: Mapping[str, ArrayLike] | None = None
+    motion: xarray.Dataset | None = None
+    if isinstance(initial, Mapping) and "motion" in initial:
+        motion = cast("xarray.Dataset", initial)
+    elif initial is not None:
+        places = named("initial", initial, "it must be displacements by place, as {'shaft.left': [...]}")
     if stream is not None:
         instance("stream", stream, (str, os.PathLike), "it must be the path of a file")
     if resume is not None and stream is not None:
         raise ValueError(
             "resume and stream are both given; a stream continues by itself, so give one of them"
         )
-    if resume is not None and initial:
+    if resume is not None and (places or motion is not None):
         raise ValueError("resume and initial both set the state at the start; give one of them")
     speed = one_speed(speed, rpm)
+    if isinstance(source, Application):
+        source = equilibrium(source)
     march = March.of(
         source,
         speed=speed,
@@ -201,11 +213,20 @@ def transient(
         memory=memory,
         method=method,
     )
+    if resume is None and not initial:
+        march.warn_if_still()
     approaches = _approaches(source, speed) if check_unique else None
     check_room(march.steps // march.decimate, record)
     found = [channel_of(march.modal, name) for name in record]
     model = march.model([channel for channel, _ in found])
-    state = march.start(model, initial) if resume is None else march.resumed(model, resume)
+    if resume is not None:
+        state = march.resumed(model, resume)
+    elif motion is not None:
+        from bearingdyn.analysis.steady import beginning
+
+        state = march.begun(model, beginning(source, motion, speed))
+    else:
+        state = march.start(model, places)
     facts = march.facts(record, [unit for _, unit in found])
     with told(progress, "step") as tell:
         rows, state, report, tail = march.run(

@@ -285,7 +285,7 @@ class Application:
             What is hung: one bearing, or a `Pair` or `Triplet`, whose middle stands at the interfaces and
             whose preload comes with it.
         inner, outer
-            Interfaces of the rings. outer may be "ground", or the raceway of a flexible ring,
+            Interfaces of the rings. outer may be "ground", and each the raceway of a flexible ring,
             "ring.raceway", made for this bearing's arm. A ring turns with the shaft where its part does: one
             with gyroscopic forces, as a Shaft or a rotating RigidBody, or connected to such a part. Where
             neither is known to turn, the inner ring does. The bearing's `turning` says otherwise.
@@ -312,12 +312,14 @@ class Application:
         """
         self.plan.check_new("bearing", name)
         joints: list[BearingJoint] = []
-        ends = self.plan.interface(inner), self.plan.raceway_or_interface(outer)
+        # the ground carries no inner ring: `place` does not know it
+        ends = self.plan.raceway_or_interface(self.plan.place(inner)), self.plan.raceway_or_interface(outer)
         truth("mirrored", mirrored)
         truth("fits", fits)
-        if isinstance(bearing, RowSet) and self.plan.raceway(ends[1]) is not None:
+        races = [place for place in ends if self.plan.raceway(place) is not None]
+        if isinstance(bearing, RowSet) and races:
             raise ValueError(
-                f"bearing {name!r}: {ends[1]} carries one row of balls, and a {type(bearing).__name__} has "
+                f"bearing {name!r}: {races[0]} carries one row of balls, and a {type(bearing).__name__} has "
                 f"{len(bearing.rows)}; hang it in a rigid interface, or each row in a ring of its own"
             )
         for joint in _hung(name, bearing, ends, offset, mirrored):

@@ -27,6 +27,8 @@ NEARLY = 0.9
 """Of a ring's width, on its seat: chamfers and reliefs take less than the rest."""
 INTRUDES = 0.05
 """Of a ring's width under a shoulder: more than a fillet or the rounding of a drawing."""
+WALL = 3.0
+"""Ball diameters between a race and the seat of its ring: catalogue bearings have 0.25 to 0.60."""
 OVERRIDE = "correct the dimension, or pass fits=False if they are meant to differ"
 
 
@@ -78,7 +80,7 @@ def check_bearing(joint: BearingJoint, ring: Ring, place: Place, faces: Sequence
     half = 0.5 * (bearing.Dpw + (-1 if ring == "inner" else 1) * bearing.Dw)
     hollow = {face.kind for face in faces} == {"shaft", "bore"}
     if bearing.boundary is None:
-        _check_race(title, ring, half, place, faces)
+        _check_race(title, ring, half, place, faces, Dw=bearing.Dw, at=at)
         return
     bore, outside, width = bearing.boundary
     own = RoundFace(
@@ -160,11 +162,22 @@ def _check_radii(
     warn(f"{text}; {OVERRIDE}", FitWarning)
 
 
-def _check_race(title: str, ring: Ring, race: float, place: Place, faces: Sequence[RoundFace]) -> None:
-    """Check the seat of a bearing of unknown bore and outside: the race must lie beyond it."""
+def _check_race(
+    title: str,
+    ring: Ring,
+    race: float,
+    place: Place,
+    faces: Sequence[RoundFace],
+    *,
+    Dw: float,
+    at: float,
+) -> None:
+    """Check the seat of a bearing of unknown bore and outside: its race must lie beyond, a ring between."""
     seats = [face for face in faces if face.kind == ("shaft" if ring == "inner" else "bore")]
-    if len(faces) > 1 or not seats or (seats[0].beside and seats[0].room is None):
-        return  # a hollow body may be the ring itself, and a solid one has no seat
+    if {face.kind for face in faces} == {"shaft", "bore"}:  # a hollow body may be the ring itself
+        seats = [face for face in faces if face not in seats]
+    if not seats or (len(faces) == 1 and seats[0].beside and seats[0].room is None):
+        return  # a solid body has no seat
     seat = seats[0].radius
     remedy = f"the shaft must be thinner; {OVERRIDE}"
     beyond = seat < race
@@ -175,6 +188,21 @@ def _check_race(title: str, ring: Ring, race: float, place: Place, faces: Sequen
             f"{place} has a radius of {seat:.6g} m, Ø{2e3 * seat:.6g} mm, and the race of {title} one of "
             f"{race:.6g} m, Ø{2e3 * race:.6g} mm: there is no room for a ring; {remedy}"
         )
+    facing = next((face for face in faces if face.kind == ("shaft" if ring == "inner" else "bore")), None)
+    if facing is None:
+        return
+    wall = (race - facing.radius) * (1 if ring == "inner" else -1)
+    if wall > WALL * Dw:
+        warn(
+            f"{place} has a radius of {facing.radius:.6g} m, Ø{2e3 * facing.radius:.6g} mm, and the race of "
+            f"{title} one of {race:.6g} m, Ø{2e3 * race:.6g} mm: its ring would be {1e3 * wall:.4g} mm "
+            f"thick, {wall / Dw:.3g} ball diameters, where bearings have 0.25 to 0.6; {OVERRIDE}",
+            FitWarning,
+        )
+    least = RoundFace(facing.kind, facing.radius, (at - 0.5 * Dw, at + 0.5 * Dw))  # no ring is narrower
+    on = min(least.z[1], facing.z[1]) - max(least.z[0], facing.z[0])
+    if not on >= HALF * Dw:
+        _check_carried(least, facing, f"{title}, as wide as its balls at least,", str(place), least=HALF)
 
 
 def _check_shoulder(own: RoundFace, room: tuple[float, float] | None, name: str, neighbour: str) -> None:

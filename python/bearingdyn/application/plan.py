@@ -106,7 +106,7 @@ class Plan:
         element = self.parts[place.part]
         if place.name in element.raceways:
             raise ValueError(
-                f"{place} is a raceway, not a rigid interface; it serves as the outer of a bearing"
+                f"{place} is a raceway, not a rigid interface; it serves as the inner or outer of a bearing"
             )
         if place.name not in element.interfaces:
             raise ValueError(
@@ -150,27 +150,34 @@ class Plan:
         ValueError
             If the raceway was made for another arm, or carries a bearing already.
         """
-        raceway, name, arm = self.raceway(joint.outer), joint.name, joint.bearing.arm
-        if raceway is None:
-            return
-        if raceway.Z not in (None, joint.bearing.Z):
+        name, arm = joint.name, joint.bearing.arm
+        found = [(place, race) for place in (joint.inner, joint.outer) if (race := self.raceway(place))]
+        taken = {place for b in self.bearings.values() for place in (b.inner, b.outer)}
+        for place, raceway in found:
+            if raceway.Z not in (None, joint.bearing.Z):
+                raise ValueError(
+                    f"bearing {name!r} has {joint.bearing.Z} balls and {place} was made for {raceway.Z}; "
+                    f"make the ring with bearing="
+                )
+            if not math.isclose(raceway.arm, arm, rel_tol=1e-9):
+                raise ValueError(
+                    f"bearing {name!r} has its arm at {arm:.9g} m and {place} at {raceway.arm:.9g} m; "
+                    f"make the ring with arm=bearing.arm"
+                )
+            if place in taken:
+                raise ValueError(
+                    f"bearing {name!r}: {place} carries a bearing already; give each its own raceway"
+                )
+        if len({raceway.series for _, raceway in found}) > 1:
             raise ValueError(
-                f"bearing {name!r} has {joint.bearing.Z} balls and {joint.outer} was made for {raceway.Z}; "
-                f"make the ring with bearing="
-            )
-        if not math.isclose(raceway.arm, arm, rel_tol=1e-9):
-            raise ValueError(
-                f"bearing {name!r} has its arm at {arm:.9g} m and {joint.outer} at {raceway.arm:.9g} m; "
-                f"make the ring with arm=bearing.arm"
-            )
-        if any(b.outer == joint.outer for b in self.bearings.values()):
-            raise ValueError(
-                f"bearing {name!r}: {joint.outer} carries a bearing already; give each its own raceway"
+                f"bearing {name!r}: {joint.inner} and {joint.outer} move by other orders; make both rings "
+                f"with the same order="
             )
 
     def raceways_used(self) -> set[Place]:
         """Raceways that carry balls or sit in a bore, among the other ends of bearings."""
-        return {b.outer for b in self.bearings.values()} | {f.ring for f in self.fits.values()}
+        ends = {place for b in self.bearings.values() for place in (b.inner, b.outer)}
+        return {place for place in ends if self.raceway(place)} | {f.ring for f in self.fits.values()}
 
     def partners(self) -> dict[Place, Place]:
         """Which interface each connected one moves with."""
@@ -238,7 +245,7 @@ class Plan:
             for place in (Place(part, name) for name in element.raceways):
                 if place not in used:
                     raise ValueError(
-                        f"raceway {place} carries no balls; name it as the outer of a bearing, or declare "
+                        f"raceway {place} carries no balls; name it as a ring of a bearing, or declare "
                         f'app.free("{place}")'
                     )
             for place in (Place(part, name) for name in element.interfaces):

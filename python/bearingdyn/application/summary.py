@@ -10,6 +10,7 @@ from bearingdyn.application.channel import GROUND
 from bearingdyn.application.free_motions import free_motions
 from bearingdyn.application.place import Place
 from bearingdyn.application.plan import Plan
+from bearingdyn.bearing import RIGID
 from bearingdyn.types import Array
 
 
@@ -80,12 +81,14 @@ def _constraints(plan: Plan) -> Iterator[Mapping[str, Array]]:
         if spring.stiffness.any():
             yield between(spring.a, spring.b, whole[spring.stiffness > 0])
     for b in plan.bearings.values():
-        raceway = plan.raceway(b.outer)
-        if raceway is None:
-            yield between(b.inner, b.outer, b.coefficients())
-        else:
-            held = b.coefficients(raceway.series) @ plan.rows(b.inner)
-            yield {b.inner.part: held, b.outer.part: -raceway.rows}
+        sides = [(b.inner, 1.0, plan.raceway(b.inner)), (b.outer, -1.0, plan.raceway(b.outer))]
+        series = next((race.series for _, _, race in sides if race is not None), RIGID)
+        rows: dict[str, Array] = {}
+        for place, sign, race in sides:
+            if place != GROUND:
+                own = b.coefficients(series) @ plan.rows(place) if race is None else race.rows
+                rows[place.part] = rows.get(place.part, 0.0) + sign * own
+        yield rows
     for f in plan.fits.values():
         raceway = plan.raceway(f.ring)
         assert raceway is not None  # the application checked

@@ -43,6 +43,7 @@ from bearingdyn.bearing.rating import (
     Phase,
     Ratings,
     Supply,
+    contamination_factor,
     equivalent_life,
     equivalent_load,
     equivalent_static_load,
@@ -55,6 +56,7 @@ from bearingdyn.bearing.rating import (
     modified_life,
     rating_life,
     ratings_of,
+    reliability_factor,
 )
 from bearingdyn.bearing.row_set import Row, RowSet, at_distance
 from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
@@ -112,6 +114,7 @@ __all__ = [
     "check_bearing_pressure",
     "clearance_range",
     "contact_modulus",
+    "contamination_factor",
     "dent",
     "diameter_scatter",
     "equivalent_life",
@@ -137,6 +140,7 @@ __all__ = [
     "rating_life",
     "ratings_of",
     "read_designation",
+    "reliability_factor",
     "resultant_damping",
     "resultant_deflection_coefficient",
     "runs_off",

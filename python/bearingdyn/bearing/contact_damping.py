@@ -202,6 +202,25 @@ class FilmDamping:
         curve = scipy.interpolate.CubicHermiteSpline(nodes, self.c, self._rises)
         return np.asarray(curve((FILM_NODES - 1) * w))
 
+    def behind(self, give: float, kappa: float) -> FilmDamping:
+        """The damping felt where a spring lies between contact and ring, c/(1 + give k)², at low frequency.
+
+        k = (3/2)κ√s is the stiffness of film and solids: of a motion the contact takes the share
+        1/(1 + give k), and the force of its damper moves the whole by as little again.
+
+        Parameters
+        ----------
+        give
+            m/N; negative where a wall stiffens the ring.
+        kappa
+            Of the ball, N/m^1.5.
+        """
+        w = np.arange(FILM_NODES - 1) / (FILM_NODES - 1)
+        k = 1.5 * kappa * math.sqrt(self.scale) * w / (1 - w)
+        # a wall may stiffen without bound at loads that no ball bears: held where it doubles k
+        c = self.c[:-1] / np.maximum(1 + give * k, 0.5) ** 2
+        return FilmDamping(self.scale, np.append(c, c[-1]), self.answer)
+
     def kernel_fields(self) -> KernelFields:
         """Law, scale and nodes as the kernel takes them."""
         return "film", self.scale, np.column_stack([self.c, self._rises])

@@ -120,7 +120,11 @@ class Lubricant:
     density
         Mass density, kg/m³, taken constant.
     alpha
-        Pressure–viscosity coefficient α, 1/Pa, taken constant.
+        Pressure–viscosity coefficient α, 1/Pa, taken constant. Data sheets seldom have it, and films and
+        damping hang on it: know it, for the default is only a middle. Of a 6205 under 1 kN on VG 32 at 60 °C
+        and 3000 rpm, α of 1.2, 1.6, 2.0 and 2.4e-8 make the inner film .128, .150, .171 and .190 µm (as
+        α^0.57) and a ball's damping 30, 34, 37 and 40 N s/m (as α^0.40). `Lubrication.alpha_damping` tells it
+        of a bearing.
 
     Raises
     ------

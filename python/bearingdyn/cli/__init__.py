@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -67,12 +68,19 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"bearingdyn: this needs the package {error.name}; pip install {error.name}", file=sys.stderr)
         return UNUSABLE
     except (ValueError, OSError) as error:
-        print(f"bearingdyn: {_line(error)}", file=sys.stderr)
+        print(f"bearingdyn: {_line(_reason(error))}", file=sys.stderr)
         return UNUSABLE
     except KeyboardInterrupt:
         print("bearingdyn: interrupted", file=sys.stderr)
         return INTERRUPTED
     return code
+
+
+def _reason(error: Exception) -> str:
+    """What an error says; of a file, its name and the reason, without the system's number."""
+    if isinstance(error, OSError) and error.filename is not None and error.strerror:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
 
 
 def _line(message: object) -> str:
@@ -81,7 +89,11 @@ def _line(message: object) -> str:
 
 def _branches(text: str) -> int | Literal["auto"]:
     """A number of branches, or "auto"."""
-    return "auto" if text == "auto" else int(text)
+    if text == "auto":
+        return "auto"
+    if not re.fullmatch(r"-?[0-9]{1,9}", text):
+        raise argparse.ArgumentTypeError(f"it is {text[:40]!r}; it must be a whole number, or auto")
+    return int(text)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -54,7 +54,7 @@ def oil_of(text: str) -> Lubricant:
     ValueError
         For a text that names no grade.
     """
-    found = re.fullmatch(r"(?:ISO)?[\s-]*(?:VG)?[\s-]*([0-9]+)", text.strip(), re.IGNORECASE)
+    found = re.fullmatch(r"(?:ISO)?[\s-]*(?:VG)?[\s-]*([0-9]{1,9})", text.strip(), re.IGNORECASE)
     if found is None:
         raise ValueError(f"oil is {text!r}; give an ISO viscosity grade, such as VG32")
     return Lubricant(Walther.iso_vg(int(found[1])))

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from bearingdyn import results
+from bearingdyn.checks import require
 from bearingdyn.cli.outcome import FAILED, GOOD
 
 
@@ -51,7 +52,11 @@ def run_demo(arguments: argparse.Namespace) -> tuple[str, int]:
     """The package's own demo as a command: what the layer changes, and the files written."""
     from bearingdyn.demo import demo
 
-    found = demo(Path(arguments.out), _tell)
+    folder = str(arguments.out)
+    require(bool(folder) and "\0" not in folder, "--out", folder, "it must be the name of a folder")
+    taken = Path(folder).exists() and not Path(folder).is_dir()
+    require(not taken, "--out", folder, "it exists and is no folder; it must be the name of a folder")
+    found = demo(Path(folder), _tell)
     if arguments.json:
         return json.dumps(found, indent=1), GOOD
     bare, layered = found["no layer"], found["layer"]

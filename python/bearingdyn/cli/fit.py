@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,10 +24,12 @@ from bearingdyn.material import (
     one_curve,
     read_dma,
 )
+from bearingdyn.writing import check_target, write_whole
 
 # usual for rubber; said in the table where they were not given
 BULK_MODULUS = 2e9
 DENSITY = 1200.0
+FIGURES = (".png", ".pdf", ".svg")
 T_REF = 20.0
 LAW: Final = "wlf"
 
@@ -46,6 +50,9 @@ _SHIFTING = {"T_ref": "--T-ref", "law": "--law", "no_clean": "--no-clean"}
 def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
     """The command that fits a model, written to --out as well."""
     out, figure = _target("--out", arguments.out), _target("--plot", arguments.plot)
+    if figure is not None:
+        ending = figure.suffix.lower()
+        require(ending in FIGURES, "--plot", str(figure), f"its ending must be one of {', '.join(FIGURES)}")
     if arguments.f_max is not None and not arguments.f_max > 0:
         raise ValueError(f"--f-max is {arguments.f_max}; it must be a positive frequency, in Hz")
     dma = _chosen(_read(arguments), arguments)
@@ -59,7 +66,7 @@ def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
         density=DENSITY if arguments.density is None else arguments.density,
     )
     if out is not None:
-        out.write_text(model.to_json() + "\n", encoding="utf-8")
+        write_whole(out, f"{model.to_json()}\n".encode())
     if figure is not None:
         from matplotlib.figure import Figure
 
@@ -67,7 +74,9 @@ def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
 
         drawn = Figure(figsize=(6.2, 5.0), layout="constrained")
         master(one_curve(curve), model, drawn.add_subplot())
-        drawn.savefig(figure)
+        picture = io.BytesIO()
+        drawn.savefig(picture, format=figure.suffix[1:].lower())
+        write_whole(figure, picture.getvalue())
     if arguments.json:
         names = arguments.data[0] if len(arguments.data) == 1 else arguments.data
         return json.dumps({**_fit_record(curve, model), "data": names}, indent=1), GOOD
@@ -79,9 +88,13 @@ def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _target(option: str, name: str | None) -> Path | None:
     """A file to write, whose folder is there."""
+    if name is not None:
+        require(bool(name) and "\0" not in name, option, name, "it must be the name of a file")
     path = None if name is None else Path(name)
     if path is not None and not path.resolve().parent.is_dir():
         raise ValueError(f"{option} {path}: there is no folder {path.parent}")
+    if path is not None:
+        check_target(path)
     return path
 
 
@@ -91,7 +104,7 @@ def _read(arguments: argparse.Namespace) -> DMAData:
     files = arguments.data[0] if len(arguments.data) == 1 else arguments.data
     T = arguments.temperature
     one = T is not None and len(T) == 1 and len(arguments.data) == 1
-    step = None if arguments.step is None else [int(s) if s.isdecimal() else s for s in arguments.step]
+    step = None if arguments.step is None else [_step(s) for s in arguments.step]
     try:
         return read_dma(
             files,
@@ -106,6 +119,12 @@ def _read(arguments: argparse.Namespace) -> DMAData:
     except ReadingError as error:
         options = ", ".join(_OPTIONS[name] for name in _OPTIONS if name in error.arguments)
         raise ValueError(f"{error} (options: {options})" if options else str(error)) from error
+
+
+def _step(text: str) -> int | str:
+    """A step by its number, or by a part of its name."""
+    require(bool(text.strip()), "--step", text, "it must be a number from 1, or a part of a step's name")
+    return int(text) if re.fullmatch("[0-9]{1,9}", text) else text
 
 
 def _chosen(dma: DMAData, arguments: argparse.Namespace) -> DMAData:

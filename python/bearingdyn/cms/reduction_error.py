@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import instance, numbers, require, whole
 from bearingdyn.cms.basis import Basis, orthogonalise
 from bearingdyn.cms.dynamic_stiffness import Dynamics, Transfer
 from bearingdyn.cms.full_model import FullModel
@@ -19,6 +20,7 @@ from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
 CHANGE = 0.1  # of the estimated error by the last full solve: below it, no further one is made
+WANTED = "it must be one or more positive frequencies in Hz"
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,11 +112,11 @@ def reduction_error(
     Hierarchical estimates, Bank & Smith, SIAM J. Numer. Anal. 30 (1993) 921-935; rational interpolation of a
     transfer function, Grimme, thesis, Univ. of Illinois (1997).
     """
-    f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
-    if f.ndim != 1 or f.size == 0 or not np.all(f > 0) or not np.isfinite(f).all():
-        raise ValueError(f"frequency is {frequency!r}; it must be one or more positive frequencies in Hz")
-    if not solves >= 3:
-        raise ValueError(f"solves is {solves}; the estimate needs 3 or more")
+    f = numbers("frequency", frequency, WANTED)
+    require(bool((f > 0).all()), "frequency", frequency, WANTED)
+    whole("solves", solves, 3, remedy="the estimate needs a whole number of 3 or more")
+    instance("model", model, FullModel, "it must be the full model of a part, part.full_model()")
+    instance("basis", basis, Basis, "it must be a bd.cms.Basis, as craig_bampton makes it")
     case = _Case(model, basis, loads, fixed, damping, held)
     omega = 2.0 * np.pi * f
     reduced = [case.response(t) for t in case.reduced(basis, omega)]

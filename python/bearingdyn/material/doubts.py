@@ -11,10 +11,13 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import instance, number, one_of, positive, real, require, two, whole
+from bearingdyn.checks import instance, number, one_of, positive, real, require, two
 from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.fit_report import FitReport
+from bearingdyn.material.log_parameters import logarithms as logarithms_of
+from bearingdyn.material.log_parameters import moved
 from bearingdyn.material.maxwell import Maxwell
+from bearingdyn.material.spread import uniforms
 from bearingdyn.material.superposition import MasterCurve
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -165,13 +168,7 @@ class Doubts:
 
     def draws(self, n: int, seed: int = 0) -> list[Maxwell]:
         """n rubbers drawn from all doubts at once, by a scrambled Sobol sequence, the same for one seed."""
-        import warnings
-
-        whole("n", n, 1)
-        with warnings.catch_warnings():  # of a number that is no power of two
-            warnings.simplefilter("ignore", UserWarning)
-            unit = scipy.stats.qmc.Sobol(len(self), scramble=True, rng=seed).random(n)
-        return [self.drawn(u) for u in np.clip(unit, 1e-12, 1 - 1e-12)]
+        return [self.drawn(u) for u in uniforms(n, len(self), seed)]
 
 
 def doubts(
@@ -312,11 +309,12 @@ def _fitted(m: Maxwell, fit: FitReport) -> list[Doubt]:
     bare = replace(m, fit=None, band=None, low_end=None)
 
     def logarithms(step: Array) -> Array:
-        G = _moved(bare, fit.names, step).complex_modulus(omega)
-        return np.concatenate([np.log(np.abs(G)), np.log(G.imag / G.real)])
+        G0, G, tau, eta0 = moved(bare, fit.names, step)
+        modulus = replace(bare, G0=G0, G=G, tau=tau, eta0=eta0).complex_modulus(omega)
+        return np.concatenate([np.log(np.abs(modulus)), np.log(modulus.imag / modulus.real)])
 
     if len(fit.bootstrap) > 1:
-        own = _logarithms_of(m, fit.names)
+        own = logarithms_of(m, fit.names)
         deviation = np.std([logarithms(row - own) for row in fit.bootstrap], axis=0, ddof=1)
         words = f"bootstrap of the fit, {len(fit.bootstrap)} refits"
     else:
@@ -329,26 +327,3 @@ def _fitted(m: Maxwell, fit: FitReport) -> list[Doubt]:
     return [
         Doubt(name, 1.0, 1.0 / w, w, words, "normal") for name, w in zip(names, wide, strict=False) if w > 1.0
     ]
-
-
-def _logarithms_of(m: Maxwell, names: tuple[str, ...]) -> Array:
-    values = {"ln G0": m.G0, "ln eta0": m.eta0}
-    values |= {f"ln G{k + 1}": v for k, v in enumerate(m.G.tolist())}
-    values |= {f"ln tau{k + 1}": v for k, v in enumerate(m.tau.tolist())}
-    return np.log([values[name] for name in names])
-
-
-def _moved(m: Maxwell, names: tuple[str, ...], step: Array) -> Maxwell:
-    """With the logarithms of named parameters moved: ln G0, ln G1 …, ln tau1 …, ln eta0."""
-    G0, G, tau, eta0 = m.G0, m.G.copy(), m.tau.copy(), m.eta0
-    for name, factor in zip(names, np.exp(step), strict=True):
-        what = name.removeprefix("ln ")
-        if what == "G0":
-            G0 *= factor
-        elif what == "eta0":
-            eta0 *= factor
-        elif what.startswith("tau"):
-            tau[int(what[3:]) - 1] *= factor
-        else:
-            G[int(what[1:]) - 1] *= factor
-    return replace(m, G0=G0, G=G, tau=tau, eta0=eta0)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.checks import name_list, nonnegative, one_of, real, require, whole
+from bearingdyn.material.log_parameters import moved, place_of
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
@@ -104,7 +105,7 @@ class Spread:
     @property
     def fits(self) -> int:
         """Number of branches that a model must have at least for the names to mean something."""
-        return max((int("".join(c for c in name if c.isdigit())) for name in self.names), default=0)
+        return max((place_of(name)[1] for name in self.names), default=0)
 
     @cached_property
     def factor(self) -> Array:
@@ -245,7 +246,7 @@ class Drawable:
         fitted = spread.factor.shape[1]
         rest = dict(zip(spread.axes[fitted:], z[fitted:].tolist(), strict=True))
         parameters = _Parameters(self, spread)
-        G0, G, tau, eta0 = parameters.values(parameters.nearest(spread.factor @ z[:fitted]))
+        G0, G, tau, eta0 = moved(self, spread.names, parameters.nearest(spread.factor @ z[:fitted]))
         level = math.exp(spread.level * rest.get("level", 0.0))
         change: dict[str, Any] = {
             "G0": G0 * level,
@@ -316,8 +317,8 @@ class _Parameters:
 
     def __init__(self, model: Drawable, spread: Spread) -> None:
         self.model = model
-        names = [name.removeprefix("ln ") for name in spread.names]
-        self.place = [(n.rstrip("0123456789"), int("".join(c for c in n if c.isdigit()))) for n in names]
+        self.names = spread.names
+        self.place = [place_of(name) for name in spread.names]
         if model.band is not None:
             low, high = model.band
         else:
@@ -326,29 +327,14 @@ class _Parameters:
         self.omega = 2 * math.pi * np.geomspace(low, high, 40)
         # G0 carries what rests; where the band does not tell it, it is known by itself
         self.spring = next((k for k, p in enumerate(self.place) if p == ("G", 0)), None)
-        jacobian = self._jacobian(np.zeros(len(names)))
+        jacobian = self._jacobian(np.zeros(len(self.names)))
         known = np.linalg.norm(jacobian @ spread.factor, axis=1)
-        self.first = self._logarithms(np.zeros(len(names)))
+        self.first = self._logarithms(np.zeros(len(self.names)))
         self.slope, self.sd = jacobian, np.maximum(known, 1e-3 * known.max(initial=1e-300))
-
-    def values(self, step: Array) -> tuple[float, Array, Array, float]:
-        """Spring, strengths, times and dashpot with the logarithms moved by `step`."""
-        m = self.model
-        G0, G, tau, eta0 = m.G0, m.G.copy(), m.tau.copy(), m.eta0
-        for (kind, k), move in zip(self.place, np.exp(step), strict=True):
-            if kind == "tau":
-                tau[k - 1] *= move
-            elif kind == "eta":
-                eta0 *= move
-            elif k == 0:
-                G0 *= move
-            else:
-                G[k - 1] *= move
-        return G0, G, tau, eta0
 
     def _terms(self, step: Array) -> tuple[Complex, Complex]:
         """G* (f,), Pa, and what each logarithm adds to it (f, p)."""
-        G0, G, tau, eta0 = self.values(step)
+        G0, G, tau, eta0 = moved(self.model, self.names, step)
         x = self.omega[:, None] * tau
         branch = G * (x / (1 + x * x) * (x + 1j))
         slope = G * (1j * x / (1 + 1j * x) ** 2)

@@ -115,6 +115,8 @@ def _load(file: Path, origin: Origin, above: tuple[Path, ...], seen: list[Path])
         found = re.search(r"at line (\d+)", str(error))
         line = int(found[1]) if found else text.count("\n") + 1
         raise Located(f"{file}, line {line}, {_near(text, line)}: {error}") from None
+    except ValueError as error:  # Python refuses to read a number of thousands of digits
+        raise Located(f"{file}: a number has too many digits to be read ({error})") from None
     lines: Mapping[Key, int] = key_lines(text)
     own = Origin(str(file), {key: (str(file), line) for key, line in lines.items()})
     with at(own, ("format",)):

@@ -1,4 +1,4 @@
-"""A ball bearing by itself, its outer ring elastic: force, stiffness and loads of the balls at rest."""
+"""A ball bearing by itself, one of its rings elastic: force, stiffness and loads of the balls at rest."""
 
 from __future__ import annotations
 
@@ -32,9 +32,11 @@ class _State(NamedTuple):
 
 @dataclass(frozen=True)
 class FlexibleBearing:
-    """A bearing with a flexible outer ring, in a rigid housing at rest; rubber at its relaxed modulus.
+    """A bearing with one flexible ring, on a rigid shaft in a rigid housing at rest; rubber at its relaxed
+    modulus.
 
-    As BallBearing: q (6,) is the motion of the inner ring, m and rad, here against the housing.
+    As BallBearing: q (6,) is the motion of the inner ring, m and rad, here against the housing; where the
+    inner ring is the flexible one, of its seat.
 
     Raises
     ------
@@ -74,7 +76,7 @@ class FlexibleBearing:
             math.inf,
             "the static stiffness",
         )
-        rest = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
+        rest = np.setdiff1d(np.arange(element.n), element.interfaces[self.ring.held])
         K = element.stiffness().real[np.ix_(rest, rest)]
         rows = element.raceways["raceway"].rows[:, rest]
         S = np.linalg.inv(rows @ np.linalg.solve(K, rows.T))
@@ -114,12 +116,18 @@ class FlexibleBearing:
         return _State(z, g, K, loads)
 
     def raceway(self, q: ArrayLike, angle: float = 0.0) -> Array:
-        """Displacement (n,) of the raceway, m, coefficients as in RacewaySeries.up_to(ring.order)."""
-        return self._settle(q, angle).z
+        """Displacement (n,) of the raceway, m, coefficients as in RacewaySeries.up_to(ring.order); an inner
+        ring's against its seat."""
+        return self._sign * self._settle(q, angle).z
+
+    @property
+    def _sign(self) -> float:
+        """Of the load of the balls on the ring: the outer one is pressed by g, the inner one by −g."""
+        return -1.0 if self.ring.inner else 1.0
 
     def race(self, q: ArrayLike, azimuth: ArrayLike, angle: float = 0.0) -> Array:
         """Displacement (p, 2) of the race at azimuths (p,), rad: radial and axial, m, by its orders."""
-        return self._around("raceway", self._settle(q, angle).g, azimuth)
+        return self._around("raceway", self._sign * self._settle(q, angle).g, azimuth)
 
     def outside(self, q: ArrayLike, azimuth: ArrayLike, angle: float = 0.0) -> Array:
         """The same of the ring's outside, where it stands on beds or points.
@@ -131,23 +139,23 @@ class FlexibleBearing:
         ValueError
             For a ring whose outside is kept round, or in rubber.
         """
-        if "outside" not in self.ring.body.grooves:
+        if self.ring.back not in self.ring.body.grooves:
             raise ValueError(
                 f"ring.outside is {self.ring.outside!r}; its outside does not move by orders: "
                 f"give the ring a RingBed or RingPoints"
             )
-        return self._around("outside", self._settle(q, angle).g, azimuth)
+        return self._around(self.ring.back, self._sign * self._settle(q, angle).g, azimuth)
 
     def _around(self, name: str, g: Array, azimuth: ArrayLike) -> Array:
         element, psi = self._element, numbers("azimuth", azimuth, "it must hold angles in rad")
-        rest = np.setdiff1d(np.arange(element.n), element.interfaces["outer"])
+        rest = np.setdiff1d(np.arange(element.n), element.interfaces[self.ring.held])
         K = element.stiffness().real[np.ix_(rest, rest)]
         x = np.linalg.solve(K, element.raceways["raceway"].rows[:, rest].T @ g)
         # the ring's own coordinates come first; what stands around it moves its outside only through them
         found = self.ring.body.superelement().raceways[name]
         z = (
             found.rows @ x[: found.rows.shape[1]]
-            if name == "outside"
+            if name == self.ring.back
             else element.raceways[name].rows[:, rest] @ x
         )
         return np.stack([waves(found.series, psi, axial) @ z for axial in (0, 1)], axis=-1)

@@ -1,4 +1,4 @@
-"""The outer ring that bends between the balls, alone or with its rubber (the paper's special CMS)."""
+"""The ring that bends between the balls, alone or with its rubber (the paper's special CMS)."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
+import scipy
 
 from bearingdyn.bearing import BallBearing, Waviness
 from bearingdyn.checks import instance, one_of, positive, require, whole
@@ -23,7 +24,7 @@ from bearingdyn.parts.regions import Patch, Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import HIGHEST, Cylinder, Face, Footprint, Groove, Line, Where
 from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
-from bearingdyn.parts.ring_element import upon_supports, with_folded
+from bearingdyn.parts.ring_element import gyroscopic, upon_supports, with_folded
 from bearingdyn.parts.ring_section import ring_section
 from bearingdyn.parts.ring_support import RingBed, RingPoints
 from bearingdyn.units import takes
@@ -38,7 +39,7 @@ NEGLIGIBLE = 1e-9  # of the largest folded compliance
 @takes(r_inner="m", r_outer="m", width="m", arm="m", groove="m", groove_radius="m", f_max="Hz")
 @dataclass(frozen=True)
 class FlexibleRing:
-    """A flexible outer ring, not turning, whose "raceway" carries the balls of one bearing.
+    """A flexible ring whose "raceway" carries the balls of one bearing: the outer one, or the inner one.
 
     With `layer`, a rubber ring bonded around it, the outside of the rubber is the rigid interface "outer".
     Without a layer the ring's own outside is "outer", kept round by a rigid bore; or, with outside=RingBed(…)
@@ -46,12 +47,17 @@ class FlexibleRing:
     is the raceway "outside", as flexible as the raceway inside, and the ring is held only by what carries
     that raceway.
 
+    With race="inner" all this is turned over: the groove is in the outside, the rubber lies within, its
+    r_outer equal to r_inner here, the rigid interface is "inner", that sits on a shaft and turns with it, and
+    `outside` says what its bore stands on. Coordinates do not turn, and the ring's patterns of force pass
+    through it: their inertia as they turn is left out, which is (nΩ/ω)² of order n, ω the ring's lowest free
+    elastic frequency; `turning_error` tells it.
+
     Parameters
     ----------
-    r_inner
-        Bore at the shoulders, or at the bottom of the groove if no groove_radius is given.
-    r_outer, width
-        m. The plane of the balls is at mid-width.
+    r_inner, r_outer, width
+        m. The side of the balls at the shoulders, or at the bottom of the groove if no groove_radius is
+        given. The plane of the balls is at mid-width.
     arm
         Radius, m, at which tilts become axial motion, of a ring by itself; with a bearing it is the
         bearing's.
@@ -86,6 +92,8 @@ class FlexibleRing:
         give by a few per cent.
     outputs
         name -> point (r, z, φ), m, m, rad, whose motion (x, y, z) can be recorded, as "ring.name.x".
+    race
+        "outer", or "inner" for the ring on the shaft.
 
     Raises
     ------
@@ -111,8 +119,10 @@ class FlexibleRing:
     bearing: BallBearing | None = None
     load: float | None = None
     outputs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    race: Literal["outer", "inner"] = "outer"
 
     def __post_init__(self) -> None:
+        one_of("race", self.race, ("outer", "inner"))
         positive("r_inner", self.r_inner, "it must be a positive radius in m")
         positive("r_outer", self.r_outer, "it must be a positive radius in m")
         if not self.r_inner < self.r_outer < math.inf:
@@ -123,7 +133,12 @@ class FlexibleRing:
             plausible("length", name, getattr(self, name))
         self._take_bearing()
         assert self.arm is not None
-        if not self.arm < self.r_outer:
+        if self.inner and not self.arm > self.r_inner:
+            raise ValueError(
+                f"arm is {self.arm} m; it must lie outside the bore, above r_inner = {self.r_inner} m: it is "
+                "the radius on which the centres of the inner groove lie; take bearing.arm"
+            )
+        if not self.inner and not self.arm < self.r_outer:
             raise ValueError(
                 f"arm is {self.arm} m; it must lie inside the ring, below r_outer = {self.r_outer} m: it is "
                 "the radius on which the centres of the outer groove lie; take bearing.arm"
@@ -143,13 +158,14 @@ class FlexibleRing:
             if not self.depth < self.r_outer - self.r_inner:
                 raise ValueError(f"the groove is {self.depth:g} m deep and cuts the ring; make it narrower")
         if not self._supports:
-            one_of("outside", self.outside, ("rigid", "flexible"))
+            one_of("outside", self.outside, ("rigid",) if self.inner else ("rigid", "flexible"))
         if self.layer is not None:
             instance("layer", self.layer, Layer, "it must be a bd.Layer(…), or None")
-            if not math.isclose(self.layer.r_inner, self.r_outer, rel_tol=1e-9):
+            meets, seat = ("r_outer", "r_inner") if self.inner else ("r_inner", "r_outer")
+            if not math.isclose(getattr(self.layer, meets), self.seat, rel_tol=1e-9):
                 raise ValueError(
-                    f"layer.r_inner is {self.layer.r_inner}; a layer is bonded to the ring at "
-                    f"r_outer = {self.r_outer} m"
+                    f"layer.{meets} is {getattr(self.layer, meets)}; a layer is bonded to the ring at "
+                    f"{seat} = {self.seat} m"
                 )
             if self.outside != "rigid":
                 raise ValueError(
@@ -158,6 +174,26 @@ class FlexibleRing:
                 )
         self._check_footprint()
         _ = self.body
+
+    @property
+    def inner(self) -> bool:
+        """Whether it is the ring on the shaft."""
+        return self.race == "inner"
+
+    @property
+    def seat(self) -> float:
+        """Radius of the side away from the balls, m."""
+        return self.r_inner if self.inner else self.r_outer
+
+    @property
+    def held(self) -> str:
+        """Name of the rigid interface that holds the ring: "outer", or "inner"."""
+        return self.race
+
+    @property
+    def back(self) -> str:
+        """Name of the raceway by which the side away from the balls moves, where it does by orders."""
+        return "inside" if self.inner else "outside"
 
     @property
     def _supports(self) -> tuple[RingBed | RingPoints, ...]:
@@ -195,11 +231,16 @@ class FlexibleRing:
             return
         length, wall = 2.0 * self.footprint.half_length, self.wall
         if not length < 2.0 * wall:
-            least = _just_above(self.r_outer + 0.5 * length - wall, 1e-6)
+            if self.inner:
+                most = _just_above(self.r_inner - 0.5 * length + wall, 1e-6) - 2e-6
+                name, remedy = "r_inner", f"at most {most:.9g}"
+            else:
+                least = _just_above(self.r_outer + 0.5 * length - wall, 1e-6)
+                name, remedy = "r_outer", f"at least {least:.9g}"
             raise ValueError(
-                f"r_outer is {self.r_outer}; the ring is {1e3 * wall:.3g} mm thick under a contact "
-                f"{1e3 * length:.3g} mm long, and Hertz's law is of thick bodies: make r_outer at least "
-                f"{least:.9g} m, or state a smaller load"
+                f"{name} is {self.seat}; the ring is {1e3 * wall:.3g} mm thick under a contact "
+                f"{1e3 * length:.3g} mm long, and Hertz's law is of thick bodies: make {name} {remedy} m, "
+                f"or state a smaller load"
             )
         if not length < self.track:
             raise ValueError(
@@ -209,8 +250,8 @@ class FlexibleRing:
 
     @classmethod
     def of(cls, bearing: BallBearing, **keywords: Any) -> FlexibleRing:
-        """The outer ring of a bearing with its groove, from its boundary dimensions; keywords as in
-        FlexibleRing.
+        """The outer ring of a bearing, or with race="inner" the inner one, with its groove, from its boundary
+        dimensions; keywords as in FlexibleRing.
 
         The groove's bottom touches the balls of the centred bearing but for half the radial play; the
         shoulders stand 0.16 of the ball's diameter above it, 0.3 in an angular contact bearing, where both
@@ -233,13 +274,18 @@ class FlexibleRing:
             raise ValueError(
                 "bearing.boundary is None; give it (bore, outside, width) in m, or make the ring by hand"
             )
-        _, outside, width = bearing.boundary
-        rho, angle = bearing.fo * bearing.Dw, bearing.contact_angle or 0.0
+        bore, outside, width = bearing.boundary
+        angle = bearing.contact_angle or 0.0
         depth = (SHOULDER if angle == 0.0 else SHOULDER_ANGULAR) * bearing.Dw
-        bottom = bearing.geometry.R_o + rho
+        if keywords.get("race") == "inner":
+            rho = bearing.fi * bearing.Dw
+            radii = 0.5 * bore, bearing.geometry.R_i - rho + depth
+        else:
+            rho = bearing.fo * bearing.Dw
+            radii = bearing.geometry.R_o + rho - depth, 0.5 * outside
         sizes = {
-            "r_inner": bottom - depth,
-            "r_outer": 0.5 * outside,
+            "r_inner": radii[0],
+            "r_outer": radii[1],
             "width": width,
             "groove": 2.0 * math.sqrt(rho**2 - (rho - depth) ** 2),
             "groove_radius": rho,
@@ -260,13 +306,18 @@ class FlexibleRing:
         load = self.load
         if load is None:
             load = 1.25 * self.bearing.static_rating / (self.bearing.Z * math.cos(angle))
+        # from the groove's centre towards the ring
+        away = -1.0 if self.inner else 1.0
+        race = self.r_outer if self.inner else self.r_inner
         if self.groove_radius is None:
-            at = (self.r_inner, 0.0)
+            at = (race, 0.0)
         else:
-            centre = self.r_inner + self.depth - self.groove_radius
-            at = (centre + self.groove_radius * math.cos(angle), self.groove_radius * math.sin(angle))
+            centre = race + away * (self.depth - self.groove_radius)
+            reach = away * self.groove_radius
+            at = (centre + reach * math.cos(angle), reach * math.sin(angle))
         side = -1.0 if self.bearing.open_side == "+z" else 1.0
-        return Footprint((at[0], side * at[1]), side * angle, self.bearing.outer_contact.semi_axes(load)[0])
+        contact = self.bearing.inner_contact if self.inner else self.bearing.outer_contact
+        return Footprint((at[0], side * at[1]), side * angle, contact.semi_axes(load)[0])
 
     @cached_property
     def compliance(self) -> RingCompliance:
@@ -321,6 +372,7 @@ class FlexibleRing:
             For a ring in rubber, or an interference at which the ring parts from the bore.
         """
         instance("bore", bore, BoreShape, "it must be a bd.BoreShape(…)")
+        require(not self.inner, "race", self.race, "an inner ring sits on a shaft, and no bore shapes it")
         if self.layer is not None:
             raise ValueError(
                 "layer is given; a bore's shape is known to the ring only without rubber between"
@@ -358,28 +410,36 @@ class FlexibleRing:
         """The ring, and its rubber, as a body of revolution."""
         half, track = 0.5 * self.width, 0.5 * self.track
         regions: list[Region] = [Region((self.r_inner, self.r_outer), (-half, half), self.material)]
-        face: Face = Cylinder(self.r_inner, (-track, track))
-        outer = self.r_outer
+        race, seat, end = self.r_inner, self.r_outer, self.seat
+        if self.inner:
+            race, seat = seat, race
+        face: Face = Cylinder(race, (-track, track))
         if self.layer is not None:
-            outer, reach = self.layer.r_outer, 0.5 * self.layer.width
-            regions.append(Region((self.r_outer, outer), (-reach, reach), self.layer.material, graded=True))
+            end = self.layer.r_inner if self.inner else self.layer.r_outer
+            radii, reach = (min(seat, end), max(seat, end)), 0.5 * self.layer.width
+            regions.append(Region(radii, (-reach, reach), self.layer.material, graded=True))
         section = None
         if self.groove_radius is not None or self.footprint is not None:
             section = ring_section(
-                [q.rectangle for q in regions], self.refinement, track, self.footprint, self.groove_radius
+                [q.rectangle for q in regions],
+                self.refinement,
+                track,
+                self.footprint,
+                self.groove_radius,
+                self.inner,
             )
         if self.groove_radius is not None:
             face = Where(
-                lambda r, z: (np.abs(z) <= track * (1 + 1e-9)) & (r <= self.r_inner + 1.01 * self.depth)
+                lambda r, z: (np.abs(z) <= track * (1 + 1e-9)) & (np.abs(r - race) <= 1.01 * self.depth)
             )
         assert self.arm is not None
         assert self.order is not None
         grooves = {"raceway": Groove(face, self.arm, self.order, z=0.0, footprint=self.footprint)}
         interfaces: dict[str, Face] = {}
         if self.layer is None and self.outside != "rigid":
-            grooves["outside"] = Groove(Line((outer, -half), (outer, half)), outer, self.order, z=0.0)
+            grooves[self.back] = Groove(Line((end, -half), (end, half)), end, self.order, z=0.0)
         else:
-            interfaces["outer"] = Cylinder(outer)
+            interfaces[self.held] = Cylinder(end)
         return Revolved(
             tuple(regions) if section is None else tuple(Patch(q.material) for q in regions),
             interfaces,
@@ -404,7 +464,7 @@ class FlexibleRing:
         if self.layer is None and self.outside == "flexible":
             known["outside"] = (RoundFace("shaft", self.r_outer, half),)
         elif self._supports:
-            known["outer"] = (RoundFace("shaft", self.r_outer, half),)
+            known[self.held] = (RoundFace("bore" if self.inner else "shaft", self.seat, half),)
         return known
 
     @property
@@ -434,12 +494,40 @@ class FlexibleRing:
         """
         element = self.body.superelement()
         if self._supports:
-            element = upon_supports(element, self._supports, self.r_outer, self.width)
+            element = upon_supports(element, self._supports, self.seat, self.width, self.back, self.held)
         if self.footprint is not None:
             element = with_folded(
                 element, self.compliance, self._folded, self.footprint.normal, self.f_max, self.damping
             )
+        if self.inner:
+            element = replace(element, G=gyroscopic(element, self.held, self.body.polar_inertia))
         return replace(element, faces=self.round_faces())
+
+    def turning_error(self, speed: float) -> float:
+        """What is left out of an inner ring's inertia as it turns, relative to its stiffness: (nΩ/ω)².
+
+        Parameters
+        ----------
+        speed
+            Of the shaft, rad/s.
+
+        Returns
+        -------
+        float
+            For the highest order n and the lowest frequency ω of the ring on its held seat, the rubber at its
+            relaxed modulus: an upper bound.
+        """
+        omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
+        element = self.body.superelement()
+        if self._supports:
+            element = upon_supports(element, self._supports, self.seat, self.width, self.back, self.held)
+        rest = np.setdiff1d(np.arange(element.n), element.interfaces[self.held])
+        at = np.ix_(rest, rest)
+        lowest = scipy.linalg.eigh(
+            element.stiffness().real[at], element.M[at], eigvals_only=True, subset_by_index=(0, 0)
+        )[0]
+        assert self.order is not None
+        return float((self.order * omega) ** 2 / lowest)
 
     def outline(self) -> Outline:
         """Its surface; see Revolved.outline."""

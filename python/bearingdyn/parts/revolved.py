@@ -175,6 +175,12 @@ class Revolved:
         ring = self._harmonic(0, TORSION).mass
         return float(np.array(self._density) @ ring.sum(axis=1))
 
+    @property
+    def polar_inertia(self) -> float:
+        """Moment of inertia about the axis, kg m²."""
+        h = self._harmonic(0, TORSION)
+        return float(self.mesh.r @ (h.mass_matrix(self._density) @ self.mesh.r))
+
     @cached_property
     def mesh(self) -> RevolutionMesh:
         """The mesh of the section."""

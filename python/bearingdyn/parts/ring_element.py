@@ -18,17 +18,22 @@ STIFF = 100e3  # Hz, the least natural frequency of what follows at once
 
 
 def upon_supports(
-    element: Superelement, supports: Sequence[RingBed | RingPoints], radius: float, width: float
+    element: Superelement,
+    supports: Sequence[RingBed | RingPoints],
+    radius: float,
+    width: float,
+    side: str = "outside",
+    seat: str = "outer",
 ) -> Superelement:
-    """A free ring between its supports and the rigid interface "outer" on which they stand."""
-    outside = element.raceways["outside"]
+    """A free ring between the supports of one side and the rigid interface on which they stand."""
+    outside = element.raceways[side]
     K, C = held_by(supports, outside.rows, outside.series, radius, width)
     wide = wider(element, 6, "raceway")
     return replace(
         wide,
         K=wide.K + K,
         C=wide.C + C,
-        interfaces={**wide.interfaces, "outer": np.arange(element.n, element.n + 6)},
+        interfaces={**wide.interfaces, seat: np.arange(element.n, element.n + 6)},
     )
 
 
@@ -65,6 +70,14 @@ def with_folded(
             rows[raceway.series.index(axial, p, sine), k] = share * rate * math.sqrt(c)
     carries = replace(raceway, rows=rows, give=compliance.give, Z=compliance.Z)
     return replace(wide, M=M, C=C, K=K, raceways={**wide.raceways, "raceway": carries})
+
+
+def gyroscopic(element: Superelement, seat: str, polar_inertia: float) -> Array:
+    """Gyroscopic matrix (n, n) of a ring that turns with its seat, as a rigid body that follows its tilts."""
+    G = element.G.copy()
+    x, y = element.interfaces[seat][3:5]
+    G[x, y], G[y, x] = polar_inertia, -polar_inertia
+    return G
 
 
 def wider(element: Superelement, count: int, *raceways: str) -> Superelement:

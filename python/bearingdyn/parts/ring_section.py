@@ -20,6 +20,7 @@ def ring_section(
     half_track: float,
     footprint: Footprint | None,
     groove_radius: float | None,
+    inner: bool = False,
 ) -> RevolutionMesh:
     """The mesh of a ring, and of the rubber around it, with lines near the edges of its track.
 
@@ -33,16 +34,23 @@ def ring_section(
         Where the balls touch; None: not known.
     groove_radius
         Of the groove's section, m; None: a plain rectangle.
+    inner
+        Whether it is an inner ring, whose groove is in its outside.
     """
-    mesh = _lines(rectangles, refinement, half_track, footprint, groove_radius is not None)
+    mesh = _lines(rectangles, refinement, half_track, footprint, groove_radius is not None, inner)
     if groove_radius is None:
         return mesh
-    # the ring's lines, bent so that the innermost follows the groove
-    r_inner, r_outer = rectangles[0].r
+    # the ring's lines, bent so that the one at the balls follows the groove
+    race, seat = _race_and_seat(rectangles[0], inner)
     z = np.clip(mesh.z, -half_track, half_track)
     bottom = np.sqrt(groove_radius**2 - z**2) - math.sqrt(groove_radius**2 - half_track**2)
-    share = (r_outer - mesh.r) / (r_outer - r_inner)
-    return replace(mesh, r=mesh.r + np.maximum(share, 0.0) * bottom)
+    share = (seat - mesh.r) / (seat - race)
+    return replace(mesh, r=mesh.r + math.copysign(1.0, seat - race) * np.maximum(share, 0.0) * bottom)
+
+
+def _race_and_seat(ring: Rectangle, inner: bool) -> tuple[float, float]:
+    """Radii of the ring's side with the groove, at the shoulders, and of the other one, m."""
+    return (ring.r[1], ring.r[0]) if inner else (ring.r[0], ring.r[1])
 
 
 def _lines(
@@ -51,12 +59,13 @@ def _lines(
     half: float,
     footprint: Footprint | None,
     grooved: bool,
+    inner: bool,
 ) -> RevolutionMesh:
     near = np.linspace(-half, half, 9)
     if footprint is None:
         return revolution_mesh(rectangles, refinement, z_near=near)
-    r_inner, r_outer = rectangles[0].r
-    r_cuts = [r_inner + share * (r_outer - r_inner) for share in UNDER]
+    race, seat = _race_and_seat(rectangles[0], inner)
+    r_cuts = sorted(race + share * (seat - race) for share in UNDER)
     lines, edges = footprint.lines(), near[[0, -1]]
     if grooved:  # the flanks of the groove, whose arcs are drawn by parabolas
         flanks = []

@@ -144,7 +144,7 @@ def engineering(axis: Axis, values: Array, unit: str) -> str:
         return f"{shown:.10g}".replace("-", "−")
 
     if log:
-        _written_out(axis, decades, FuncFormatter(written))
+        written_out(axis, decades, FuncFormatter(written))
     else:
         axis.set_major_formatter(FuncFormatter(written))
     return unit
@@ -154,7 +154,8 @@ def _power_of_ten(power: int) -> str:
     return "10" + str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
-def _written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> None:
+def written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> None:
+    """A log axis of a figure with its numbers written out, as many as these decades need."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     plain = plain or StrMethodFormatter("{x:g}")
@@ -169,7 +170,7 @@ def frame_log(ax: Axes, values: Array) -> None:
     low, high = float(values.min()), float(values.max())
     margin = max((high / low) ** 0.06, 1.05)
     ax.set_ylim(low / margin, high * margin)
-    _written_out(ax.yaxis, np.log10(high / low))
+    written_out(ax.yaxis, np.log10(high / low))
 
 
 def colour(k: int) -> str:

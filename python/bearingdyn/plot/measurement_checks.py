@@ -9,7 +9,7 @@ import numpy as np
 
 from bearingdyn.material import KK_LIMIT, DMAData, MasterCurve, Maxwell, kk_ratio, suspects
 from bearingdyn.plot.arguments import figure, maybe, one, several
-from bearingdyn.plot.frame import COLOURS, colour, finish, new_axes, some, style
+from bearingdyn.plot.frame import COLOURS, colour, finish, new_axes, some, style, written_out
 from bearingdyn.plot.isotherms import letter_of
 from bearingdyn.plot.temperature_colours import temperature_bar, temperature_colour, temperature_scale
 from bearingdyn.types import Array, Complex
@@ -90,6 +90,7 @@ def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: A
     with style():
         ax = _free_of_frequency(data, maxwell, ax, lambda G: (G.real / 1e6, G.imag / 1e6))
         ax.set_yscale("log")
+        written_out(ax.yaxis, float(np.ptp(np.log10(data.loss))))
         ax.set_xlabel(f"storage modulus {letter}′, MPa")
         ax.set_ylabel(f"loss modulus {letter}″, MPa")
         finish(ax, "Cole–Cole", legend=maxwell is not None)
@@ -175,10 +176,12 @@ def _free_of_frequency(
 ) -> Axes:
     """Two figures of the complex modulus, Pa, against each other, the first on a log axis: data and model."""
     ax = ax or new_axes(width=5.0, height=4.0)
-    _scatter(ax, data, *of(data.storage + 1j * data.loss))
+    x, y = of(data.storage + 1j * data.loss)
+    _scatter(ax, data, x, y)
     if maxwell is not None:
         ax.plot(*of(np.asarray(_model(data, maxwell))), color=COLOURS[1], label=_name(maxwell))
     ax.set_xscale("log")
+    written_out(ax.xaxis, float(np.ptp(np.log10(x))))
     return ax
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 Results: TypeAlias = "Mapping[str, xarray.Dataset]"
 MOST_CHANNELS = 12  # drawn of each kind of march
+FAINT = 1e-5  # of the largest line, below which the high end of a spectrum is not drawn
 WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
 
 
@@ -96,8 +97,11 @@ def _march(members: Results) -> str:
     for name in names[:MOST_CHANNELS]:
         traces = {label: d["record"].sel(channel=name).values for label, d in members.items()}
         scale, unit = _common(list(traces.values()), units[name])
-        curves = [Curve(k, d["time"].values, scale * traces[k]) for k, d in members.items()]
-        charts.append(Chart(name, "time, s", unit or "–", curves).html())
+        # runs that settled for different times begin together
+        curves = [
+            Curve(k, d["time"].values - d["time"].values[0], scale * traces[k]) for k, d in members.items()
+        ]
+        charts.append(Chart(name, "time from the first sample, s", unit or "–", curves).html())
         lines = _spectra(members, name)
         if lines:
             factor, text = _common([c.y for c in lines], units[name])
@@ -117,7 +121,7 @@ def _march(members: Results) -> str:
 
 
 def _spectra(members: Results, name: str) -> list[Curve]:
-    """Spectra of a channel about its mean; [] where a run is too short or its steps are uneven."""
+    """Spectra of a channel, up to where the last line stands out; [] where a run is too short for one."""
     found = []
     for label, data in members.items():
         try:
@@ -125,7 +129,12 @@ def _spectra(members: Results, name: str) -> list[Curve]:
         except ValueError:
             return []
         found.append(Curve(label, lines["frequency"].values[1:], lines["amplitude"].values[1:]))
-    return found
+    highest = 0.0
+    for curve in found:
+        above = np.flatnonzero(curve.y > FAINT * curve.y.max())
+        if above.size:
+            highest = max(highest, float(curve.x[above[-1]]))
+    return [Curve(c.name, c.x[c.x <= highest], c.y[c.x <= highest]) for c in found] if highest else found
 
 
 def _common(values: list[Array], unit: str) -> tuple[float, str]:
@@ -281,12 +290,19 @@ def _map(data: xarray.Dataset) -> str:
     return "".join(charts) + table(("event", "at", "branch"), events)
 
 
-def _heat(data: xarray.Dataset) -> str:
+def _heat(members: Results) -> str:
+    """Mean power that each part turns into heat, designs side by side."""
+    found = {
+        label: dict(zip(map(str, data["part"].values), data["power"].values, strict=True))
+        for label, data in members.items()
+    }
+    parts = list(dict.fromkeys(part for powers in found.values() for part in powers))
     rows = [
-        (str(name), told(float(p), "W"))
-        for name, p in zip(data["part"].values, data["power"].values, strict=True)
+        (part, *(told(float(powers[part]), "W") if part in powers else "" for powers in found.values()))
+        for part in parts
     ]
-    return table(("part", "heat, mean power"), rows)
+    total = ("in all", *(told(float(sum(powers.values())), "W") for powers in found.values()))
+    return table(("part", *found), [*rows, total])
 
 
 def everything(data: xarray.Dataset) -> str:
@@ -331,6 +347,7 @@ BESIDE: Mapping[str, Callable[[Results], str]] = {
     "sound power": _power,
     "radiated power": _power,
     "band levels": _bands,
+    "dissipation": _heat,
 }
 ALONE: Mapping[str, Callable[[xarray.Dataset], str]] = {
     "modes": _modes,
@@ -338,5 +355,4 @@ ALONE: Mapping[str, Callable[[xarray.Dataset], str]] = {
     "steady state": _steady,
     "speed map": _map,
     "parameter map": _map,
-    "dissipation": _heat,
 }

@@ -13,7 +13,7 @@
   const shown = x => {
     if (x === 0) return "0";
     const size = Math.abs(x);
-    return size >= 1e5 || size < 1e-3 ? x.toExponential(3) : String(+x.toPrecision(5));
+    return size >= 1e6 || size < 1e-3 ? x.toExponential(4).replace(/\.?0+e/, "e") : String(+x.toPrecision(5));
   };
 
   // ---- axes: from values to [0, 1] and back, and ticks
@@ -75,17 +75,24 @@
     reset.addEventListener("click", () => { view = whole(); draw(); });
     legend.append(reset);
 
-    let area = null;
+    let area = null, overlay = null;
+    // where the pointer is, or what it drags over: drawn without the curves anew
+    const mark = () => {
+      overlay.replaceChildren();
+      const {top, h} = area;
+      if (start !== null && here !== null) make("rect", {x: Math.min(start, here), y: top, width: Math.abs(here - start), height: h, class: "zoom"}, overlay);
+      else if (here !== null) make("line", {x1: here, x2: here, y1: top, y2: top + h, class: "cursor"}, overlay);
+    };
     const draw = () => {
       const width = Math.max(box.clientWidth, 200), height = Math.round(Math.min(360, Math.max(220, width * 0.45)));
-      const [x0, x1, y0, y1] = view, left = 62, right = 8, top = 8, bottom = 40;
+      const [x0, x1, y0, y1] = view, left = 52, right = 10, top = 22, bottom = 40;
       const w = width - left - right, h = height - top - bottom;
       area = {left, top, w, h};
       const X = u => left + (u - x0) / (x1 - x0) * w, Y = v => top + (y1 - v) / (y1 - y0) * h;
       const svg = make("svg", {width, height, viewBox: `0 0 ${width} ${height}`, "aria-hidden": "true"});
       for (const u of ticks(given.x, x0, x1, w / 80)) {
         make("line", {x1: X(u), x2: X(u), y1: top, y2: top + h, class: "grid"}, svg);
-        make("text", {x: X(u), y: top + h + 15, "text-anchor": "middle"}, svg).textContent = shown(back(given.x, u));
+        make("text", {x: X(u), y: top + h + 15, "text-anchor": X(u) > left + w - 20 ? "end" : "middle"}, svg).textContent = shown(back(given.x, u));
       }
       for (const v of ticks(given.y, y0, y1, h / 40)) {
         make("line", {x1: left, x2: left + w, y1: Y(v), y2: Y(v), class: "grid"}, svg);
@@ -94,23 +101,31 @@
       make("rect", {x: left, y: top, width: w, height: h, class: "frame"}, svg);
       const clip = make("svg", {x: left, y: top, width: w, height: h, viewBox: `${left} ${top} ${w} ${h}`}, svg);
       for (const c of curves) if (c.on) {
-        let d = "", pen = false;
+        let d = "", pen = false, at = null, low = 0, high = 0, last = 0, x = "";
+        const rest = () => pen && low < high ? `L${x} ${low.toFixed(1)}L${x} ${high.toFixed(1)}L${x} ${last.toFixed(1)}` : "";
         for (let i = 0; i < c.x.length; i++) {
-          if (!usable(given.x, c.x[i]) || !usable(given.y, c.y[i])) { pen = false; continue; }
+          if (!usable(given.x, c.x[i]) || !usable(given.y, c.y[i])) { d += rest(); pen = false; continue; }
           const u = forward(given.x, c.x[i]);
           const in_view = u >= x0 - (x1 - x0) && u <= x1 + (x1 - x0);
-          if (!in_view) { pen = false; continue; }
-          const p = X(u).toFixed(1), q = Y(forward(given.y, c.y[i])).toFixed(1);
-          d += given.dots || c.x.length === 1 ? `M${p} ${q}h.01` : `${pen ? "L" : "M"}${p} ${q}`;
-          pen = true;
+          if (!in_view) { d += rest(); pen = false; continue; }
+          const p = X(u), q = Y(forward(given.y, c.y[i]));
+          if (given.dots || c.x.length === 1) { d += `M${p.toFixed(1)} ${q.toFixed(1)}h.01`; continue; }
+          const column = Math.floor(2 * p);
+          if (pen && column === at) {  // of what falls into half a pixel, its lowest, highest and last
+            low = Math.min(low, q); high = Math.max(high, q); last = q;
+            continue;
+          }
+          d += rest();
+          d += `${pen ? "L" : "M"}${p.toFixed(1)} ${q.toFixed(1)}`;
+          pen = true; at = column; low = high = last = q; x = p.toFixed(1);
         }
+        d += rest();
         make("path", {d, class: given.dots || c.x.length === 1 ? "dots" : "curve", style: `stroke:${c.colour}`}, clip);
       }
       make("text", {x: left + w / 2, y: height - 6, "text-anchor": "middle", class: "label"}, svg).textContent = given.x.label;
-      const name = make("text", {x: 0, y: 0, transform: `translate(12 ${top + h / 2}) rotate(-90)`, "text-anchor": "middle", class: "label"}, svg);
-      name.textContent = given.y.label;
-      if (start !== null && here !== null) make("rect", {x: Math.min(start, here), y: top, width: Math.abs(here - start), height: h, class: "zoom"}, svg);
-      else if (here !== null) make("line", {x1: here, x2: here, y1: top, y2: top + h, class: "cursor"}, svg);
+      make("text", {x: left, y: 13, class: "label"}, svg).textContent = given.y.label;
+      overlay = make("g", {}, svg);
+      mark();
       box.replaceChildren(svg);
       const all = whole();
       reset.hidden = view.every((v, k) => Math.abs(v - all[k]) <= 1e-9 * (Math.abs(v) + 1));
@@ -147,12 +162,12 @@
       view = [u[0], u[1], y0 - d, y1 + d];
     };
     box.addEventListener("pointerdown", event => { start = here = inside(event); box.setPointerCapture(event.pointerId); });
-    box.addEventListener("pointermove", event => { here = inside(event); read(here); draw(); });
+    box.addEventListener("pointermove", event => { here = inside(event); read(here); mark(); });
     box.addEventListener("pointerup", event => {
       if (start !== null && Math.abs(inside(event) - start) > 6) zoom(start, inside(event));
       start = null; draw();
     });
-    box.addEventListener("pointerleave", () => { start = here = null; draw(); });
+    box.addEventListener("pointerleave", () => { start = here = null; mark(); });
     box.addEventListener("dblclick", () => { view = whole(); draw(); });
     box.addEventListener("keydown", event => {
       const step = {ArrowLeft: -1, ArrowRight: 1}[event.key];
@@ -160,11 +175,12 @@
       if (!step) return;
       event.preventDefault();
       here = Math.min(Math.max((here ?? area.left) + 4 * step, area.left), area.left + area.w);
-      read(here); draw();
+      read(here); mark();
     });
-    new ResizeObserver(draw).observe(box);
-    window.addEventListener("beforeprint", draw);
     draw();
+    let width = box.clientWidth;
+    new ResizeObserver(() => { if (box.clientWidth !== width) { width = box.clientWidth; draw(); } }).observe(box);
+    window.addEventListener("beforeprint", draw);
   };
 
   // ---- modes: surfaces far to near, coloured by how far they move
@@ -263,7 +279,16 @@
     amplitudes(); draw(); ask();
   };
 
-  document.querySelectorAll("figure.chart").forEach(chart);
-  document.querySelectorAll("figure.shapes").forEach(shapes);
-  document.documentElement.dataset.drawn = "yes";
+  // what is seen first, then the rest while the page can be read already
+  const waiting = [...document.querySelectorAll("figure.chart, figure.shapes")];
+  const next = () => {
+    const began = performance.now();
+    while (waiting.length && performance.now() - began < 30) {
+      const figure = waiting.shift();
+      (figure.classList.contains("chart") ? chart : shapes)(figure);
+    }
+    if (waiting.length) setTimeout(next, 0); else document.documentElement.dataset.drawn = "yes";
+  };
+  window.addEventListener("beforeprint", () => { while (waiting.length) next(); });
+  next();
 })();

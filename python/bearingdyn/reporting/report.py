@@ -201,10 +201,11 @@ def _provenance(page: _Page, eq: Equilibrium | None, results: Mapping[str, xarra
     """What made the results, and whether it was this machine and this version."""
     own = inputs_of(eq.system.inputs).get("inputs_hash", "") if eq is not None else ""
     now = versions()["bearingdyn"]
-    told = []
+    told, makers = [], set[str]()
     for name, data in results.items():
         made, when, inputs = (str(data.attrs.get(k, "")) for k in ("made_by", "made_at", "inputs_hash"))
-        told.append((name, kind_of(data), made, when, inputs))
+        makers.add(made)
+        told.append((name, kind_of(data), when, inputs))
         if own and inputs and inputs != own:
             page.doubts[f"{name!r} was computed from other inputs than those of the machine shown here."] = (
                 "Report it with the model that it was computed from, or compute it anew."
@@ -215,7 +216,9 @@ def _provenance(page: _Page, eq: Equilibrium | None, results: Mapping[str, xarra
                 "The changelog says what changed; compute it anew where it matters."
             )
     page.add(
-        "Where it comes from", table(("result", "analysis", "made by", "at, UTC", "hash of its inputs"), told)
+        "Where it comes from",
+        table(("result", "analysis", "at, UTC", "hash of its inputs"), told)
+        + "".join(paragraph(f"Computed by {made}.") for made in sorted(makers) if made),
     )
 
 

@@ -33,7 +33,13 @@ def versions() -> dict[str, str]:
 
 
 def stamp(time: datetime | None = None) -> str:
-    """When a result was made: a time, by default now, in UTC as ISO 8601 writes it."""
+    """When a result was made, in UTC as ISO 8601 writes it.
+
+    Parameters
+    ----------
+    time
+        None: now.
+    """
     return (time or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="seconds")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 # netCDF has no complex type: a trailing axis of two of this name holds real and imaginary part
 PARTS = "part"
+# its name where results have parts of a machine
+PARTS_BESIDE = "real_imaginary"
 
 
 def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
@@ -66,7 +68,7 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     """
     groups = dict(results) if isinstance(results, Mapping) and not hasattr(results, "dims") else {"": results}
     if not groups:
-        raise ValueError(f"{os.fspath(path)}: nothing to save; give at least one result")
+        raise ValueError(f"{path}: nothing to save; give at least one result")
     for name, data in groups.items():
         what = f"results[{name!r}]" if name else "results"
         if not hasattr(data, "to_netcdf") or not hasattr(data, "data_vars"):
@@ -137,7 +139,7 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
     Returns
     -------
     list[str]
-        Sorted; empty for a file of one result, and for a run file.
+        Sorted, those within others as "outer/inner"; empty for a file of one result, and for a run file.
 
     Raises
     ------
@@ -151,9 +153,17 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
         return []
     try:
         with h5netcdf.File(path, "r") as file:
-            return sorted(file.groups)
+            return sorted(_holding(file, ""))
     except Exception as error:  # as in open_result
         raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def _holding(group: Any, above: str) -> Iterator[str]:
+    """Names of the groups below one that hold a result, those within others by "outer/inner"."""
+    for name, inner in group.groups.items():
+        if inner.variables or not inner.groups:
+            yield above + name
+        yield from _holding(inner, f"{above}{name}/")
 
 
 def _run_dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
@@ -175,7 +185,8 @@ def _plain(data: Any) -> Any:
     for name, variable in data.data_vars.items():
         if np.iscomplexobj(variable.values):
             values = np.stack([variable.values.real, variable.values.imag], axis=-1)
-            plain[name] = xarray.Variable((*variable.dims, PARTS), values, {**variable.attrs, "complex": 1})
+            dims = (*variable.dims, PARTS_BESIDE if PARTS in data.dims else PARTS)
+            plain[name] = xarray.Variable(dims, values, {**variable.attrs, "complex": 1})
     return plain
 
 
@@ -183,7 +194,7 @@ def _complex(data: xarray.Dataset) -> xarray.Dataset:
     import xarray
 
     for name, variable in data.data_vars.items():
-        if variable.attrs.get("complex") == 1 and variable.dims[-1] == PARTS:
+        if variable.attrs.get("complex") == 1 and variable.dims[-1] in (PARTS, PARTS_BESIDE):
             attrs = {k: v for k, v in variable.attrs.items() if k != "complex"}
             # by parts: re + 1j·im makes NaN of an infinite part
             values = np.empty(variable.shape[:-1], dtype=np.complex128)

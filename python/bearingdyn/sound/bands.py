@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import one_of, positive, real, require
+from bearingdyn.checks import one_of, positive, reals, require
 from bearingdyn.sound.signals import signal
 from bearingdyn.types import Array
 
@@ -84,7 +84,8 @@ def band_powers(frequency: ArrayLike, power: ArrayLike, fraction: Fraction = 3) 
     ValueError
         For lines without a positive frequency, or of another number.
     """
-    f, p = real(frequency), np.asarray(power, dtype=np.float64)
+    f = reals("frequency", frequency, "it must be Hz, real numbers")
+    p = reals("power", power, "it must be a mean square or W of each line, real numbers")
     if f.ndim != 1 or p.shape[:1] != f.shape or not bool(np.isfinite(f).all()):
         raise ValueError(f"power has shape {p.shape}; its first axis must be that of frequency, {f.shape}")
     there = f > 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import positive, real, require, vector
+from bearingdyn.checks import instance, positive, real, require, vector, whole
 from bearingdyn.sound.radiation import Radiation
 from bearingdyn.types import Array, Complex
 
@@ -13,6 +13,7 @@ from bearingdyn.types import Array, Complex
 _A, _B = 0.445948490915965, 0.091576213509771
 _PHI = np.array([[1 - 2 * a if i == j else a for j in range(3)] for a in (_A, _B) for i in range(3)])
 _WEIGHT = np.repeat([0.223381589678011, 0.109951743655322], 3)
+GIVE = "give what bd.sound.solve returns"
 CHUNK = 2_000_000  # distances at a time: 16 MB
 
 
@@ -37,6 +38,7 @@ def pressure_at(radiation: Radiation, points: ArrayLike) -> Complex:
         For a point nearer to a triangle than that is long, where the field is known no better than the
         surface, or one below the floor.
     """
+    instance("radiation", radiation, Radiation, GIVE)
     x = _places("points", points)
     surface = radiation.surface
     floor = surface.floor
@@ -103,6 +105,7 @@ def far_field(radiation: Radiation, directions: ArrayLike) -> Complex:
     ValueError
         For directions that are not of unit length.
     """
+    instance("radiation", radiation, Radiation, GIVE)
     u = _places("directions", directions)
     if not bool(np.allclose(np.linalg.norm(u, axis=1), 1.0, rtol=0.0, atol=1e-6)):
         raise ValueError("directions has a vector that is not of unit length; divide each by its length")
@@ -141,7 +144,8 @@ def far_power(radiation: Radiation, amplitudes: ArrayLike = (1.0,), order: int =
     """
     from numpy.polynomial.legendre import leggauss
 
-    z, w = leggauss(order)
+    instance("radiation", radiation, Radiation, GIVE)
+    z, w = leggauss(whole("order", order, 1))
     half = radiation.surface.floor is not None
     if half:
         z, w = 0.5 * (z + 1.0), 0.5 * w

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import one_of, positive, real, require
+from bearingdyn.checks import one_of, positive, reals, require
 from bearingdyn.sound.bands import Fraction, band_powers
 from bearingdyn.sound.signals import signal
 from bearingdyn.sound.weighting import Weighting, weighting
@@ -47,7 +47,7 @@ def level(value: ArrayLike, quantity: str) -> Array:
     ISO 1683:2015.
     """
     one_of("quantity", quantity, tuple(REFERENCES))
-    x = real(value)
+    x = reals("value", value, f"it must be a {quantity}, real numbers")
     require(
         bool((x >= 0).all()), "value", value, f"it must be a {quantity} of zero or more, an rms or a power"
     )
@@ -63,7 +63,7 @@ def total(levels: ArrayLike) -> float:
     levels
         dB; −inf of nothing.
     """
-    x = real(levels)
+    x = reals("levels", levels, "it must be dB, real numbers")
     require(not bool(np.isnan(x).any()), "levels", levels, "it must be dB, none NaN")
     with np.errstate(divide="ignore"):
         return float(10.0 * np.log10(np.sum(10.0 ** (x / 10.0))))
@@ -103,7 +103,8 @@ def band_levels(
         As `band_powers`, `level` and `weighting` do.
     """
     one_of("quantity", quantity, tuple(REFERENCES))
-    f, p = real(frequency), real(power)
+    f = reals("frequency", frequency, "it must be Hz, real numbers")
+    p = reals("power", power, "it must be a mean square or W of each line, real numbers")
     gain = 10.0 ** (weighting(f, weighted) / 10.0)
     nominal, plain = band_powers(f, p, fraction)
     _, heard = band_powers(f, p * gain, fraction)

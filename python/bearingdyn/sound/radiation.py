@@ -34,7 +34,7 @@ import scipy.linalg
 import scipy.sparse
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import positive
+from bearingdyn.checks import instance, positive
 from bearingdyn.core import helmholtz
 from bearingdyn.notice import CoarsePanels, warn
 from bearingdyn.short_repr import short
@@ -138,6 +138,7 @@ def solve(
     CoarsePanels
         Where a triangle is longer than a sixth of the wavelength.
     """
+    instance("surface", surface, TriangleSurface, "it must be a bd.sound.TriangleSurface")
     frequency, density = positive("frequency", frequency), positive("density", density)
     sound_speed = positive("sound_speed", sound_speed)
     B = np.asarray(shapes)

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import one_of, real
+from bearingdyn.checks import one_of, reals
 from bearingdyn.types import Array
 
 Weighting = Literal["A", "C", "Z"]
@@ -53,7 +53,7 @@ def weighting(frequency: ArrayLike, kind: Weighting = "A") -> Array:
     IEC 61672-1:2013, annex E.
     """
     one_of("kind", kind, ("A", "C", "Z"))
-    f = real(frequency)
+    f = reals("frequency", frequency, "it must be Hz of zero or more, real numbers")
     if not bool((np.isfinite(f) & (f >= 0)).all()):
         raise ValueError(
             "frequency has an entry that is negative or not finite; all must be Hz of zero or more"

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bearingdyn.checks import number, positive, require
-from bearingdyn.material import Maxwell, uniforms
+from bearingdyn.material import Doubts, Maxwell, uniforms
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
@@ -116,12 +116,13 @@ class Uniform:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A material drawn from its spread, all its parameters together.
+    """A material drawn from what is not known of it, all its parameters together.
 
     Parameters
     ----------
     material
-        A Maxwell model with a spread: that of its fit, or of `with_spread`.
+        A Maxwell model with a spread, that of its fit or of `with_spread`; or the doubts about one by name,
+        as `bd.doubts` finds them.
 
     Raises
     ------
@@ -129,20 +130,26 @@ class Fitted:
         For a material without spread.
     """
 
-    material: Maxwell
+    material: Maxwell | Doubts
 
     __repr__ = short
 
     def __post_init__(self) -> None:
-        remedy = "it must be a bd.Maxwell with a spread"
-        require(isinstance(self.material, Maxwell), "Fitted.material", self.material, remedy)
-        self.material.uncertain()
+        remedy = "it must be a bd.Maxwell with a spread, or bd.doubts of one"
+        require(isinstance(self.material, Maxwell | Doubts), "Fitted.material", self.material, remedy)
+        assert self.axes > 0
+
+    @property
+    def axes(self) -> int:
+        """Numbers that a draw takes."""
+        return len(self.material if isinstance(self.material, Doubts) else self.material.uncertain().axes)
 
     def drawn(self, share: Array) -> list[Maxwell]:
         """Materials (n) of shares (n, axes)."""
         from scipy.special import ndtri
 
-        return [self.material.drawn(z) for z in np.asarray(ndtri(share))]
+        points = share if isinstance(self.material, Doubts) else np.asarray(ndtri(share))
+        return [self.material.drawn(point) for point in points]
 
 
 Distribution: TypeAlias = Normal | LogNormal | Uniform | Fitted
@@ -182,7 +189,7 @@ class Box:
         found, at = {}, 0
         for name, given in self.parameters.items():
             if isinstance(given, Distribution):
-                size = len(given.material.uncertain().axes) if isinstance(given, Fitted) else 1
+                size = given.axes if isinstance(given, Fitted) else 1
                 found[name] = slice(at, at + size)
                 at += size
         return found

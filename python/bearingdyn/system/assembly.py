@@ -82,18 +82,22 @@ def assemble(app: Application) -> System:
 
     bearings = []
     for hung in plan.bearings.values():
-        raceway = plan.raceway(hung.outer)
-        series = RIGID if raceway is None else raceway.series
-        ends = {str(hung.inner): hung.coefficients(series)}
-        if raceway is None and hung.outer != GROUND:
-            ends[str(hung.outer)] = -hung.coefficients()
-        B = _between(ends, outputs)
-        if raceway is not None:
-            B = B - raceway.rows @ select[hung.outer.part]
+        sides = ((hung.inner, 1.0), (hung.outer, -1.0))
+        races = [(place, sign, plan.raceway(place)) for place, sign in sides]
+        flexible = [(place, sign, race) for place, sign, race in races if race is not None]
+        series = flexible[0][2].series if flexible else RIGID
+        ends = {
+            str(end): sign * hung.coefficients(series)
+            for end, sign, race in races
+            if race is None and end != GROUND
+        }
+        B = _between(ends, outputs) if ends else np.zeros((len(series), n))
+        for end, sign, race in flexible:
+            B = B + sign * race.rows @ select[end.part]
         speeds = plan.ring_speeds(hung)
         known = hung.bearing.ring_speeds == speeds
         bearing = hung.bearing if known else replace(hung.bearing, turning=speeds)
-        give = 0.0 if raceway is None else raceway.give
+        give = sum(race.give for _, _, race in flexible)
         bearings.append(BearingTerm(hung.name, bearing, B, series, hung.offset, ends, give))
 
     for seat in plan.fits.values():

@@ -20,6 +20,7 @@ from bearingdyn.checks import meant
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.system.natural_modes import natural
+from bearingdyn.system.raceway_channels import raceway_row
 from bearingdyn.system.softening_layer import marched_layer
 from bearingdyn.system.static_modulus import Modulus, static_modulus
 from bearingdyn.system.system_matrix_check import check_matrix
@@ -102,12 +103,20 @@ class System:
     def row(self, channel: str | Channel) -> Array:
         """Row (n,) of one component: "shaft.left.y"; rotations are θx, θy, θz or rx, ry, rz.
 
+        Of a raceway: "ring.raceway.radial-cos2", or "ring.raceway.axial@-90" at an azimuth in degrees.
+
         Raises
         ------
         ValueError
             Where the place or the component does not exist.
         """
         wanted = Channel.parse(channel) if isinstance(channel, str) else channel
+        for part in self.parts:
+            for name, raceway in part.element.raceways.items():
+                place = f"{part.name}.{name}"
+                if f"{wanted.site}.".startswith(f"{place}."):
+                    own = raceway_row(place, raceway, f"{wanted.site}.{wanted.component}"[len(place) + 1 :])
+                    return np.asarray(own @ part.place)
         place = f"{wanted.site}.{wanted.component}"
         if place in self.outputs:
             raise ValueError(f"{place!r} is a place; add what of it is meant, as {place + '.y'!r}")

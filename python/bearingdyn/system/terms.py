@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from bearingdyn.application import Part
-from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, LooseFit, RacewaySeries
+from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, FilmDamping, LooseFit, RacewaySeries
 from bearingdyn.cms import Superelement
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -64,6 +64,10 @@ class BearingTerm:
         kernel = self.bearing.kernel(self.series)
         if self.give != 0.0:
             kernel = replace(kernel, give=self.give)
+            law = getattr(self.bearing, "damping", None)
+            if isinstance(law, FilmDamping):
+                _, scale, table = law.behind(self.give, kernel.kappa).kernel_fields()
+                kernel = replace(kernel, damping_c=scale, damping_table=table)
         if self.offset == 0.0:
             return kernel
         # e0 = x0² + y0² − A² moves by offset (2 x0 + offset), without cancellation

@@ -43,10 +43,10 @@ def test_table_is_within_two_per_cent_of_new_solutions(M: float, L: float, D: fl
 
 @pytest.mark.slow
 @pytest.mark.parametrize("M", [24.0, 35.27, 43.09, 52.64])
-def test_about_the_turn_the_table_is_within_five_per_cent_of_new_solutions(M: float) -> None:
+def test_about_the_turn_the_table_is_within_two_per_cent_of_new_solutions(M: float) -> None:
     """Where C0 halves (1.00 at M = 24, .51 at 43): a hump of c over the load is the film's own."""
     solved, found = ehl.steady(M, 14.8, 0.031, accuracy=0.02), ehl.lookup(M, 14.8, 0.031).figures
-    assert found.C0 == pytest.approx(solved.C0, rel=0.055)  # 4.9 % at M = 43, .6 % the grid's
+    assert found.C0 == pytest.approx(solved.C0, rel=0.02)
     assert found.K0 == pytest.approx(solved.K0, abs=0.01)
 
 
@@ -62,16 +62,16 @@ def test_closed_form_over_the_density_is_the_film_of_a_hertz_contact() -> None:
     """From three times the turn on; of rigid bodies the formula is up to 2.2 times the film."""
     corrected, bare, count = closed_form()
     assert count > 100
-    assert corrected < 0.058  # 5 % was asked: 5.4 % at M = 5000, L = 20, D = .02, and 5.7 % at L = 25
+    assert corrected < 0.05  # what was asked: 4.8 % either way
     assert bare > 0.3
     assert closed_form(0.0)[0] > 0.5
 
 
-def test_beyond_l_of_20_the_damping_of_the_table_errs_a_little_more() -> None:
-    """2.1 % of C0 at the upper end of L, where splines have no node beyond; 2 % are kept below L = 20."""
-    solved, found = ehl.steady(150, 22.6, 0.05, accuracy=0.02), ehl.lookup(150, 22.6, 0.05).figures
+@pytest.mark.parametrize("L", [21.3, 22.6, 23.8])
+def test_the_damping_of_the_table_is_within_two_per_cent_up_to_its_largest_l(L: float) -> None:
+    solved, found = ehl.steady(150, L, 0.05, accuracy=0.02), ehl.lookup(150, L, 0.05).figures
     assert (found.Hc, found.H0) == pytest.approx((solved.Hc, solved.H0), rel=0.02)
-    assert found.C0 == pytest.approx(solved.C0, rel=0.025)
+    assert found.C0 == pytest.approx(solved.C0, rel=0.02)
 
 
 def test_answer_over_frequency_is_that_of_the_equations() -> None:

@@ -46,6 +46,12 @@ class Motion:
         return np.asarray(x)
 
     @cached_property
+    def films(self) -> Complex:
+        """Amplitudes (L, m) of what films by frequency add to the bearings' forces."""
+        b = self.balance
+        return np.asarray((b.receptances.films(b.omega) @ self.found.z[:, :, None])[:, :, 0])
+
+    @cached_property
     def fine(self) -> Pressed:
         """What the balls do, sampled more finely where one base allows it."""
         b = self.balance
@@ -92,7 +98,8 @@ class Motion:
             if row is not None and kind in MOTIONS:
                 out[:, c] = (1j * b.omega) ** MOTIONS.index(kind) * (self.x @ row)
             elif kind == core.CHANNEL_KINDS["force"]:
-                out[:, c] = self.found.pressed.g[:, b.slots[bearing].start + index]
+                at = b.slots[bearing].start + index
+                out[:, c] = self.found.pressed.g[:, at] + self.films[:, at]
             else:
                 out[:, c] = lines.amplitudes(_of_balls(kind, index, self.fine.bearings[bearing])[:, None])[
                     :, 0
@@ -131,7 +138,11 @@ class Motion:
             if sink.channel is None:
                 lost[sink.name] = 0.5 * float((np.abs(velocity @ sink.rows.T) ** 2).sum())
             elif sink.channel[0] == core.CHANNEL_KINDS["contact_loss"]:
-                lost[sink.name] = float(self.found.pressed.bearings[sink.channel[1]].pressing.mean())
+                at = b.slots[sink.channel[1]]
+                moved = b.rates(self.found.z)[:, at]
+                by_films = 0.5 * float(np.real(np.vdot(moved, self.films[:, at])))
+                pressing = self.found.pressed.bearings[sink.channel[1]].pressing
+                lost[sink.name] = float(pressing.mean()) + by_films
             else:
                 lost[sink.name] = self._shear(sink.channel[2])
         return fed, lost

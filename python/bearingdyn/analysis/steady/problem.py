@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
+from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.analysis.steady.balance import Balance
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
+from bearingdyn.checks import require
 from bearingdyn.material import Maxwell
 from bearingdyn.system import LayerTerm, System, system_of
-from bearingdyn.types import Array, Complex
+from bearingdyn.types import Array, Complex, Index
+
+if TYPE_CHECKING:
+    import xarray
 
 # of the mean of the bearings' own stiffness, that the reference adds to each coefficient: what holds a rotor
 # whose loaded balls stand on one side. Any value gives the same motion
@@ -45,8 +51,15 @@ class Problem:
     rest: Array
 
     @classmethod
-    def of(cls, source: Equilibrium | Application | System, subharmonic: int = 1) -> Problem:
+    def of(
+        cls,
+        source: Equilibrium | Application | System,
+        subharmonic: int = 1,
+        contacts: Contacts = "viscous",
+    ) -> Problem:
         """From an equilibrium, an application (its equilibrium is found) or a system.
+
+        Films answer as their tangents do, as in a march, or with contacts="film" by frequency.
 
         Raises
         ------
@@ -74,9 +87,9 @@ class Problem:
             K[own, own], C[own, own] = s.K, s.C
             at += len(s.z)
         level = EVEN * float(np.trace(K)) / max(len(rest), 1)
-        return cls(
-            source, system, bases, Receptances(system, K + max(level, IDLE) * np.eye(len(rest)), C), rest
-        )
+        K = K + max(level, IDLE) * np.eye(len(rest))
+        balls = source.balls if contacts == "film" and isinstance(source, Equilibrium) else None
+        return cls(source, system, bases, Receptances(system, K, C, balls), rest)
 
     def balance(self, lines: Lines, speed: float, rows: Array | None = None) -> Balance:
         """Its equations on chosen lines at a speed, rad/s; rows (k, n) of motions asked for beside them."""
@@ -87,6 +100,20 @@ class Problem:
         z = np.zeros((lines.count, len(self.rest)), dtype=np.complex128)
         z[0] = self.rest
         return z
+
+
+def motion_of(field: str, problem: Problem, result: xarray.Dataset) -> tuple[Index, Complex]:
+    """Index and amplitudes of an earlier result; ValueError for one of another application."""
+    require("motion" in result, field, sorted(map(str, result)), "give a result of steady_state")
+    index, z = np.asarray(result["index"].values, dtype=np.intp), np.asarray(result["motion"].values)
+    names = [b.name for b in problem.bases.bases]
+    require(
+        z.shape[1] == len(problem.rest) and [str(b) for b in result["base"].values] == names,
+        field,
+        list(map(str, result["base"].values)),
+        f"it must be a motion of the same bearings over the base frequencies {names}",
+    )
+    return index, np.ascontiguousarray(z, dtype=np.complex128)
 
 
 def _plain(system: System) -> bool:

@@ -10,6 +10,7 @@ out; what the reference takes away the balance gives back.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -60,7 +61,9 @@ class Poles:
         A[2 * n :, 2 * n :] = -np.diag(rates)
         values, vectors = np.linalg.eig(A)
         try:
-            found = cls(values, vectors[:n] / w[:, None], np.linalg.inv(vectors)[:, n : 2 * n])
+            left = np.asarray(np.linalg.inv(vectors)[:, n : 2 * n], dtype=np.complex128)
+            right = np.asarray(vectors[:n] / w[:, None], dtype=np.complex128)
+            found = cls(np.asarray(values, dtype=np.complex128), right, left)
             scale = np.sort(np.abs(values))[: max(len(values) // 2, 1)].max()
             for omega in (1e-3 * scale, 0.1 * scale, scale):
                 exact = np.linalg.inv(dynamic_stiffness(block, np.array([omega]), 0.0)[0])
@@ -141,11 +144,14 @@ class Receptances:
         The system.
     K, C
         Reference stiffness and damping (m, m) of all bearings' coefficients.
+    balls
+        What lubricated balls add by frequency, as `Equilibrium.balls` says; None: nothing.
     """
 
     system: System
     K: Array
     C: Array
+    balls: Callable[[Array], tuple[Complex, Array] | None] | None = None
 
     @cached_property
     def B(self) -> Array:
@@ -166,8 +172,18 @@ class Receptances:
         return self.system.modal()
 
     def reference(self, omega: Array) -> Complex:
-        """Z (f, m, m) = K + iωC of the reference."""
-        return np.asarray(self.K + 1j * omega[:, None, None] * self.C)
+        """Z (f, m, m) = K + iωC of the reference, with what lubricated balls add."""
+        return np.asarray(self.K + 1j * omega[:, None, None] * self.C + self.films(omega))
+
+    def films(self, omega: Array) -> Complex:
+        """What lubricated balls add to the tangents (f, m, m); nothing at 0 Hz, where their law holds."""
+        found = np.zeros((len(omega), *self.K.shape), dtype=np.complex128)
+        moving = omega != 0.0
+        balls = self.balls and self.balls(omega[moving])
+        if balls:
+            k, v = balls
+            found[moving] = np.einsum("fb,bk,bl->fkl", k, v, v, optimize=True)
+        return found
 
     def answer(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
         """Motions rows (k, n) with the reference on, under forces (i, n), (f, k, i)."""
@@ -195,7 +211,7 @@ class Receptances:
 
     def _whole(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
         """All coordinates at once."""
-        linear = Linear(self.system, self.K, self.C)
+        linear = Linear(self.system, self.K, self.C, self.balls)
         found = np.zeros((len(omega), len(rows), len(forces)), dtype=np.complex128)
         for unit, part in ((1.0, np.real(forces)), (1j, np.imag(forces))):
             # as unit forces: what is no larger than their round-off drives nothing

@@ -11,16 +11,16 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
+from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.choosing import balanced
 from bearingdyn.analysis.steady.motion import Motion
-from bearingdyn.analysis.steady.problem import Problem
+from bearingdyn.analysis.steady.problem import Problem, motion_of
 from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability, floquet, pooled
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
-from bearingdyn.checks import name_list, number, one_speed, positive, require, whole
+from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
 from bearingdyn.system import System
-from bearingdyn.types import Complex, Index
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
@@ -48,13 +48,14 @@ def steady_state(
     stability: bool = True,
     tolerance: float = 1e-11,
     rpm: float | None = None,
+    contacts: Contacts = "viscous",
 ) -> xarray.Dataset:
     """Find the steady motion at one speed, and whether it is stable, without marching to it.
 
     The motion is a sum of lines, Σ Re z_n e^{iω_n t}, whose amplitudes balance at every line; the structure
     answers with G*(ω) of any law, the balls are pressed in time; films of oil have their damping of low
-    frequency, as in a march. Of two steady motions at one speed it finds the one near its start; `speed_map`
-    follows them all.
+    frequency, as in a march, unless `contacts` says otherwise. Of two steady motions at one speed it finds
+    the one near its start; `speed_map` follows them all.
 
     Parameters
     ----------
@@ -79,6 +80,10 @@ def steady_state(
         Of the balance, relative to the largest amplitude.
     rpm
         The speed in revolutions a minute, instead of `speed`.
+    contacts
+        How lubricated contacts answer: "viscous", by the tangents that hold at low frequency, or "film",
+        with what their stiffness and damping at each line's frequency have besides, at the loads that the
+        balls carry at rest. Stability is always that of viscous contacts.
 
     Returns
     -------
@@ -134,12 +139,15 @@ def steady_state(
     positive("tolerance", tolerance)
     if harmonics is not None:
         harmonics = whole("harmonics", harmonics, 1)
-    problem = Problem.of(source, subharmonic)
+    one_of("contacts", contacts, ("film", "viscous"))
+    problem = Problem.of(source, subharmonic, contacts)
     problem.system.check_speed(speed)
     channels = [channel_of(problem.system, name) for name in record]
     balance, found, left = _found(problem, speed, harmonics, subharmonic, start, tolerance)
     state = stability_of(problem, balance, found) if stability and found.converged else None
-    result = _dataset(problem, balance, found, record, channels, state, left)
+    several = len(problem.bases.bases) > 1
+    asked = {"harmonics": harmonics or (SEVERAL if several else HARMONICS), "subharmonic": subharmonic}
+    result = _dataset(problem, balance, found, record, channels, state, {**asked, "lines_left": left})
     if not found.converged:
         raise _failed(problem, balance, found, result)
     return result
@@ -154,7 +162,7 @@ def _found(
     tolerance: float,
 ) -> tuple[Balance, Found, float]:
     """The balance, its motion, and what share of it the lines left out are."""
-    begun = None if start is None else _begun(problem, start)
+    begun = None if start is None else motion_of("start", problem, start)
     if len(problem.bases.bases) > 1:
         return balanced(problem, speed, harmonics or SEVERAL, tolerance, begun)
     lines = Lines.harmonics((harmonics or HARMONICS) * subharmonic)
@@ -169,21 +177,6 @@ def _found(
 
         found = reached(problem, lines, speed, tolerance) or found
     return balance, found, math.nan
-
-
-def _begun(problem: Problem, start: xarray.Dataset) -> tuple[Index, Complex]:
-    """Index and amplitudes of an earlier result; ValueError for one of another application."""
-    require("motion" in start, "start", sorted(map(str, start)), "give a result of steady_state")
-    index, z = np.asarray(start["index"].values, dtype=np.intp), np.asarray(start["motion"].values)
-    names = [b.name for b in problem.bases.bases]
-    same = z.shape[1] == len(problem.rest) and [str(b) for b in start["base"].values] == names
-    require(
-        same,
-        "start",
-        list(map(str, start["base"].values)),
-        f"it must be a motion of the same bearings over the base frequencies {names}",
-    )
-    return index, np.ascontiguousarray(z, dtype=np.complex128)
 
 
 def stability_of(
@@ -234,7 +227,7 @@ def _dataset(
     record: Sequence[str],
     channels: Sequence[tuple[tuple[int, object, int, int], str]],
     state: Stability | None,
-    left: float,
+    attrs: dict[str, float],
 ) -> xarray.Dataset:
     from bearingdyn.results import dataset, inputs_of
 
@@ -289,7 +282,7 @@ def _dataset(
             "iterations": found.iterations,
             "converged": int(found.converged),
             "energy_balance": abs(missed) / through if through > 0.0 else 0.0,
-            "lines_left": left,
+            **attrs,
             **state_of(problem.source),
             **inputs_of(problem.system.inputs),
         },

@@ -2,8 +2,8 @@
 
 `table.csv` holds solutions of `ehl.steady` for Roelands' viscosity and Dowson and Higginson's density (alpha
 2.2e-8 1/Pa, eta0 0.04 Pa s) over M, L and D; `maketable` makes it. Smooth quantities are interpolated by
-cubic splines in the place on the load axis (`table_places`), L and ln D: the film over the formula of Nijenbanning,
-Venner and Moes, the odds K0/(1 − K0), and logarithms of the others.
+cubic splines in the place on the load axis (`table_places`), L and ln D: the film over the formula of
+Nijenbanning, Venner and Moes, the odds K0/(1 − K0), and logarithms of the others.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from bearingdyn.types import Array, Complex
 OMEGA = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Frequencies ωa/um at which the table has K and C."""
 
-_LOADS = 56  # places on the load axis to which the lines of one L and D are brought before they are joined
+_LOADS = 80  # places on the load axis to which the lines of one L and D are brought before they are joined
 _SLACK = 1e-4  # of the ends: the table has four digits of M
 _NO_PIEZO = 1e-6  # L at which the formula of the film is that of an isoviscous oil
 

@@ -72,9 +72,10 @@ def read_unv(path: Path) -> RawMesh:
                             found.add_element(label, [nodes[k] for k in order], prop, True)
                         elif code in FACES:
                             found.add_element(label, nodes, prop, False)
-                        elif code > 100 and code < 120:
+                        elif 100 < code < 120 or code > 300:
                             raise ValueError(
-                                f"elements of type {code}; bricks, wedges and tetrahedra are read"
+                                f"elements of type {code}; bricks, wedges, tetrahedra and 5-node pyramids "
+                                "are read"
                             )
                 elif kind.isdigit() and int(kind[:9]) in GROUPS:
                     for row, line in own:

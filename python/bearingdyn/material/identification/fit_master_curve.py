@@ -40,7 +40,7 @@ _SPREADS = (0.0, 0.4)  # decades by which the starts are wider than the band
 # Shares of the sum of squares; its own standard error is sqrt(2 / points), some tens of per cent. A gain
 # below the first is no reason for a branch more; of fits closer than the second the first is taken: where the
 # later ones end may hang on the last bits of the arithmetic.
-_WORTH = 1e-3
+_WORTH = 1e-4
 _TIE = 2e-3
 
 

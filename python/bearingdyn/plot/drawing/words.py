@@ -52,7 +52,8 @@ def part_words(source: Any) -> str:
         return f"{kind}, {size}, {material_words(source.material)}"
     if isinstance(source, FlexibleRing):
         size = f"Ø{2 * mm * source.r_inner:.4g}/{2 * mm * source.r_outer:.4g} × {mm * source.width:.4g}"
-        return f"flexible ring, {size}" + (" with its layer" if source.layer is not None else "")
+        kind = "flexible inner ring" if source.inner else "flexible ring"
+        return f"{kind}, {size}" + (" with its layer" if source.layer is not None else "")
     if isinstance(source, Housing):
         size = f"{mm * source.width:.4g} × {mm * source.height:.4g} × {mm * source.length:.4g}"
         return f"housing, {size}, bore Ø{mm * source.bore_diameter:.4g}, {material_words(source.material)}"
