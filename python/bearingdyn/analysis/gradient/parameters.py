@@ -12,7 +12,7 @@ from bearingdyn.application import GROUND, Channel
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import meant, named, number, require
 from bearingdyn.material import Maxwell
-from bearingdyn.parts import DIMENSIONS, Layer, LayerSlopes, RigidBody, layer_slopes
+from bearingdyn.parts import DIMENSIONS, Layer, RigidBody, layer_slopes
 from bearingdyn.system import System
 from bearingdyn.types import Array
 
@@ -88,7 +88,7 @@ def changes_of(system: System, parameters: object) -> dict[str, Change]:
     """
     known: dict[str, Change] = {}
     # equal layers stand on both sides of many machines
-    layers: dict[tuple[int, str], LayerSlopes] = {}
+    layers: dict[tuple[int, str], Any] = {}
 
     def one(path: str) -> Change:
         if path not in known:
@@ -117,7 +117,7 @@ def changes_of(system: System, parameters: object) -> dict[str, Change]:
     return found
 
 
-def _change(system: System, path: str, layers: dict[tuple[int, str], LayerSlopes]) -> Change:
+def _change(system: System, path: str, layers: dict[tuple[int, str], Any]) -> Change:
     """The change by one named parameter."""
     head, _, tail = path.partition(".")
     if head == "load" and tail:
