@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.application import GROUND, Channel
+from bearingdyn.application import GROUND, Channel, Place
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import meant, named, number, require
 from bearingdyn.material import Maxwell
@@ -119,7 +119,8 @@ def changes_of(system: System, parameters: object) -> dict[str, Change]:
 
 def _change(system: System, path: str, layers: dict[tuple[int, str], Any]) -> Change:
     """The change by one named parameter."""
-    head, _, tail = path.partition(".")
+    named_place = Place.parse(path) if "." in path else Place(path, "")
+    head, tail = named_place.part, named_place.name
     if head == "load" and tail:
         return Change(load=np.array(system.row(tail)))
     for i, hung in enumerate(system.bearings):
