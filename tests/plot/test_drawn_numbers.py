@@ -10,6 +10,7 @@ import pytest
 
 mpl.use("Agg")
 
+import bearingdyn as bd
 from bearingdyn import plot
 from bearingdyn.material import Maxwell, master_curve, read_dma, sample_dma_path
 from bearingdyn.results import dataset
@@ -116,3 +117,20 @@ def test_what_a_damped_mode_does_a_quarter_period_later_is_drawn_thin():
     np.testing.assert_allclose(drawn[1], [20, 0, 0], atol=1e-12)
     np.testing.assert_allclose(later[1], [0, 10, 0], atol=1e-12)
     np.testing.assert_allclose(later[0], [0, 100, 205], rtol=1e-12)
+
+
+def test_decibels_are_levels_over_the_references_of_iso_1683() -> None:
+    app = bd.Application()
+    app.add("m", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
+    app.ground("m.centre", stiffness=[1e6] * 6)
+    for quantity, static, said in (("displacement", 120.0, "1 pm"), ("velocity", None, "1 nm/s")):
+        found = bd.frequency_response(app, [1e-3, 10.0], ["m.centre.y"], ["m.centre.y"], quantity=quantity)
+        ax = bd.plot.frequency_response(found, "m.centre.y", "m.centre.y", decibels=True)
+        drawn = ax.lines[0].get_ydata()
+        assert f"dB re {said}" in ax.get_ylabel()
+        assert ax.get_yscale() == "linear"
+        if static is not None:
+            assert drawn[0] == pytest.approx(static, abs=1e-6)  # 1 N on 1 N/µm is 1 µm: 10⁶ pm
+        else:
+            omega = 2 * np.pi * 10.0
+            assert drawn[1] == pytest.approx(20 * np.log10(omega / (1e6 - 2.0 * omega**2) / 1e-9), abs=1e-6)

@@ -153,6 +153,7 @@ COMMON: Mapping[str, Check] = {
     "colour": maybe(text),
     "component": text,
     "contact_angle": maybe(number),
+    "decibels": truth,
     "direction": lambda name, value: vector(name, value, (6,), "of force and moment"),  # type: ignore[arg-type]
     "f_max": maybe(lambda name, value: positive(name, value, "it must be positive, in Hz, or None")),
     "frequency": row("it must be frequencies in Hz"),

@@ -28,6 +28,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+# of levels, SI, by what is drawn: ISO 1683
+REFERENCES = {
+    "displacement": (1e-12, "1 pm"),
+    "velocity": (1e-9, "1 nm/s"),
+    "acceleration": (1e-6, "1 µm/s²"),
+    "force": (1e-6, "1 µN"),
+}
+
+
 @figure(datasets=results("bd.frequency_response", "response", alone=True))
 def frequency_response(
     datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
@@ -36,6 +45,7 @@ def frequency_response(
     ax: Axes | None = None,
     *,
     phase: bool = False,
+    decibels: bool = False,
 ) -> Axes:
     """Magnitude of a response by bd.frequency_response against frequency, several by label, on a log axis.
 
@@ -54,6 +64,9 @@ def frequency_response(
         Axes to draw into; None: those of a new figure.
     phase
         Draw the phase too.
+    decibels
+        Draw the level of the zero-to-peak response to an input of one, dB, instead of the magnitude on a log
+        axis: of displacement re 1 pm, velocity re 1 nm/s, acceleration re 1 µm/s², force re 1 µN (ISO 1683).
 
     Returns
     -------
@@ -82,6 +95,8 @@ def frequency_response(
         curves[label] = data.sel(output=output, input=input)
     quantity = one_quantity(several)
     unit = _response_unit(quantity, output, input)
+    kind = "force" if is_force(output) else quantity
+    reference = REFERENCES[kind][0]
     with style():
         ax = ax or new_axes(height=4.8 if phase else 3.4)
         lower = halve(ax, share=0.3) if phase else None
@@ -91,11 +106,18 @@ def frequency_response(
             if "lower" in curve:
                 low, high = curve["lower"].values, curve["upper"].values
                 ax.fill_between(f, low, high, color=look["color"], alpha=0.2, linewidth=0)
-            ax.plot(f, np.abs(value), label=label, **look)
+            size = np.abs(value)
+            if decibels:
+                with np.errstate(divide="ignore"):
+                    size = 20.0 * np.log10(size / reference)
+            ax.plot(f, size, label=label, **look)
             if lower is not None:
                 lower.plot(f, continuous_phase(value), **look)
-        ax.set_yscale("log")
-        ax.set_ylabel(f"{'force' if is_force(output) else quantity}, zero-to-peak, {unit}")
+        if decibels:
+            ax.set_ylabel(f"{kind} level, zero-to-peak, dB re {REFERENCES[kind][1]}, input of 1")
+        else:
+            ax.set_yscale("log")
+            ax.set_ylabel(f"{kind}, zero-to-peak, {unit}")
         bottom = lower or ax
         bottom.set_xlabel("frequency, Hz")
         _span(bottom, *(c["frequency"].values for c in curves.values()))
