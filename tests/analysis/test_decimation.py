@@ -111,7 +111,7 @@ def test_resumed_and_streamed_marches_are_the_same_bits(
     """Cuts within the filter's reach of the start, of each other and of the end of settling."""
     start = rattling()
     whole = run(start, settle=settle)
-    for cut in (1, 30, 431, 2990):
+    for cut in (5, 30, 431, 2990):
         first = run(start, settle=settle, steps=cut)
         second = run(start, steps=3000 - cut, resume=first)
         np.testing.assert_array_equal(np.concatenate([first.record, second.record]), whole.record)

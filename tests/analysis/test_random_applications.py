@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import bearingdyn as bd
-from bearingdyn.notice import StrainedLayer
+from bearingdyn.notice import StrainedLayer, VolumeCounts
 
 # all that stand in the catalogue by designation; the pitch decides on shaft and load
 DESIGNATIONS = sorted(bd.catalogue.CATALOGUE)
@@ -52,7 +52,10 @@ def application(rng: np.random.Generator) -> tuple[bd.Application, bd.BallBearin
         outer = "ground"
         if soft:
             layer = bd.Layer(r, r + 2e-3, entry.width, rubber, refinement=0.3)
-            app.add(f"layer_{side}", layer)
+            with warnings.catch_warnings():
+                # rightly told where 1 or 3 GPa change it by a tenth; test_named_doubts holds it to that
+                warnings.simplefilter("ignore", VolumeCounts)
+                app.add(f"layer_{side}", layer)
             app.add(f"ring_{side}", bd.RigidBody.ring(0.85 * r, r, entry.width))
             app.connect(f"ring_{side}.centre", f"layer_{side}.inner")
             app.ground(f"layer_{side}.outer")

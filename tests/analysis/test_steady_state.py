@@ -60,7 +60,9 @@ def preloaded(damping: float = 0.0) -> Application:
     app.ground("block.centre", stiffness=(1e8,) * 3 + (1e5,) * 3, damping=(1e3,) * 3 + (1.0,) * 3)
     app.ground("cap.centre", stiffness=(1e9, 1e9, 1e5, 1e6, 1e6, 1e6), damping=(1e3,) * 3 + (1.0,) * 3)
     bearing = BallBearing(8, 12.303e-3, 52e-3, 0.52, 0.53, contact_angle=0.26, damping=damping)
-    app.bearing("left", bearing, inner="shaft.left", outer="ring.centre")
+    app.bearing(
+        "left", bearing, inner="shaft.left", outer="ring.centre", fits=False
+    )  # a 6305's ring, Ø64 race
     app.bearing("right", bearing.mirrored(), inner="shaft.right", outer="cap.centre")
     app.load("cap.centre", (0, 0, 500.0, 0, 0, 0))
     return app

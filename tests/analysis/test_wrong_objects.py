@@ -63,6 +63,8 @@ OWN = {
         "inputs": [analysis.Input.of(STATE.system, "r.centre.y")],
     },
     "surface_of": {"system": PLATED, "name": "plate.outside"},
+    "band_of": {"draws": np.arange(40.0)[:, None], "coverage": 0.9},
+    "gradient": {"parameters": ["r.mass"]},
 }  # fmt: skip
 ANALYSES = [name for name in analysis.__all__ if inspect.isfunction(getattr(analysis, name))]
 

@@ -289,7 +289,10 @@ class Nameless:
         (lambda m: reduce(m), "exactly one of the two"),
         (lambda m: reduction_error(m, basis_of(m, n_modes=1), [0.0]), "positive frequencies"),
         (lambda m: reduction_error(m, basis_of(m, n_modes=1), [math.nan]), "positive frequencies"),
-        (lambda m: reduction_error(m, basis_of(m, n_modes=1), [1.0], solves=2), "needs 3 or more"),
+        (
+            lambda m: reduction_error(m, basis_of(m, n_modes=1), [1.0], solves=2),
+            "a whole number of 3 or more",
+        ),
         (lambda m: reduction_error(m, basis_of(m, n_modes=1), [1.0], loads=["nose"]), "has 'nose'"),
         (lambda m: reduction_error(m, basis_of(m, n_modes=1), [1.0], fixed=["end"]), "has 'end'"),
         (
