@@ -10,7 +10,7 @@ import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.application import Application
-from bearingdyn.checks import number, require, whole
+from bearingdyn.checks import number, reals, require, whole
 from bearingdyn.material import Maxwell, normals
 from bearingdyn.notice import Notice
 from bearingdyn.system import System, system_of
@@ -52,8 +52,10 @@ def band_of(draws: Array, coverage: float) -> Band:
     share = number("coverage", coverage, remedy)
     require(0 < share < 1, "coverage", coverage, remedy)
     least = int(np.ceil(2 / (1 - share) - 1e-9)) - 1
+    draws = reals("draws", draws, "they must be real numbers, the draws first")
+    count = len(draws) if draws.ndim else 0
     remedy = f"a band over {share:g} of them needs at least {least}"
-    require(len(draws) >= least, "number of draws", len(draws), remedy)
+    require(count >= least, "number of draws", count, remedy)
     tail = (1 - share) / 2
     ends = np.quantile(draws, [tail, 0.5, 1 - tail], axis=0, method="weibull")
     return Band(*ends)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from bearingdyn.application import GROUND, Channel, Place
 from bearingdyn.bearing import BallBearing
-from bearingdyn.checks import meant, named, number, require
+from bearingdyn.checks import meant, name_list, named, number, require
 from bearingdyn.material import Maxwell
 from bearingdyn.parts import DIMENSIONS, Layer, RigidBody, layer_slopes
 from bearingdyn.system import System
@@ -99,20 +99,19 @@ def changes_of(system: System, parameters: object) -> dict[str, Change]:
     if isinstance(parameters, Mapping):
         given = named("parameters", parameters, "it must be a mapping, name -> parameter")
     else:
-        remedy = "it must be a list of names, or a mapping from names to them"
-        good = isinstance(parameters, Sequence) and not isinstance(parameters, str)
-        require(good and all(isinstance(p, str) for p in parameters), "parameters", parameters, remedy)  # type: ignore[attr-defined]
-        given = {name: name for name in parameters}  # type: ignore[attr-defined]
+        given = {name: name for name in name_list("parameters", parameters, "parameters")}
     require(bool(given), "parameters", parameters, "give one at least")
     found = {}
     for name, what in given.items():
-        weights = (
-            {what: 1.0} if isinstance(what, str) else
-            dict(what) if isinstance(what, Mapping) else dict.fromkeys(what, 1.0)
-        )  # fmt: skip
+        words = f"parameters[{name!r}]"
+        if isinstance(what, Mapping):
+            weights = named(words, what, "it must be a mapping, parameter -> weight")
+        else:
+            several = [what] if isinstance(what, str) else name_list(words, what, "parameters")
+            weights = dict.fromkeys(several, 1.0)
         total = Change()
         for path, weight in weights.items():
-            total.add(one(path), number(f"parameters[{name!r}][{path!r}]", weight))
+            total.add(one(path), number(f"{words}[{path!r}]", weight))
         found[name] = total
     return found
 
