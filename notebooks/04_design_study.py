@@ -187,4 +187,4 @@ print(
     f"{best.peak * 1e9:.0f} nm/N.\n"
     f"{allowed.sizes['case']} of {found.sizes['case']} designs keep both limits and are not beaten."
 )
-print(optimum.text())
+print(optimum.text)
