@@ -307,6 +307,10 @@ MAY_NAME_WORDS = {
         "bearingdyn.analysis.steady.motion",
         "CHANNEL_KINDS",
     ): "how often a motion's amplitudes are derived in time",
+    (
+        "bearingdyn.plot.frequency_response",
+        "CHANNEL_KINDS",
+    ): "the reference of a level of each quantity, ISO 1683",
     ("bearingdyn.analysis.steady.torus", "PIT_KINDS"): "how the base frequency of each body is called",
     ("bearingdyn.bearing.ball_bearing", "PIT_KINDS"): "how far each body turns as the balls go round",
     ("bearingdyn.runfile", "REPORT_FIELDS"): "what files of version 1 hold, which will not change",
