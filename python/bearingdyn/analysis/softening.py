@@ -41,7 +41,7 @@ SLACK = 1.02  # of the highest strain of a sweep, before a warning
 
 @dataclass(frozen=True, eq=False)
 class Softened:
-    """What was found, over frequencies f, cases c and softening layers l.
+    """Responses of layers that soften, over frequencies f, cases c and softening layers l.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ TIMES = 12  # after which the layers' sag is computed
 
 
 def drawing_html(app: Application) -> str:
-    """Drawing, parts, joints and loads, as the application shows itself."""
+    """The report's drawing, parts, joints and loads, as the application shows itself."""
     from bearingdyn.plot import as_html
 
     return as_html(app)

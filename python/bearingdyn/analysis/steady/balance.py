@@ -30,7 +30,7 @@ ROUND_OFF = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Pressed:
-    """What the balls do along a motion, bearing by bearing, and the sum of it on the lines.
+    """Balance of a steady motion: what the balls do along it, by bearing, and the sum of it on the lines.
 
     Parameters
     ----------

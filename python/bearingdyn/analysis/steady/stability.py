@@ -206,7 +206,9 @@ def _felt_alone(chunk: Chunk, least: float) -> tuple[Chunk, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Propagator:
-    """A double step of the structure at one speed: u(Δ) = after u(0) − W h, and rows of z, ż on the way.
+    """Stability of a steady motion: a double step of the structure at one speed.
+
+    u(Δ) = after u(0) − W h, with rows of z, ż on the way.
 
     Parameters
     ----------
