@@ -58,7 +58,7 @@ class Radiators:
         return min(wavelength / PER_WAVELENGTH, least / PER_BODY)
 
     def surface(self, size: float) -> tuple[TriangleSurface, Array]:
-        """One surface of all bodies, and how their coordinates move its triangles, (m, n); made once a size."""
+        """One surface of all bodies, and how their coordinates move its triangles, (m, n); kept."""
         if size not in self._made:
             self._made[size] = self._surface(size)
         return self._made[size]
