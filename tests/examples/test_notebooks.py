@@ -44,6 +44,7 @@ def test_each_notebook_opens_with_a_question_and_ends_with_a_decision() -> None:
         "03_motor",
         "04_design_study",
         "05_bearing_faults",
+        "06_what_one_hears",
     ]
     for path in NOTEBOOKS:
         cells = path.read_text(encoding="utf-8").split("\n# %%")
@@ -243,3 +244,30 @@ def test_a_notebook_runs_in_jupyter_within_a_minute(path: Path) -> None:
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     # time of processors, of the kernel and its workers, so that a busy machine does not count
     assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 60.0
+
+
+@pytest.mark.slow
+def test_what_notebook_6_hears_of_a_ring_is_what_the_whole_machine_sends(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Pressure by the motion of the left ring, and by a force at mid-shaft solved as one machine."""
+    import bearingdyn as bd
+
+    found = run("06", monkeypatch)
+    state = bd.equilibrium(found["motors"]["layer"])
+    f = [300.0, 900.0, 1700.0]
+    force = ["shaft.middle.y"]
+    rings = bd.frequency_response(state, f, force, found["rings"][:5])["response"].values[:, :, 0]
+    whole = bd.sound_power(state, f, force, ["left_housing.outside"], microphones=[found["ear"]])
+    G = found["G"][np.searchsorted(found["frequency"], f), 0]
+    # the radiation is interpolated within .05 dB, .6 %, on either side
+    assert np.einsum("fc,fc->f", G, rings) == pytest.approx(whole["pressure"].values[:, 0, 0], rel=0.012)
+    # the file holds the two, one after the other with half a second between
+    held, rate = bd.sound.read_wav("../out/run_up.wav")
+    n = found["n"].size
+    assert rate == found["RATE"]
+    assert held.size == 2 * n + rate // 2
+    before, after = held[:n], held[-n:]
+    assert np.std(before) > 3.0 * np.std(after)
+    # 32-bit floats, calibrated
+    assert before == pytest.approx(found["pressure"]["no layer"] * found["fade"], abs=1e-6 * found["loudest"])

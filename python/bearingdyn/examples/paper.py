@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 
 from bearingdyn.application import Application
-from bearingdyn.bearing import Pit, WavinessSpectrum, catalogue
-from bearingdyn.checks import instance, items
+from bearingdyn.bearing import BallBearing, Pit, WavinessSpectrum, catalogue
+from bearingdyn.checks import instance, items, require
 from bearingdyn.cms import Superelement
 from bearingdyn.parts import Disc, Housing, Layer, RigidBody, Section, Shaft
 
@@ -18,7 +18,9 @@ OUTER_6305, INNER_6305, OUTER_6205 = (0.0275, 0.031, 0.017), (0.0125, 0.0165, 0.
 NO_LAYER = "it must be a bd.Layer around the outer ring, or None"
 
 
-def paper_motor(layer: Layer | None = None, radial: float = 0.0) -> Application:
+def paper_motor(
+    layer: Layer | None = None, radial: float = 0.0, *, bearings: Sequence[BallBearing] | None = None
+) -> Application:
     """The motor of the paper, section 4: a flexible shaft in two 6305 bearings, each in a flexible pedestal.
 
     The paper does not publish its geometry. This one bears 5 kN a bearing, and its bending modes without
@@ -30,6 +32,8 @@ def paper_motor(layer: Layer | None = None, radial: float = 0.0) -> Application:
         Around each outer ring, of r_inner 31 mm; None: the rings sit in the bores.
     radial
         Load at mid-shaft, downwards, N, beside 180 N along the axis.
+    bearings
+        Left and right, as with waviness; None: the 6305 of ISO/TS 16281, of seven balls, without.
 
     Returns
     -------
@@ -44,11 +48,16 @@ def paper_motor(layer: Layer | None = None, radial: float = 0.0) -> Application:
     -386 µm
     """
     instance("layer", layer, (Layer, type(None)), NO_LAYER)
+    plain = catalogue.bearing("6305", balls=7, clearance=10e-6, damping=30.0)
+    remedy = "it must be two of bd.BallBearing, left and right, or None"
+    pair = items("bearings", (plain, plain) if bearings is None else bearings, remedy)
+    good = len(pair) == 2 and all(isinstance(one, BallBearing) for one in pair)
+    require(good, "bearings", bearings, remedy)
     app = Application()
     app.add("shaft", _shaft())
     app.free("shaft.middle")
     bore = OUTER_6305[1] if layer is None else layer.r_outer
-    for side in ("left", "right"):
+    for side, ball in zip(("left", "right"), pair, strict=True):
         ring, house = f"{side}_ring", f"{side}_housing"
         app.add(f"{side}_inner", RigidBody.ring(*INNER_6305, rotating=True))
         app.add(ring, RigidBody.ring(*OUTER_6305))
@@ -62,8 +71,6 @@ def paper_motor(layer: Layer | None = None, radial: float = 0.0) -> Application:
             # it may be wider than the bearing: a rigid sleeve carries what the ring leaves over
             app.connect(f"{ring}.centre", f"{side}_layer.inner", fits=False)
             app.connect(f"{side}_layer.outer", f"{house}.bore")
-        # the 6305 of ISO/TS 16281, of seven balls
-        ball = catalogue.bearing("6305", balls=7, clearance=10e-6, damping=30.0)
         app.bearing(side, ball, inner=f"shaft.{side}", outer=f"{ring}.centre")
     app.load("shaft.middle", (0.0, 0.0, 180.0, 0.0, 0.0, 0.0))
     if radial:

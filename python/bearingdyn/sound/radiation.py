@@ -41,6 +41,8 @@ from bearingdyn.short_repr import short
 from bearingdyn.sound.triangle_surface import TriangleSurface
 from bearingdyn.types import Array, Complex
 
+# k L up to which the real factor holds, with room to what the module says: free, and above a floor
+SAFE, SAFE_ON_FLOOR = 2.0, 1.75
 DENSITY, SOUND_SPEED = 1.204, 343.2  # of air at 20 °C, kg/m³ and m/s
 PANELS = 6.0  # in a wavelength, along the longest side of a triangle
 
@@ -105,6 +107,7 @@ def solve(
     density: float = DENSITY,
     sound_speed: float = SOUND_SPEED,
     coarse: bool = False,
+    below: bool | None = None,
 ) -> Radiation:
     """Solve the sound field outside a surface that moves in given shapes, at one frequency.
 
@@ -121,6 +124,10 @@ def solve(
 
     coarse
         Whether panels longer than a sixth of the wavelength are meant, and pass without a warning.
+    below
+        Whether the frequency counts as below all resonances of the inside: the factor of the sum is real
+        there. None: below 1/L in wave numbers. Solutions that are interpolated over frequency want one answer
+        for all of them, as the errors of the two differ.
 
     Returns
     -------
@@ -150,7 +157,7 @@ def solve(
     if not coarse:
         warn_of_coarse_panels(surface, frequency, sound_speed)
     k = 2.0 * np.pi * frequency / sound_speed
-    X, F = _pressure(surface, B, k)
+    X, F = _pressure(surface, B, k, k * surface.extent <= 1.0 if below is None else below)
     rate = -2j * np.pi * frequency * density  # g = −iωρ v
     return Radiation(surface, B, frequency, density, sound_speed, rate * X, rate * F)
 
@@ -167,14 +174,14 @@ def warn_of_coarse_panels(surface: TriangleSurface, frequency: float, sound_spee
         )
 
 
-def _pressure(surface: TriangleSurface, B: Array, k: float) -> tuple[Complex, Complex]:
+def _pressure(surface: TriangleSurface, B: Array, k: float, below: bool) -> tuple[Complex, Complex]:
     """p of unit slopes B at the corners, (points, n), and the form F, (n, n)."""
     V, V1, Kt, K, D = helmholtz(surface.points, surface.faces, k, surface.floor)
     P0, P1 = _masses(surface)
     L = Kt @ B + 0.5 * (P0 @ B)
     # Burton and Miller's factor: its sign keeps the sum well conditioned. Below all resonances it is real,
     # lest errors of p get out of phase and drown the power of quadrupoles, (ka)⁵/27 of what swings to and fro
-    alpha = -1j / k if k * surface.extent > 1.0 else surface.extent
+    alpha = surface.extent if below else -1j / k
     right = -(V1 @ B) - alpha * L
     K *= -1.0
     K += alpha * D + (0.5 * P1).toarray()

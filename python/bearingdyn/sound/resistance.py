@@ -24,7 +24,7 @@ from bearingdyn.notice import RepairedResistance, UnsureInterpolation, warn
 from bearingdyn.progress import Progress
 from bearingdyn.short_repr import short
 from bearingdyn.sound.field import pressure_at
-from bearingdyn.sound.radiation import Radiation, solve
+from bearingdyn.sound.radiation import SAFE, SAFE_ON_FLOOR, Radiation, solve
 from bearingdyn.sound.radiators import Radiators, digest
 from bearingdyn.types import Array, Complex
 from bearingdyn.writing import write_whole
@@ -34,7 +34,7 @@ log = logging.getLogger(__name__)
 LEVELS = (5, 9, 17, 33, 65)
 TOLERANCE = 0.05  # dB of the estimate, at which no further frequencies are solved; above, a word of warning
 THREADS = 2
-VERSION = 2  # of what a stored octave holds, and of the numbers in it
+VERSION = 3  # of what a stored octave holds, and of the numbers in it
 NEGATIVE = 1e-4  # of the largest eigenvalue: less is the discretisation's own error
 
 
@@ -165,9 +165,11 @@ def solved_octave(
         _warn(known)
         return known
     surface, rows = radiators.surface(size)
+    safe = SAFE if surface.floor is None else SAFE_ON_FLOOR
+    below = bool(2.0 * np.pi * high / sound_speed * surface.extent <= safe)
 
     def at(f: float) -> tuple[Array, Complex]:
-        found = solve(surface, rows, f, density=density, sound_speed=sound_speed, coarse=True)
+        found = solve(surface, rows, f, density=density, sound_speed=sound_speed, coarse=True, below=below)
         return found.resistance, _heard(found, radiators, microphones)
 
     done: dict[float, tuple[Array, Complex]] = {}
