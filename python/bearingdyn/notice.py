@@ -80,7 +80,8 @@ class BearingWarning(Notice):
 
     When: a contact pressure exceeds 4.2 GPa (ISO 76), the static rating, in an equilibrium, in any step of a
     march, in a steady motion or a map, or in a response to unbalance or of a given amplitude, the balls
-    pressed as the rings then move; or a shoulder cuts a contact ellipse.
+    pressed as the rings then move; in a sheet also where a shoulder cuts a contact ellipse, or a bearing
+    carries nothing.
 
     Remedy: check the load's unit; a larger bearing, less load, or a higher shoulder.
     """

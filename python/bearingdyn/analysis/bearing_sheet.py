@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
+from bearingdyn.analysis.equilibrium import PARTED, Equilibrium, equilibrium
 from bearingdyn.application import Application
 from bearingdyn.bearing import (
     STATIC_PRESSURE,
@@ -169,8 +169,8 @@ def bearing_sheet(
     Warns
     -----
     BearingWarning
-        Where a bearing is loaded above its static rating, its film is too thin for ISO 281 (κ below .1), or a
-        shoulder cuts an ellipse; also in the variable `warnings`.
+        Where a bearing carries nothing, or more than its static rating, its film is too thin for ISO 281 (κ
+        below .1), or a shoulder cuts an ellipse; also in the variable `warnings`.
 
     Examples
     --------
@@ -451,6 +451,8 @@ def _row(
     C, C0 = iso.C if C is None else C, iso.C0 if C0 is None else C0
     force, Q = state.force, state.loads
     Fr, Fa = float(np.hypot(force[0], force[1])), abs(float(force[2]))
+    if not (Q > PARTED).any():
+        doubts.append("it carries no load, so that life, pressures and stiffness say nothing of it")
     kernel = term.kernel()
     psi = bearing.angle0 + 2 * math.pi * np.arange(bearing.Z) / bearing.Z
     heaviest = int(np.argmax(Q))

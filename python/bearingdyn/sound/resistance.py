@@ -10,16 +10,15 @@ single frequency near one solved twice it may be too low, by 1.7 dB at 9 points 
 
 from __future__ import annotations
 
-import io
 import logging
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from bearingdyn.kept_arrays import read_arrays, write_arrays
 from bearingdyn.notice import RepairedResistance, UnsureInterpolation, warn
 from bearingdyn.progress import Progress
 from bearingdyn.short_repr import short
@@ -27,7 +26,6 @@ from bearingdyn.sound.field import pressure_at
 from bearingdyn.sound.radiation import Radiation, solve
 from bearingdyn.sound.radiators import Radiators, digest
 from bearingdyn.types import Array, Complex
-from bearingdyn.writing import write_whole
 
 log = logging.getLogger(__name__)
 
@@ -161,7 +159,7 @@ def solved_octave(
     """
     size = element_size or radiators.size(sound_speed / high)
     facts = np.array([low, high, density, sound_speed, size, VERSION, *LEVELS, TOLERANCE])
-    name = f"radiation-{digest(facts, microphones)[:16]}-{radiators.fingerprint()[:32]}.npz"
+    name = f"radiation-{digest(facts, microphones)[:16]}-{radiators.fingerprint()[:32]}.arrays"
     if cache is not None and (known := _read(cache / name)) is not None:
         _warn(known)
         return known
@@ -286,22 +284,15 @@ FIELDS = tuple(field.name for field in fields(Octave))
 
 
 def _write(path: Path, octave: Octave) -> None:
-    data = io.BytesIO()
-    held: dict[str, Any] = {name: getattr(octave, name) for name in FIELDS}
-    np.savez(data, **held)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, data.getvalue())
+    write_arrays(path, {name: getattr(octave, name) for name in FIELDS})
 
 
 def _read(path: Path) -> Octave | None:
     """What a file holds; None where there is none, or one that was cut."""
-    if not path.exists():
-        return None
-    try:
-        with np.load(path) as held:
-            a = {name: held[name] for name in FIELDS}
-    except (OSError, ValueError, KeyError, EOFError):
-        log.warning("%s cannot be read; the octave is solved again", path)
+    a = read_arrays(path, FIELDS)
+    if a is None:
+        if path.exists():
+            log.warning("%s cannot be read; the octave is solved again", path)
         return None
     return Octave(
         float(a["low"]), float(a["high"]), a["nodes"], a["resistance"], a["pressure"],

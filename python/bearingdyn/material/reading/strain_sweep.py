@@ -191,7 +191,7 @@ def read_strain_sweep(
     FileNotFoundError
         If there is no such file.
     ValueError
-        If the table has no strain, several frequencies, or moduli that `read_dma` would refuse.
+        If there are several tables, or the table has no strain, several frequencies, or moduli that `read_dma` would refuse.
     """
     wanted, given = dict(columns or {}), dict(units or {})
     own: dict[str, str | int] = {q: wanted.pop(q) for q in ("strain", "force") if q in wanted}
@@ -206,7 +206,11 @@ def read_strain_sweep(
         raise ReadingError(
             f"{table.header}: the header does not tell G from E: give mode='shear' or 'tension'"
         )
-    block = reader.blocks[0]
+    block, *others = reader.blocks
+    if others:
+        raise ReadingError(
+            f"{others[0].where}: a second table begins here, and a strain sweep is one; leave one in the file"
+        )
     rows = {row.number: row for row in block.rows}
     strain = _column(block, [rows[k] for k in table.lines], "strain", _STRAIN_TITLE, own, own_units)
     if strain is None:
