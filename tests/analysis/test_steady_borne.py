@@ -14,7 +14,7 @@ from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.bearing import samples_off
 from bearingdyn.bearing.open_side import runs_off
-from bearingdyn.notice import BearingWarning, NothingPushes, OpenSideWarning
+from bearingdyn.notice import BearingWarning, NothingPushes, OpenSideWarning, OutsideBand
 
 MAP = {"several": False, "doublings": 0, "harmonics": 8, "points": 6, "progress": False}
 Y = ["rotor.centre.y"]
@@ -109,6 +109,23 @@ def test_a_steady_motion_onto_the_open_side_is_warned_of():
     z[1, axial] = -0.5e-3
     with pytest.warns(OpenSideWarning, match="bearing 'front': at 100 rad/s, for 0.* of the time"):
         warn_of_motions([(problem.balance(lines, 100.0), z, "at 100 rad/s")])
+
+
+def test_only_lines_that_move_a_layer_are_told_of_outside_its_band():
+    """Unbalance moves the layer at the speed alone; forty harmonics of it are tried, and are nothing."""
+    rubber = bd.Maxwell(1e6, [2e6], [1e-3], K=2e9, density=1100.0, temperature=20.0, band=(100.0, 1e3))
+    app = bd.Application()
+    app.add("mass", bd.RigidBody(1.0, (1e-3, 1e-3, 1e-3)))
+    app.add("layer", bd.Layer(0.02, 0.025, 0.01, rubber, refinement=0.5))
+    app.connect("mass.centre", "layer.inner")
+    app.ground("layer.outer")
+    app.unbalance("mass.centre", 1e-6)
+    asked = {"record": ["mass.centre.y"], "harmonics": 40}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", OutsideBand)
+        bd.steady_state(app, speed=2 * math.pi * 200.0, **asked)
+    with pytest.warns(OutsideBand, match="'layer' moves at 50 to 50 Hz in this motion, 1 lines outside"):
+        bd.steady_state(app, speed=2 * math.pi * 50.0, **asked)
 
 
 def test_many_samples_are_judged_as_one_by_one():

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+import re
 import struct
 from collections.abc import Sequence
 
@@ -143,10 +145,15 @@ def read_wav(path: str | os.PathLike[str]) -> tuple[Array, int]:
             at += 8 + size + size % 2
     if at != len(raw) or not {b"fmt ", b"data"} <= chunks.keys():
         raise ValueError(f"{path} is no whole .wav file; write it by bd.write_wav")
+    if len(chunks[b"fmt "]) < 16:
+        raise ValueError(f"{path} is no whole .wav file: it does not say its form; write it by bd.write_wav")
     form, channels, rate, _, _, bits = struct.unpack_from("<HHIIHH", chunks[b"fmt "])
     text = chunks.get(b"LIST", b"").decode("latin-1")
     if "full scale 1.0 = " not in text or (form, bits) not in ((PCM, 16), (FLOAT, 32)) or channels != 1:
         raise ValueError(f"{path} holds no calibration; write it by bd.write_wav")
-    full_scale = float(text.split("full scale 1.0 = ")[1].split()[0])
+    scale = re.match(r"[0-9.]+(e[+-]?[0-9]{1,3})?(?= Pa)", text.split("full scale 1.0 = ")[1])
+    full_scale = float(scale[0]) if scale and scale[0].count(".") < 2 else 0.0
+    if not (0.0 < full_scale < math.inf) or len(chunks[b"data"]) % (bits // 8):
+        raise ValueError(f"{path} holds no calibration, or no whole samples; write it by bd.write_wav")
     kind, divisor = ("<i2", FULL) if bits == 16 else ("<f4", 1.0)
     return np.frombuffer(chunks[b"data"], kind).astype(np.float64) / divisor * full_scale, int(rate)

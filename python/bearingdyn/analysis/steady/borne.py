@@ -11,10 +11,12 @@ from bearingdyn.analysis.equilibrium import PARTED
 from bearingdyn.analysis.overload import warn_of_peak
 from bearingdyn.analysis.steady.balance import Balance, Pressed
 from bearingdyn.bearing import OPEN_SIDE_REMEDY, samples_off
-from bearingdyn.notice import NothingPushes, OpenSideWarning, warn
-from bearingdyn.system import BearingTerm
-from bearingdyn.types import Complex
+from bearingdyn.notice import NothingPushes, OpenSideWarning, OutsideBand, warn
+from bearingdyn.system import BearingTerm, System
+from bearingdyn.types import Array, Complex
 
+COUNTS = 0.01
+"""Of the largest displacement or velocity of a layer: lines below are not told of."""
 PUSH = "Add what pushes (app.gravity, app.load, app.unbalance)"
 
 
@@ -27,6 +29,43 @@ class _Worst:
     where: str = ""
     open_where: str = ""
     share: float = 0.0
+
+
+def warn_of_band(system: System, omega: Array, x: Complex) -> None:
+    """Warn of lines outside the band of a layer's material, where they count in its motion.
+
+    Parameters
+    ----------
+    system
+        With its layers.
+    omega, x
+        Lines (L,), rad/s, the mean first, and amplitudes (L, n) of the coordinates.
+
+    Warns
+    -----
+    OutsideBand
+        Once: it names the layers, and the lines of more than 1 % of the largest displacement or velocity.
+    """
+    found, lines = dict[str, tuple[float, float]](), []
+    f = np.abs(omega[1:]) / (2 * np.pi)
+    for layer in system.layers:
+        band = getattr(layer.material, "band", None)
+        size = np.sqrt((np.abs(x[1:] @ layer.L) ** 2).sum(axis=1))
+        if band is None or not size.any():
+            continue
+        counts = (size > COUNTS * size.max()) | (f * size > COUNTS * (f * size).max())
+        far = f[counts & ((f < band[0]) | (f > band[1]))]
+        if far.size:
+            found[layer.part] = band
+            lines += far.tolist()
+    if found:
+        part, band = next(iter(found.items()))
+        warn(
+            f"{', '.join(map(repr, found))} moves at {min(lines):.4g} to {max(lines):.4g} Hz in this motion, "
+            f"{len(set(lines))} lines outside of the band that the material of {part!r} is good for, "
+            f"{band[0]:.4g} to {band[1]:.4g} Hz: there it extrapolates",
+            OutsideBand,
+        )
 
 
 def pushed(balance: Balance, pressed: Pressed) -> bool:

@@ -191,7 +191,8 @@ def read_strain_sweep(
     FileNotFoundError
         If there is no such file.
     ValueError
-        If there are several tables, or the table has no strain, several frequencies, or moduli that `read_dma` would refuse.
+        If there are several tables, or the table has no strain, several frequencies, or moduli that
+        `read_dma` would refuse.
     """
     wanted, given = dict(columns or {}), dict(units or {})
     own: dict[str, str | int] = {q: wanted.pop(q) for q in ("strain", "force") if q in wanted}
