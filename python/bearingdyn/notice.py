@@ -210,7 +210,7 @@ class MixedRuns(Notice):
 
 
 class UnequalRuns(Notice):
-    """Runs (specimens) of one measurement stand at different levels.
+    """Notice: runs (specimens) of one measurement stand at different levels.
 
     When: `master_curve` finds that the moduli of a run have to be multiplied by a factor more than 2 % and
     three standard errors from 1, so that all runs follow one law; or cannot tell the level of a run.

@@ -75,7 +75,7 @@ def softened(
     drives: Sequence[Complex],
     tell: core.Progress | None = None,
 ) -> list[Softened]:
-    """Motions rows (k, n) under forces (i, n) driven together or alone.
+    """Response of layers that soften: motions rows (k, n) under forces (i, n) driven together or alone.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ def at_distance(place: float) -> Array:
 
 @dataclass(frozen=True)
 class RowSet(ABC):
-    """What `Pair` and `Triplet` have in common: their fields, and the law of their rows together.
+    """A set of rows: what `Pair` and `Triplet` have in common, their fields and the law of all rows together.
 
     Parameters
     ----------

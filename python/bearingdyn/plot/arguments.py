@@ -92,7 +92,7 @@ def results(maker: str, *holding: str, alone: bool = False) -> Check:
 
 
 def maybe(check: Check) -> Check:
-    """An argument that may be None."""
+    """An argument of a figure that may be None."""
     return lambda name, value: None if value is None else check(name, value)
 
 
@@ -119,7 +119,7 @@ def names(what: str) -> Check:
 
 
 def text(name: str, value: object) -> None:
-    """An argument that is a name."""
+    """An argument of a figure that is a name."""
     instance(name, value, str, "it must be a name, as a text")
 
 

@@ -15,7 +15,7 @@ SETTLED = 0.2  # s, in which the filters of the bands start
 
 
 def weighted_signal(samples: ArrayLike, rate: float, kind: Weighting = "A") -> Array:
-    """A signal by the A, C or Z weighting, its whole taken as one period.
+    """Signal as it is heard: by the A, C or Z weighting, its whole taken as one period.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def weighted_signal(samples: ArrayLike, rate: float, kind: Weighting = "A") -> A
 
 
 def pressure_signal(force: ArrayLike, rate: float, frequency: ArrayLike, transfer: ArrayLike) -> Array:
-    """Sound pressure of a force signal, by the pressure per unit of force over frequency.
+    """Signal to be heard: sound pressure of a force signal, by pressure per unit of force over frequency.
 
     The signal is taken as one period of a steady state; its mean and what lies outside the
     transfer's frequencies are silent.

@@ -132,7 +132,7 @@ def band_levels(
 
 
 def mean_squares(samples: ArrayLike, rate: float) -> tuple[Array, Array]:
-    """Mean square of each line of a signal's spectrum: they add up to the mean square of the signal.
+    """Mean squares for levels: of each line of a signal's spectrum, adding up to the signal's.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def mean_squares(samples: ArrayLike, rate: float) -> tuple[Array, Array]:
 
 
 def vibration_severity(velocity: ArrayLike, rate: float) -> float:
-    """Rms of a velocity from 10 to 1000 Hz, m/s: what ISO 20816 (formerly 10816) judges machines by.
+    """Level of vibration by ISO 20816 (formerly 10816): rms of a velocity from 10 to 1000 Hz, m/s.
 
     Parameters
     ----------

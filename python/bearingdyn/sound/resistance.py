@@ -41,7 +41,7 @@ NEGATIVE = 1e-4  # of the largest eigenvalue: less is the discretisation's own e
 
 @dataclass(frozen=True, eq=False)
 class Octave:
-    """Radiation solved in one octave.
+    """Radiation resistance solved in one octave.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def _difference(best: Array, rough: Array) -> Array:
 
 
 def octaves(low: float, high: float) -> list[tuple[float, float]]:
-    """Octaves, Hz, that reach from below `low` to `high`, the highest first."""
+    """Octaves of a radiation resistance, Hz, from below `low` to `high`, the highest first."""
     found = [(0.5 * high, high)]
     while found[-1][0] > low:
         found.append((0.5 * found[-1][0], found[-1][0]))
@@ -135,7 +135,7 @@ def solved_octave(
     cache: Path | None = None,
     tell: Progress | None = None,
 ) -> Octave:
-    """The radiation of bodies in one octave, from the folder `cache` where it is known.
+    """Radiation resistance of bodies in one octave, from the folder `cache` where it is known.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def _ways(radiators: Radiators, microphones: Array, k: float) -> Complex:
 
 
 def heard(octave: Octave, radiators: Radiators, f: Array, microphones: Array, sound_speed: float) -> Complex:
-    """Pressure at the microphones per unit of velocity of each coordinate, (f, p, n), Pa s/m.
+    """Pressure at microphones beside the radiation resistance: per unit of velocity, (f, p, n), Pa s/m.
 
     Parameters
     ----------

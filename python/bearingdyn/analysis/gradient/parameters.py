@@ -25,7 +25,7 @@ _OFFERED = (
 
 @dataclass(eq=False)
 class Change:
-    """Derivative of a system's arrays with respect to a parameter; what is missing does not change.
+    """Derivative of a system's arrays with respect to one of the parameters; what is missing is constant.
 
     Attributes
     ----------
@@ -190,7 +190,7 @@ def _spring(system: System, path: str, place: str, word: str, component: str) ->
 
 
 def shear_names(material: Maxwell) -> list[str]:
-    """Names of a Maxwell model's parameters."""
+    """Names of a Maxwell model's parameters for a gradient."""
     n = material.G.size
     return ["G0", *(f"G{k + 1}" for k in range(n)), *(f"tau{k + 1}" for k in range(n)), "eta0"]
 

@@ -22,7 +22,7 @@ Arm = Literal["mean", "groove"]
 
 
 class Races(NamedTuple):
-    """A number for each race."""
+    """A number for each race, as the rating life needs it."""
 
     inner: float
     outer: float
@@ -170,7 +170,7 @@ def rating_life(
 
 
 def with_arm(bearing: BallBearing, arm: Arm) -> BallBearing:
-    """The bearing with the arm of its tilts and moments as the standard has it, or as it is.
+    """The bearing for its rating life: with the arm of tilts and moments that the standard has, or its own.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def with_arm(bearing: BallBearing, arm: Arm) -> BallBearing:
 
 
 def loads_under(bearing: BallBearing, load: ArrayLike, *, arm: Arm = "mean", angle: float = 0.0) -> Array:
-    """Loads of the balls (Z,), N, in the equilibrium under a load (6,), N and N m.
+    """Ball loads (Z,), N, for the rating life, in the equilibrium under a load (6,), N and N m.
 
     Parameters
     ----------

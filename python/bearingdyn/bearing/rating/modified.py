@@ -34,7 +34,7 @@ _RELIABILITY = {90: 1.0, 95: 0.64, 96: 0.55, 97: 0.47, 98: 0.37, 99: 0.25}
 
 
 def reference_viscosity(speed: float, Dpw: float) -> float:
-    """Kinematic viscosity ν1, m²/s, that separates the surfaces at a speed (ISO 281).
+    """Reference viscosity ν1 for the modified life, m²/s: separates the surfaces at a speed (ISO 281).
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def reliability_factor(reliability: float) -> float:
 
 @dataclass(frozen=True)
 class ModifiedLife:
-    """What ISO 281 makes of a rating life in a given oil."""
+    """Modified life: what ISO 281 makes of a rating life in a given oil."""
 
     kappa: float
     """Viscosity ratio ν/ν1."""
@@ -173,7 +173,7 @@ def modified_life(
     contamination: float | str = "normal cleanliness",
     reliability: float = 90.0,
 ) -> ModifiedLife:
-    """Life in a given oil from the basic one: a1 a_ISO L10.
+    """Modified life in a given oil from the basic one: a1 a_ISO L10.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def modified_life(
 
 
 def in_hours(revolutions: float, speed: float) -> float:
-    """Hours of a number of million revolutions at a speed in rad/s; inf at rest.
+    """Modified or basic life in hours, from million revolutions and a speed in rad/s; inf at rest.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def in_hours(revolutions: float, speed: float) -> float:
 
 
 class Phase(NamedTuple):
-    """One part of a duty cycle."""
+    """One phase of a duty cycle, for its equivalent modified life."""
 
     share: float
     """Of the time, 0 to 1."""
@@ -235,7 +235,7 @@ class Phase(NamedTuple):
 
 
 def equivalent_life(phases: Iterable[Phase]) -> tuple[float, float]:
-    """Life of a duty cycle by the rule of Palmgren and Miner, in million revolutions and in hours.
+    """Modified life of a duty cycle by the rule of Palmgren and Miner, in million revolutions and hours.
 
     Parameters
     ----------

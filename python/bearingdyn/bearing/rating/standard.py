@@ -32,7 +32,7 @@ _FC = 0.41 * 98.0665 * 0.95
 
 
 class Thrust(NamedTuple):
-    """Radial and axial factor of an equivalent load, and the ratio Fa/Fr from which they hold."""
+    """Factors X and Y by the standard of an equivalent load, and the ratio Fa/Fr from which they hold."""
 
     X: float
     Y: float
@@ -95,7 +95,7 @@ def dynamic_factor(gamma: float) -> float:
 
 
 class Ratings(NamedTuple):
-    """Basic ratings of a bearing, N."""
+    """Basic ratings C and C0 of a bearing by the standards, N."""
 
     C: float
     """Basic dynamic radial rating (ISO 281): 1 million revolutions at 90 %."""
