@@ -202,7 +202,7 @@ def _evaluate(
 
 
 def warn_of_strain(system: System, strain: Array) -> None:
-    """Warn of layers that vibrate beyond the sweep their law comes from; strain (…, l, c)."""
+    """Warn of softening layers that vibrate beyond the sweep their law comes from; strain (…, l, c)."""
     for number, k in enumerate(softening_layers(system)):
         layer = system.layers[k]
         known = layer.material.payne.strains

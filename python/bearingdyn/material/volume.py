@@ -50,7 +50,7 @@ def volume_of(material: Any) -> Volume | None:
 
 
 def constant_bulk(material: Any) -> float:
-    """Bulk modulus, Pa, that stands in K of a superelement: 0 where it has a term of its own.
+    """Bulk modulus, Pa, in K of a superelement: 0 where its volume has a term of its own.
 
     Parameters
     ----------

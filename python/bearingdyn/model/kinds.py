@@ -69,7 +69,7 @@ def _classes(hint: Any) -> set[type]:
 
 @dataclasses.dataclass
 class Shelf:
-    """What the tables of a model refer to: its parameters and materials, and where its keys stand."""
+    """What tables of all kinds in a model refer to: its parameters and materials, where its keys stand."""
 
     origin: Origin
     parameters: Mapping[str, Any]

@@ -14,7 +14,7 @@ from bearingdyn.model.key_lines import Key
 
 @dataclass
 class Origin:
-    """Where the keys of a model stand: the file and line of each."""
+    """For telling trouble, where the keys of a model stand: the file and line of each."""
 
     file: str
     known: dict[Key, tuple[str, int]] = field(default_factory=dict)

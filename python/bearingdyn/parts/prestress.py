@@ -62,7 +62,7 @@ def check_branches(branches: object) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Prestress:
-    """The static state of a squeezed body of revolution.
+    """The prestress of a squeezed body of revolution: its static state.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ Check = Callable[[str, object], object]
 
 
 def figure(**given: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a function a figure: what it is given is checked first.
+    """Make a function a figure: its arguments are checked first.
 
     Parameters
     ----------

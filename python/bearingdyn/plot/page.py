@@ -39,7 +39,7 @@ HEAD = f"{CELL};opacity:.65;font-weight:normal"
 
 
 def svg(figure: Figure, told: str) -> str:
-    """A figure as an SVG element with a text for those who do not see it; the figure is closed."""
+    """A figure for an object's page: an SVG element with a text for those who do not see it."""
     import matplotlib
     import matplotlib.pyplot as plt
 
@@ -76,7 +76,7 @@ def box(title: str, *blocks: str) -> str:
 
 
 def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
-    """What an object shows in a notebook, as HTML.
+    """The page of any object in a notebook, as HTML.
 
     Parameters
     ----------

@@ -99,7 +99,7 @@ def _between(f: Array, H: Complex, at: Array) -> Complex:
 
 
 def loudness(pressure: ArrayLike, rate: float, field: str = "free") -> float:
-    """Loudness of a steady sound, sone, by the package mosqito (extra "sound").
+    """Loudness of a steady sound as one hears it, sone, by the package mosqito (extra "sound").
 
     The bands are those of the standard's own filters, over the time in which they have settled; mosqito's
     `loudness_zwst` takes other filters, and their start with them: 4.14 sone of half a second of the tone of

@@ -195,7 +195,7 @@ def vibration_severity(velocity: ArrayLike, rate: float) -> float:
 
 
 def crest_factor(samples: ArrayLike) -> float:
-    """Peak over rms of a signal, its mean taken off.
+    """Crest factor beside the levels of a signal: peak over rms, its mean taken off.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def crest_factor(samples: ArrayLike) -> float:
 
 
 def kurtosis(samples: ArrayLike) -> float:
-    """Fourth moment over the square of the second, about the mean: 3 of Gaussian noise, 1.5 of a tone.
+    """Kurtosis beside the levels of a signal: 3 of Gaussian noise, 1.5 of a tone.
 
     Parameters
     ----------

@@ -85,7 +85,7 @@ def _inside(profiles: Any) -> tuple[float, float]:
 
 
 def place_names(ax: Axes, shown: Machine, top: float, scale: float) -> float:
-    """Names of seats and points below the section, with lines up to them; returns how far down, mm."""
+    """Label seats and points by name below the section, lines up to them; returns how far down, mm."""
     named: dict[tuple[float, float], list[str]] = {}
     for name, at in shown.places.items():
         key = (round(float(at[2]), 3), round(float(at[1]), 3))
@@ -117,7 +117,7 @@ def place_names(ax: Axes, shown: Machine, top: float, scale: float) -> float:
 
 
 def dimensions(ax: Axes, shown: Machine, top: float, scale: float) -> float:
-    """Distances of the bearings and the length of the shaft, mm; returns how far down they reach."""
+    """Label distances of bearings and the length of the shaft, mm; returns how far down they reach."""
     balls = [shown.balls(joint) for joint in shown.plan.bearings.values()]
     at = {round(float(each[2]), 3) for each in balls if each is not None}
     y = top - 12 * scale

@@ -51,7 +51,7 @@ def reference_viscosity(speed: float, Dpw: float) -> float:
 
 
 def fatigue_limit(C0: float, Dpw: float) -> float:
-    """Fatigue load limit C_u of a ball bearing, N: C0/22, less above Dpw = 100 mm (ISO 281, simple).
+    """Fatigue load limit C_u for the modified life, N: C0/22, less above Dpw = 100 mm (ISO 281, simple).
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def fatigue_limit(C0: float, Dpw: float) -> float:
 
 
 def contamination_factor(contamination: float | str, Dpw: float) -> float:
-    """e_C of a word of CONTAMINATION, or the number itself, 0 to 1.
+    """Contamination factor e_C for the modified life, of a word of CONTAMINATION, or the number itself.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def contamination_factor(contamination: float | str, Dpw: float) -> float:
 
 
 def life_factor(kappa: float, contamination: float, Cu: float, P: float) -> float:
-    """a_ISO of a radial ball bearing, at most 50 (ISO 281:2007, eqs 31 to 33).
+    """Factor a_ISO of the modified life of a radial ball bearing, at most 50 (ISO 281:2007, eqs 31 to 33).
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def life_factor(kappa: float, contamination: float, Cu: float, P: float) -> floa
 
 
 def reliability_factor(reliability: float) -> float:
-    """a1 of ISO 281:2007 for a reliability of 90 to 99 %; between the tabled ones by its logarithm.
+    """Factor a1 of the modified life for a reliability of 90 to 99 % (ISO 281:2007), between by logarithms.
 
     Parameters
     ----------
