@@ -32,8 +32,7 @@ from bearingdyn.writing import write_whole
 log = logging.getLogger(__name__)
 
 LEVELS = (5, 9, 17, 33, 65)
-TOLERANCE = 0.02  # dB, at which no further frequencies are solved
-SURE = 0.05  # dB
+TOLERANCE = 0.05  # dB of the estimate, at which no further frequencies are solved; above, a word of warning
 THREADS = 2
 VERSION = 2  # of what a stored octave holds, and of the numbers in it
 NEGATIVE = 1e-4  # of the largest eigenvalue: less is the discretisation's own error
@@ -268,7 +267,7 @@ def _repaired(octave: Octave) -> Octave:
 def _warn(octave: Octave) -> None:
     """A word on what an octave holds, whether solved now or before."""
     at = f"between {octave.low:.4g} and {octave.high:.4g} Hz the radiation"
-    if not _unsure(octave) <= SURE:
+    if not _unsure(octave) <= TOLERANCE:
         warn(
             f"{at} solved at {len(octave.nodes)} frequencies is known to {_unsure(octave):.2g} dB between "
             f"them; the result's interpolation_error says where",
