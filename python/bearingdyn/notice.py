@@ -50,13 +50,14 @@ class FitWarning(Notice):
 
 
 class OpenSideWarning(Notice):
-    """The notice that a march pressed an angular contact bearing where it has no shoulder, or not onto it.
+    """The notice that motion pressed an angular contact bearing where it has no shoulder, or not onto it.
 
     The motion computed from then on is that of a bearing with two shoulders.
 
-    When: a march in which a ball that carries (1 % of the largest ball load) stood beyond the bottom of its
-    groove, on the open side, or in which all that carry stood on the bottom, no axial load pressing them onto
-    the shoulder. The bearing, the first time and the number of steps are named.
+    When: a march, a steady motion or a map in which a ball that carries (1 % of the largest ball load) stood
+    beyond the bottom of its groove, on the open side, or in which all that carry stood on the bottom, no
+    axial load pressing them onto the shoulder. The bearing, the first time and the number of steps are
+    named, or the speed and the share of the time.
 
     Remedy: more preload, or the bearing hung the other way round, `bearing.mirrored()`; with shoulders on
     both sides it has `open_side=None`.
@@ -77,8 +78,9 @@ class UnusualMagnitude(Notice):
 class BearingWarning(Notice):
     """The notice that a bearing is asked for more than its parts bear, or than its model covers.
 
-    When: a contact pressure exceeds 4.2 GPa (ISO 76), the static rating, in any analysis; or a shoulder cuts
-    a contact ellipse.
+    When: a contact pressure exceeds 4.2 GPa (ISO 76), the static rating, in an equilibrium, in any step of a
+    march, in a steady motion or a map, or in a response to unbalance or of a given amplitude, the balls
+    pressed as the rings then move; or a shoulder cuts a contact ellipse.
 
     Remedy: check the load's unit; a larger bearing, less load, or a higher shoulder.
     """
@@ -117,10 +119,11 @@ class UnloadedBearing(Notice):
 
 
 class NothingPushes(Notice):
-    """The notice that a march starts at rest and nothing pushes, so its record stays as it begins.
+    """The notice that nothing pushes, so a march stays as it begins, and a steady motion is none.
 
     When: a march from an equilibrium in which no ball is pressed, of an application without any load, from
-    no displacement by `initial=` and no earlier state.
+    no displacement by `initial=` and no earlier state; `steady_state` of such an application, where no ball
+    is pressed along the motion found. A map refuses it.
 
     Remedy: add what pushes (`app.gravity`, `app.load`, `app.unbalance`), or start displaced with
     `initial=`; zero speed and zero load need no march.
@@ -288,6 +291,16 @@ class CoarseModel(Notice):
 
     Remedy: a narrower band, a larger `tolerance`, or better data: a causal spectrum as dense as it may be
     leaves the floor that the text names.
+    """
+
+
+class FewerBranches(Notice):
+    """The notice that a fit has fewer branches than were asked for, for the data hold no more.
+
+    When: `fit_maxwell` finds that further branches have no strength, or help by less than 1e-4 of the
+    misfit. The fit is as good as one with all of them.
+
+    Remedy: ask for the number that the text names, or for n="auto".
     """
 
 

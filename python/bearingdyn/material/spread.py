@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.checks import name_list, nonnegative, one_of, real, require, whole
+from bearingdyn.magnitude import plausible
 from bearingdyn.material.log_parameters import moved, place_of
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -81,6 +82,8 @@ class Spread:
         for name in ("level", "K", "temperature"):
             remedy = "it must be a standard deviation, zero or positive"
             nonnegative(f"Spread.{name}", getattr(self, name), remedy)
+        for name in ("level", "K"):
+            plausible("spread", f"Spread.{name}", getattr(self, name))
 
     @classmethod
     def of(cls, fit: FitReport) -> Spread | None:

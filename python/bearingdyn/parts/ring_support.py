@@ -10,7 +10,8 @@ from itertools import pairwise
 import numpy as np
 
 from bearingdyn.bearing import RacewaySeries
-from bearingdyn.checks import nonnegative, number, positive
+from bearingdyn.checks import nonnegative, number, positive, two
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 _POINTS = 64  # Gauss points per order and arc of a turn: exact for products of cosines to round-off
@@ -47,8 +48,11 @@ class RingBed:
         if self.axial is not None:
             nonnegative("axial", self.axial, "it must be a stiffness in N/m³, zero or more")
         nonnegative("damping", self.damping, "it must be a time in s, zero or more")
+        plausible("bed stiffness", "stiffness", self.stiffness)
+        plausible("bed stiffness", "axial", self.axial or 0.0)
+        plausible("support damping", "damping", self.damping)
         if self.arc is not None:
-            start, end = self.arc
+            start, end = two("arc", self.arc, "it must be (from, to) in rad, rising by up to a turn")
             if not 0.0 < end - start <= 2.0 * math.pi * (1 + 1e-12):
                 raise ValueError(f"arc is {self.arc}; it must be (from, to) in rad, rising by up to a turn")
 
@@ -104,6 +108,11 @@ class RingPoints:
         if self.axial is not None:
             nonnegative("axial", self.axial, "it must be a stiffness in N/m, zero or more")
         nonnegative("damping", self.damping, "it must be a time in s, zero or more")
+        for angle in angles:
+            plausible("angle", "azimuth", angle)
+        plausible("stiffness", "stiffness", self.stiffness)
+        plausible("stiffness", "axial", self.axial or 0.0)
+        plausible("support damping", "damping", self.damping)
 
     def matrix(self, series: RacewaySeries, radius: float, width: float) -> Array:
         """Stiffness (n, n) on the coefficients of the outside of a ring, N/m."""

@@ -190,10 +190,7 @@ def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
         if parameter not in recent:
             while len(recent) >= RECENT:
                 del recent[next(iter(recent))]
-            balance = task.at(parameter, lines)
-            if passages > 1:
-                balance = replace(balance, bases=_divided(balance.bases, passages))
-            recent[parameter] = balance
+            recent[parameter] = divided(task.at(parameter, lines), passages)
         return recent[parameter]
 
     moving = float(np.linalg.norm(found.z[1:]))
@@ -318,13 +315,17 @@ class Tracer:
         return Branch(twice, marks, f"flip at {flip.point.parameter:.6g}")
 
 
-def _divided(bases: Bases, passages: int) -> Bases:
-    """The bases of motions that repeat after so many passages only."""
+def divided(balance: Balance, passages: int) -> Balance:
+    """The balance of motions that repeat after so many passages only."""
+    if passages == 1:
+        return balance
+    bases = balance.bases
     base = bases.bases[0]
-    return Bases(
+    repeated = Bases(
         (replace(base, ratio=base.ratio / passages, omega=base.omega / passages),),
         tuple(replace(t, multiple=tuple(passages * k for k in t.multiple)) for t in bases.bearings),
     )
+    return replace(balance, bases=repeated)
 
 
 def _found(point: Point) -> Found:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import positive, require
+from bearingdyn.magnitude import plausible
 from bearingdyn.material.dma import Mode
 from bearingdyn.material.reading.block import Block, cell_at
 from bearingdyn.material.reading.columns import is_number, number_of, title_of
@@ -101,6 +102,8 @@ class StrainSweep:
             f"a strain is a fraction of at most {_LARGEST:g}; was it in percent? Then divide by 100",
         )
         positive(f"{self.source}: frequency", self.frequency, "it must be positive and finite, Hz")
+        for limit in (self.storage.min(), self.storage.max()):
+            plausible("shear modulus", f"{self.source}: storage", float(limit))
         require(self.mode in ("shear", "tension"), "mode", self.mode, "it must be 'shear' or 'tension'")
 
     def to_shear(self) -> StrainSweep:
