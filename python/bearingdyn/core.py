@@ -460,6 +460,48 @@ def harmonic(
     return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, ball, across, force, row, progress)
 
 
+def changed_layers(
+    receptance: Complex,
+    which: Index,
+    alone: Complex,
+    change: Complex,
+    slope: Complex,
+    end: ArrayLike,
+    isa: str = "best",
+) -> tuple[Complex, Complex]:
+    """Motions of layers whose moduli have changed, from those of the linear system (csrc/changed_layers.h).
+
+    Parameters
+    ----------
+    receptance
+        R (f, r, r) of the layers' coordinates, layer after layer, m/N and its like.
+    which
+        (e,) the frequency that each entry is of.
+    alone
+        (e, r) their motions at the linear moduli.
+    change
+        (e, layers) of the complex shear moduli, Pa.
+    slope
+        (e, layers) its derivative by something of the layer, such as the logarithm of its strain.
+    end
+        Where each layer's coordinates end.
+    isa
+        Instruction set.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        y (e, r) = (I + R Δ)⁻¹ alone, Δ = 2 change on each layer, and its derivatives (e, layers, r).
+
+    Raises
+    ------
+    ArithmeticError
+        Where the changed system is singular.
+    """
+    rows = receptance if receptance.strides[2] == receptance.itemsize else np.ascontiguousarray(receptance)
+    return _core.changed_layers(rows, which, alone, change, slope, np.asarray(end, dtype=np.int32), isa)
+
+
 def helmholtz(
     points: Array, faces: Index, wave_number: float, floor: float | None = None
 ) -> tuple[Complex, Complex, Complex, Complex, Complex]:
