@@ -13,7 +13,7 @@ export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 # What the installed package and the C tests are made from. The lists are kept in files that change only when a list
 # does, so that a removed file counts as a change too.
 SOURCES := $(sort $(shell find csrc python -type f \( -name '*.[ch]' -o -name '*.py' -o -name '*.pyi' -o -name py.typed \
-             -o -name '*.csv' -o -name '*.json' -o -name '*.toml' -o -name '*.js' -o -name '*.css' \
+             -o -name '*.csv' -o -name '*.json' -o -name '*.toml' -o -name '*.js' -o -name '*.css' -o -name '*.html' \
              -o -name meson.build \)) meson.build meson.options pyproject.toml)
 C_TESTS := $(sort $(wildcard tests/c/*))
 C_FILES  = $(wildcard csrc/*.[ch] csrc/binding/*.[ch] tests/c/*.[ch])

@@ -47,6 +47,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("sound",),
     ("model", "plot", "study"),
     ("reporting",),
+    ("explorer",),
     ("examples",),
     ("",),
     ("check", "demo"),

@@ -128,7 +128,7 @@ def bearing_sheet(
     duty: Sequence[tuple[Equilibrium, float, float, float]] = (),
     rpm: float | None = None,
 ) -> xarray.Dataset:
-    """Everything that is asked of the bearings of an equilibrium, all of them at once.
+    """The bearing sheet: what is asked of the bearings of an equilibrium, all of them at once.
 
     Parameters
     ----------
@@ -285,7 +285,7 @@ def single_bearing(
 
 
 def sheet_text(sheet: xarray.Dataset) -> str:
-    """The sheet as a page of plain text, a column for each bearing.
+    """The bearing sheet as a page of plain text, a column for each bearing.
 
     Parameters
     ----------
@@ -309,7 +309,7 @@ def sheet_text(sheet: xarray.Dataset) -> str:
 
 
 def sheet_rows(sheet: xarray.Dataset) -> dict[str, list[tuple[str, list[str], str]]]:
-    """What the sheet prints, for a table of one's own: label, value of each bearing, unit; by heading.
+    """Rows of the bearing sheet, by heading, for a table of one's own: label, value of each bearing, unit.
 
     Parameters
     ----------
@@ -321,7 +321,7 @@ def sheet_rows(sheet: xarray.Dataset) -> dict[str, list[tuple[str, list[str], st
 
 
 def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
-    """The sheet as one page of HTML that needs nothing else, a column for each bearing.
+    """The bearing sheet as one page of HTML that needs nothing else, a column for each bearing.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class _Body:
 
 @dataclass(eq=False)
 class ThermalNetwork:
-    """Nodes with a temperature each, joined by conductances, in the steady state.
+    """A thermal network: nodes with a temperature each, joined by conductances, in the steady state.
 
     Parameters
     ----------

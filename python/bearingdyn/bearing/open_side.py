@@ -60,7 +60,7 @@ def open_sine(alpha0: float) -> float:
 
 
 def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str | None:
-    """Why a bearing does not hold together on its shoulder, in words; None where it does.
+    """Why balls run off on the open side, in words; None where the bearing holds together on its shoulder.
 
     Either a ball that carries is pressed onto the open side, or none leans on the shoulder.
 

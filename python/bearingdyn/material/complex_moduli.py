@@ -77,7 +77,7 @@ def _factor(owner: str, law: Law | None, temperature: float | None, T: float) ->
 
 @dataclass(frozen=True, eq=False)
 class TabulatedModulus(Softening):
-    """Complex modulus in shear as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
+    """Complex modulus as a table in shear: ln G′ and ln tan δ interpolated over ln f, monotonically.
 
     Parameters
     ----------

@@ -272,7 +272,7 @@ class Drawable:
 
 
 def normals(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
-    """Standard normal numbers (n, size), by a scrambled Sobol sequence or at random.
+    """Standard normal numbers (n, size) for draws from a spread, by a Sobol sequence or at random.
 
     Parameters
     ----------
@@ -289,7 +289,7 @@ def normals(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
 
 
 def uniforms(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
-    """Numbers (n, size) above 0 and below 1, by a scrambled Sobol sequence or at random.
+    """Even numbers (n, size) in (0, 1) for draws from a spread, by a Sobol sequence or at random.
 
     Parameters
     ----------

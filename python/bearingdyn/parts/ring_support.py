@@ -125,7 +125,7 @@ class RingPoints:
 
 
 def waves(series: RacewaySeries, psi: Array, axial: int) -> Array:
-    """Radial (axial 0) or axial (1) motion (p, n) at azimuths ψ (p,), by unit coefficients of a series."""
+    """Waves along a ring's support: radial (axial 0) or axial (1) motion (p, n) at azimuths ψ (p,)."""
     rows = [
         (np.sin(n * psi) if sine else np.cos(n * psi)) * (kind == axial) for kind, n, sine in series.terms
     ]
@@ -135,7 +135,7 @@ def waves(series: RacewaySeries, psi: Array, axial: int) -> Array:
 def held_by(
     supports: Sequence[RingBed | RingPoints], rows: Array, series: RacewaySeries, radius: float, width: float
 ) -> tuple[Array, Array]:
-    """Stiffness and damping (n + 6, n + 6) of supports between a ring, n coordinates, and a rigid bore, six.
+    """Stiffness and damping (n + 6, n + 6) of a ring's supports in a rigid bore, which has six coordinates.
 
     rows (coefficients, n) are the motion of the ring's outside.
     """

@@ -35,7 +35,7 @@ _FORCE_UNITS = {"n": 1.0, "": 1.0, "mn": 1e-3, "kn": 1e3}
 
 @dataclass(frozen=True, eq=False)
 class StrainSweep:
-    """Moduli over the amplitude of strain, at one frequency and one temperature.
+    """A strain sweep: moduli over the amplitude of strain, at one frequency and one temperature.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def _column(
 
 
 def in_shear(sweep: StrainSweep) -> StrainSweep:
-    """The sweep in shear; a warning says so where it was in tension."""
+    """The strain sweep in shear; a warning says so where it was in tension."""
     if sweep.mode == "tension":
         warn(
             f"{sweep.source}: a strain sweep in tension is turned into shear by G* = E*/3 and γ = √3 ε: "
