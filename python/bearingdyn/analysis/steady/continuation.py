@@ -125,9 +125,17 @@ class Curve:
         if bend is not None:
             along, rise = along + 0.5 * length * bend[:-1], rise + 0.5 * length * float(bend[-1])
         z = point.z + self.size * length * unflat_like(along, point.z)
-        return self.correct(
-            z, point.parameter + self.scale * length * rise, (point.tangent, point.slope), exact
-        )
+        p = point.parameter + self.scale * length * rise
+        new = self.correct(z, p, (point.tangent, point.slope), exact)
+        if new is None or exact or self.apart(new, z, p) <= LARGEST_CORRECTION * abs(length):
+            return new
+        return None
+
+    def apart(self, point: Point, z: Complex, p: float) -> float:
+        """How far a point lies from a motion at a parameter, in the curve's measure."""
+        away = float(np.linalg.norm(point.z - z))
+        # without bearings there is no motion to measure
+        return math.hypot(away / self.size if away else 0.0, (point.parameter - p) / self.scale)
 
     def correct(self, z: Complex, p: float, border: tuple[Array, float], exact: bool = False) -> Point | None:
         """Onto the curve, across the border from (z, p)."""
