@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -83,8 +83,8 @@ class Balance:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     @cached_property
-    def kernels(self) -> list[_Packed]:
-        return [_Packed(term.kernel().packed()) for term in self.system.bearings]
+    def kernels(self) -> tuple[_Packed, ...]:
+        return packed(self.system)
 
     @cached_property
     def bodies(self) -> list[tuple[Array, Array]]:
@@ -132,6 +132,18 @@ class Balance:
     def driven(self) -> Complex:
         """z_F (L, m): what the loads alone would do, with the reference on."""
         return self._driven[:, : len(self.receptances.B)]
+
+    def towards(self, speed: float, a: Balance, b: Balance) -> Balance:
+        """The balance at a speed near by, its receptances straight on from here by the slope from a to b."""
+        near = replace(self, speed=speed)
+        share = (speed - self.speed) / (b.speed - a.speed)
+        near.__dict__.update(
+            _answers=self._answers + share * (b._answers - a._answers),
+            _driven=self._driven + share * (b._driven - a._driven),
+            kernels=self.kernels,
+            slots=self.slots,
+        )
+        return near
 
     def moved(self, z: Complex, g: Complex) -> Complex:
         """Amplitudes (L, k) of the rows."""
@@ -196,6 +208,12 @@ class _Packed:
 
     def packed(self) -> dict[str, object]:
         return self.fields
+
+
+@lru_cache(maxsize=8)
+def packed(system: System) -> tuple[_Packed, ...]:
+    """The kernels of a system's bearings, packed once for many calls."""
+    return tuple(_Packed(term.kernel().packed()) for term in system.bearings)
 
 
 @dataclass(frozen=True, eq=False)

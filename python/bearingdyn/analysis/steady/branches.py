@@ -39,7 +39,7 @@ LEAP, LEAPS = 0.01, 40
 # of a multiplier's size, within which an event lies on the unit circle
 ON_CIRCLE = 2e-3
 # times as many samples for the multipliers of a located point
-FINER = 4
+FINER = 12
 
 
 Tell: TypeAlias = Callable[[float], object] | None
@@ -140,7 +140,7 @@ class Task:
             fastest = 2.0 ** (band / 2)
             self.models[key] = FirstOrder.of(balance.system, fastest, (base / 60, fastest / 6))
         lines = balance.lines
-        count = max(SAMPLES * passages, 2 * (lines.samples // 2)) * fine
+        count = max(SAMPLES * passages, PER_LINE * lines.count) * fine
         pressed = balance.press(z, lines=Lines(lines.index, lines.steps, count))
         m = z.shape[1]
         K = pooled([a.K for a in pressed.bearings], m)
@@ -152,8 +152,8 @@ class Task:
 RECENT = 4
 # first-order models that are kept
 MODELS = 40
-# samples of a passage for its stability
-SAMPLES = 256
+# samples of a passage for its stability, at least, and of a line: the demo's multipliers come out to 2e-5
+SAMPLES, PER_LINE = 96, 4
 
 
 @dataclass(frozen=True, eq=False)

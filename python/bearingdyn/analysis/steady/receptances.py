@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -134,6 +134,16 @@ class Block:
         return np.asarray(rows @ np.linalg.solve(D, right))
 
 
+@lru_cache(maxsize=4)
+def taken_apart(system: System) -> tuple[System, Array, tuple[Block, ...]]:
+    """A system in its modes, x = T q, T and its blocks: once for the many speeds that are asked of it."""
+    if any(not isinstance(t.material, Maxwell) for t in system.layers):
+        modal, T = system, np.eye(system.n)
+    else:
+        modal, T = system.modal()
+    return modal, T, tuple(Block.of(modal, index) for index in modal.blocks())
+
+
 @dataclass(frozen=True, eq=False)
 class Receptances:
     """Receptances of a system without its balls' forces but with a reference of them.
@@ -158,18 +168,15 @@ class Receptances:
         """All bearings' coefficients (m, n)."""
         return self.system.B
 
-    @cached_property
-    def blocks(self) -> list[Block]:
+    @property
+    def blocks(self) -> tuple[Block, ...]:
         """The blocks of the structure."""
-        modal, _ = self.modal
-        return [Block.of(modal, index) for index in modal.blocks()]
+        return taken_apart(self.system)[2]
 
-    @cached_property
+    @property
     def modal(self) -> tuple[System, Array]:
         """The system in modes of its own, x = T q, in which blocks are well scaled."""
-        if any(not isinstance(t.material, Maxwell) for t in self.system.layers):
-            return self.system, np.eye(self.system.n)
-        return self.system.modal()
+        return taken_apart(self.system)[:2]
 
     def reference(self, omega: Array) -> Complex:
         """Z (f, m, m) = K + iωC of the reference, with what lubricated balls add."""

@@ -219,7 +219,7 @@ class Propagator:
     free
         (6m, n) z and ż at 0, Δ/2 and Δ without forces.
     felt
-        (6m, 3m) what they lose by the forces.
+        (4m, 3m) what they lose by the forces at Δ/2 and Δ.
     """
 
     after: Array
@@ -246,9 +246,8 @@ class Propagator:
         full, whole = half @ half, _advance(half, first)
         both = rows.reshape(2 * m, n)
         free = np.concatenate([both, both @ half, both @ full])
-        felt = np.zeros((3, 2 * m, 3 * m))
-        felt[1], felt[2] = both @ first.reshape(n, 3 * m), both @ whole.reshape(n, 3 * m)
-        return cls(full, whole.reshape(n, 3 * m), free, felt.reshape(6 * m, 3 * m))
+        felt = np.concatenate([both @ first.reshape(n, 3 * m), both @ whole.reshape(n, 3 * m)])
+        return cls(full, whole.reshape(n, 3 * m), free, felt)
 
     def steps(self, K: Array, C: Array) -> Array:
         """S (steps, 3m, 6m): the forces at the three places are S · free · u(0).
@@ -259,18 +258,25 @@ class Propagator:
             (2·steps + 1, m, m) tangents at every place, the last that of the first.
         """
         m = K.shape[1]
+        T = np.concatenate([K, C], axis=2)
         count = (len(K) - 1) // 2
-        T = np.zeros((count, 3, m, 3, 2, m))
-        for j in range(3):
-            T[:, j, :, j, 0, :] = K[j : j + 2 * count : 2]
-            T[:, j, :, j, 1, :] = C[j : j + 2 * count : 2]
-        own = T.reshape(count, 3 * m, 6 * m)
-        return np.asarray(np.linalg.solve(np.eye(3 * m) + own @ self.felt, own))
+        S = np.zeros((count, 3 * m, 6 * m))
+        # the force at the beginning is known from u(0); those later feel it and one another
+        S[:, :m, : 2 * m] = T[:-1:2]
+        later = np.zeros((count, 2 * m, 4 * m))
+        later[:, :m, : 2 * m], later[:, m:, 2 * m :] = T[1::2], T[2::2]
+        felt = later @ self.felt
+        right = np.concatenate([-(felt[:, :, :m] @ T[:-1:2]), later], axis=2)
+        S[:, m:] = np.linalg.solve(np.eye(2 * m) + felt[:, :, m:], right)
+        return S
 
     def over(self, S: Array, U: Array) -> Array:
         """U (n, k) after all steps."""
+        n = len(self.after)
+        both = np.concatenate([self.after, self.free])
         for s in S:
-            U = self.after @ U - self.W @ (s @ (self.free @ U))
+            X = both @ U
+            U = X[:n] - self.W @ (s @ X[n:])
         return U
 
     def along(self, S: Array, u: Array) -> Array:
@@ -365,10 +371,10 @@ def kind(multiplier: complex) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Floquet:
-    """Stability of a motion, and the directions (n, k) of u that go with its multipliers."""
+    """Stability of a motion, and what a period makes of a departure, (n, n)."""
 
     stability: Stability
-    vectors: Complex
+    once: Array
     propagator: Propagator
     steps: Array
 
@@ -377,12 +383,12 @@ class Floquet:
 
         None where none is near.
         """
-        values = self.stability.multipliers
+        values, vectors = np.linalg.eig(self.once)
         real = [k for k, v in enumerate(values) if kind(complex(v)) == "flip"]
         if not real:
             return None
         k = min(real, key=lambda k: abs(values[k] + 1.0))
-        z = self.propagator.along(self.steps, np.real(self.vectors[:, k]))
+        z = self.propagator.along(self.steps, np.real(vectors[:, k]))
         twice = np.concatenate([z, -z])
         spectrum = np.fft.rfft(twice, axis=0) / len(z)
         out = np.zeros((lines.count, z.shape[1]), dtype=np.complex128)
@@ -423,11 +429,10 @@ def floquet(
     propagator = Propagator.of(model, speed, period / count, K0, C0)
     K, C = K - K0, C - C0
     S = propagator.steps(np.concatenate([K, K[:1]]), np.concatenate([C, C[:1]]))
-    n = model.size
-    once = propagator.over(S, np.eye(n))
-    values, vectors = np.linalg.eig(once)
+    once = propagator.over(S, np.eye(model.size))
+    values = np.asarray(np.linalg.eigvals(once), dtype=np.complex128)
     order = np.argsort(-np.abs(values))[:kept]
-    return Floquet(Stability(values[order], period), vectors[:, order], propagator, S)
+    return Floquet(Stability(values[order], period), once, propagator, S)
 
 
 def pooled(blocks: Sequence[Array], m: int) -> Array:
