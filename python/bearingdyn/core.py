@@ -34,7 +34,7 @@ NO_CONVERGENCE = _core.STATUSES["NO_CONVERGENCE"]
 
 
 class Packable(Protocol):
-    """What is passed to the core as a dict of named fields, such as a bearing."""
+    """Packable for the core: what is passed to it as a dict of named fields, such as a bearing."""
 
     def packed(self) -> dict[str, object]:
         """The fields by name."""
@@ -271,7 +271,7 @@ def bearing_force(
 def bearing_settle(
     kernel: Packable, loads: Array, radius: Array, angle: float, shaft_angle: float = 0.0
 ) -> tuple[Array, Array, Array]:
-    """Where a bearing comes to rest under each of many loads, its outer ring held.
+    """Where the core finds a bearing at rest under each of many loads, its outer ring held.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def bearing_settle(
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """One bearing through the samples (s) of a motion.
+    """What the core says of one bearing along the samples (s) of a motion.
 
     Parameters
     ----------
@@ -332,7 +332,7 @@ def bearing_along(
     window: float = 0.0,
     tangents: bool = True,
 ) -> Along:
-    """Forces of a bearing, sample by sample, along a motion that is given.
+    """Forces of a bearing by the core, sample by sample, along a motion that is given.
 
     Parameters
     ----------
@@ -505,7 +505,7 @@ def changed_layers(
 def helmholtz(
     points: Array, faces: Index, wave_number: float, floor: float | None = None
 ) -> tuple[Complex, Complex, Complex, Complex, Complex]:
-    """Integral operators of sound outside a surface of triangles (csrc/radiation.h), time as exp(+iωt).
+    """The core's integral operators of sound outside triangles (csrc/radiation.h), time as exp(+iωt).
 
     Parameters
     ----------

@@ -95,7 +95,7 @@ def softened(
     drives: Sequence[Complex],
     tell: core.Progress | None = None,
 ) -> list[Softened]:
-    """Motions rows (k, n) under forces (i, n) driven together or alone.
+    """Response of layers that soften: motions rows (k, n) under forces (i, n) driven together or alone.
 
     Parameters
     ----------
@@ -252,7 +252,7 @@ def _newton(y: Complex, moved: Complex, g: Array, weights: Array) -> tuple[Array
 
 
 def warn_of_strain(system: System, strain: Array) -> None:
-    """Warn of layers that vibrate beyond the sweep their law comes from; strain (…, l, c)."""
+    """Warn of softening layers that vibrate beyond the sweep their law comes from; strain (…, l, c)."""
     for number, k in enumerate(softening_layers(system)):
         layer = system.layers[k]
         known = layer.material.payne.strains

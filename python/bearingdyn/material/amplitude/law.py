@@ -33,7 +33,7 @@ _BEYOND = 3.0  # times the larger of γc and γl: how far E is asked to stay pos
 
 @dataclass(frozen=True)
 class Payne:
-    """Loss of stiffness of a filled rubber with the amplitude of strain, and the damping that comes of it.
+    """Law of softening of a filled rubber: loss of stiffness with amplitude, and damping that comes of it.
 
     Parameters
     ----------
