@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#include "lanes.h"
+#include "rows.h"
 
 typedef struct scratch {
     size_t width; /* doubles of the real parts of a row, and of the imaginary ones behind them */
@@ -16,9 +16,6 @@ typedef struct scratch {
         *L; /* (rank) rows; those of U and L as they were exchanged, L without its diagonal of ones */
     double *x, *b; /* one row each */
 } scratch;
-
-#define RE(p) LANES(p)
-#define IM(p) LANES((p) + width)
 
 /* Sum of a row times x from the group of BD_LANES that holds `first` on to before `end`; in an order that does not hang
  * on the width of a register. */
@@ -30,8 +27,8 @@ BD_INLINE void dot(size_t width, const double *row, const double *x, size_t firs
     for (size_t j = first / BD_LANES * BD_LANES; j < end; j += BD_LANES)
         for (size_t g = 0; g < GROUPS; g++) {
             const double *a = row + j + g * BD_WIDTH, *b = x + j + g * BD_WIDTH;
-            sum_re[g] += RE(a) * RE(b) - IM(a) * IM(b);
-            sum_im[g] += RE(a) * IM(b) + IM(a) * RE(b);
+            sum_re[g] += BD_ROW_RE(a) * BD_ROW_RE(b) - BD_ROW_IM(a) * BD_ROW_IM(b);
+            sum_im[g] += BD_ROW_RE(a) * BD_ROW_IM(b) + BD_ROW_IM(a) * BD_ROW_RE(b);
         }
     double r[BD_LANES], i[BD_LANES];
     for (size_t g = 0; g < GROUPS; g++) {
@@ -72,29 +69,14 @@ static int factor(const scratch *s, int rank, int *order)
 {
     const size_t width = s->width, row_size = 2 * width;
     for (int k = 0; k < rank; k++) {
-        int pivot = k;
-        double largest = -1.0;
-        for (int i = k; i < rank; i++) {
-            const double *a = s->U + row_size * (size_t)i + k;
-            const double size = a[0] * a[0] + a[width] * a[width];
-            if (size > largest) {
-                largest = size;
-                pivot = i;
-            }
-        }
+        double largest;
+        const int pivot = row_of_pivot(width, k, rank, s->U, &largest);
         if (!(largest > 0.0))
             return 1;
         double *u = s->U + row_size * (size_t)k;
         if (pivot != k) {
-            double *other = s->U + row_size * (size_t)pivot;
-            double *l = s->L + row_size * (size_t)k, *below = s->L + row_size * (size_t)pivot;
-            for (size_t j = 0; j < row_size; j += BD_WIDTH) {
-                const lanes a = LANES(u + j), b = LANES(l + j);
-                LANES_AT(u + j) = LANES(other + j);
-                LANES_AT(other + j) = a;
-                LANES_AT(l + j) = LANES(below + j);
-                LANES_AT(below + j) = b;
-            }
+            row_exchange(width, u, s->U + row_size * (size_t)pivot);
+            row_exchange(width, s->L + row_size * (size_t)k, s->L + row_size * (size_t)pivot);
             const int was = order[k];
             order[k] = order[pivot];
             order[pivot] = was;
@@ -106,12 +88,7 @@ static int factor(const scratch *s, int rank, int *order)
             const double l_re = a_re * p_re - a_im * p_im, l_im = a_re * p_im + a_im * p_re;
             l[k] = l_re;
             l[width + (size_t)k] = l_im;
-            /* from the register that holds the diagonal on: what lies left of it is not read again */
-            for (size_t j = (size_t)k / BD_WIDTH * BD_WIDTH; j < width; j += BD_WIDTH) {
-                const lanes u_re = RE(u + j), u_im = IM(u + j);
-                LANES_AT(a + j) -= l_re * u_re - l_im * u_im;
-                LANES_AT(a + width + j) -= l_re * u_im + l_im * u_re;
-            }
+            row_minus(width, (size_t)k, a, l_re, l_im, u);
         }
     }
     return 0;

@@ -16,19 +16,22 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from bearingdyn import core
 from bearingdyn.checks import positive, require
 from bearingdyn.notice import BeyondSweep, warn
 from bearingdyn.system import LayerTerm, System
-from bearingdyn.types import Array, Complex
+from bearingdyn.types import Array, Complex, Index
 
 if TYPE_CHECKING:
     from bearingdyn.analysis.linearised import Linear
 
 # below this strain the law is at its limit of small ones to 1e-12
 NO_STRAIN = 1e-10
+# every so many frequencies are solved first, and the others begin on a cubic spline through them
+EVERY, FEWEST = 4, 4
 # of ln γ, the last step; its square is what strains and motions lack then
 CLOSE = 5e-6
 # Newton converges in some five steps; a step in ln γ is cut to this, so that it cannot leap over a bend
@@ -137,44 +140,68 @@ def _strains(
     near: ln γ less that of the linear motions, from which to begin.
     """
     count, _, cases = linear.shape
-    ends = np.cumsum(ranks)
     weights = _weights(soft, ranks)
 
     def flat(values: Any) -> Any:  # (f, ·, c) to (e, ·)
         return values.transpose(0, 2, 1).reshape(count * cases, -1)
 
-    alone, w = flat(linear), np.repeat(omega, cases)
-    which = np.repeat(np.arange(count), cases)
-    y = alone.copy()
-    begin = _log_strain(y, weights)
-    g = begin + (0.0 if near is None else flat(near))
-    change = np.zeros(g.shape, dtype=np.complex128)
-    todo = np.flatnonzero(w > 0)  # at rest there is no amplitude
-    for _ in range(STEPS):
-        if not todo.size:
-            break
-        at = g[todo]
-        law, slope = _laws(w[todo], at, soft)
-        there, moved = core.changed_layers(R, which[todo], alone[todo], law, slope, ends)
-        step, close = _newton(there, moved, at, weights)
-        at = np.maximum(at + step, np.log(NO_STRAIN))
-        g[todo] = at
-        done = todo[close]
-        # the last step is taken along the derivatives: what is left is of the second order in CLOSE
-        y[done] = there[close] + np.einsum("el,elr->er", step[close], moved[close])
-        todo = todo[~close]
-    if todo.size:
-        raise ArithmeticError(
-            f"the strain of the layers was not found at {w[todo[0]] / 2 / np.pi:.6g} Hz: the response may "
-            f"jump there from one amplitude to another; take a smaller amplitude"
-        )
-    moving = w > 0
-    change[moving], _ = _laws(w[moving], g[moving], soft)
-
     def shaped(values: Any) -> Any:  # and back
         return values.reshape(count, cases, -1).transpose(0, 2, 1)
 
-    return shaped(y), shaped(_strain(y, weights)), shaped(change), shaped(g - begin)
+    alone, w = flat(linear), np.repeat(omega, cases)
+    which = np.repeat(np.arange(count), cases)
+    y, moving = alone.copy(), w > 0  # at rest there is no amplitude
+    begin = _log_strain(y, weights)
+    shift = np.zeros(begin.shape) if near is None else flat(near)
+    coarse = which % EVERY == 0
+    _iterate(w, R, which, alone, soft, begin, shift, y, moving & coarse)
+    known = np.arange(0, count, EVERY)
+    if known.size >= FEWEST:
+        # over the frequencies the shift is smooth, so that the others begin where they almost are
+        between = scipy.interpolate.make_interp_spline(known, shaped(shift)[known])(np.arange(count))
+        shift[~coarse] = flat(between)[~coarse]
+    _iterate(w, R, which, alone, soft, begin, shift, y, moving & ~coarse)
+    change = np.zeros(begin.shape, dtype=np.complex128)
+    change[moving], _ = _laws(w[moving], (begin + shift)[moving], soft)
+    return shaped(y), shaped(_strain(y, weights)), shaped(change), shaped(shift)
+
+
+def _iterate(
+    w: Array,
+    R: Complex,
+    which: Index,
+    alone: Complex,
+    soft: Sequence[LayerTerm],
+    begin: Array,
+    shift: Array,
+    y: Complex,
+    chosen: NDArray[np.bool_],
+) -> None:
+    """Newton's iteration of the entries chosen (e,) in ln γ = begin + shift (e, l); shift and y are filled.
+
+    Raises
+    ------
+    ArithmeticError
+        Where it does not converge.
+    """
+    ranks = [layer.L.shape[1] for layer in soft]
+    ends, weights = np.cumsum(ranks), _weights(soft, ranks)
+    todo = np.flatnonzero(chosen)
+    for _ in range(STEPS):
+        if not todo.size:
+            return
+        at = begin[todo] + shift[todo]
+        law, slope = _laws(w[todo], at, soft)
+        there, moved = core.changed_layers(R, which[todo], alone[todo], law, slope, ends)
+        step, close = _newton(there, moved, at, weights)
+        shift[todo] = np.maximum(at + step, np.log(NO_STRAIN)) - begin[todo]
+        # the last step is taken along the derivatives: what is left is of the second order in CLOSE
+        y[todo[close]] = there[close] + np.einsum("el,elr->er", step[close], moved[close])
+        todo = todo[~close]
+    raise ArithmeticError(
+        f"the strain of the layers was not found at {w[todo[0]] / 2 / np.pi:.6g} Hz: the response may "
+        f"jump there from one amplitude to another; take a smaller amplitude"
+    )
 
 
 def _weights(soft: Sequence[LayerTerm], ranks: Sequence[int]) -> Array:

@@ -10,6 +10,7 @@ ch. 4), which does not lock as ν → ½. Bulk and shear modulus enter as scalar
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -321,8 +322,8 @@ def assemble_harmonic(
     return gathered_harmonic(mesh, order, components, mass, volumetric, deviatoric)
 
 
-def harmonic_slope(h: Harmonic, dr: Array, dz: Array) -> Harmonic:
-    """Derivative of a harmonic's matrices where the nodes of its mesh move at the rates dr, dz (nodes,).
+def harmonic_slopes(h: Harmonic, rates: Iterable[tuple[Array, Array]]) -> list[Harmonic]:
+    """Derivatives of a harmonic's matrices where the nodes of its mesh move at rates dr, dz (nodes,) each.
 
     By a complex step of the nodes within the element matrices, which is exact to round-off.
 
@@ -330,17 +331,22 @@ def harmonic_slope(h: Harmonic, dr: Array, dz: Array) -> Harmonic:
     ----------
     h
         Matrices of the mesh where it is.
-    dr, dz
-        Rates of its nodes.
+    rates
+        Of its nodes, by each parameter.
 
     References
     ----------
     W. Squire and G. Trapp, SIAM Rev. 40 (1998) 110.
     """
     mesh, step = h.mesh, 1e-30
-    moved = replace(mesh, r=mesh.r + 1j * step * dr, z=mesh.z + 1j * step * dz)
-    mass, volumetric, deviatoric = (A.imag / step for A in _element_matrices(moved, h.order, h.components))
-    return gathered_harmonic(mesh, h.order, h.components, mass, volumetric, deviatoric)
+    where, found = pattern(mesh, len(h.components)), []
+    for dr, dz in rates:
+        moved = replace(mesh, r=mesh.r + 1j * step * dr, z=mesh.z + 1j * step * dz)
+        mass, volumetric, deviatoric = (
+            A.imag / step for A in _element_matrices(moved, h.order, h.components)
+        )
+        found.append(gathered_harmonic(mesh, h.order, h.components, mass, volumetric, deviatoric, where))
+    return found
 
 
 def gathered_harmonic(
