@@ -1,4 +1,4 @@
-"""What the film of a point contact costs, on one core: a steady state, eight frequencies, a step in time.
+"""What the film of a point contact costs, on one core: steady, eight frequencies, a step, a look-up.
 
 OPENBLAS_NUM_THREADS=1 python benchmarks/ehl.py [--json]
 
@@ -18,7 +18,8 @@ from bearingdyn.bearing import ehl
 
 NODES, REPEATS = (65, 129), 3
 OMEGA = np.array([0.02, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0])
-TARGET_STEADY, TARGET_HARMONIC = 1.0, 3.0  # s
+TARGET_STEADY, TARGET_HARMONIC, TARGET_LOOKUP = 1.0, 3.0, 20.0  # s, s, µs
+LOADS = np.geomspace(50.0, 4000.0, 2000)
 STEPS = 20
 
 
@@ -45,6 +46,9 @@ def measure() -> dict[str, float | int]:
     result["target_steady_129"] = TARGET_STEADY
     result["target_steady_and_eight_frequencies_129"] = TARGET_HARMONIC
     result["automatic"] = round(seconds(lambda: ehl.steady(100, 10)), 3)
+    many = seconds(lambda: [ehl.lookup(M, 10.0, 0.3) for M in LOADS])
+    result["lookup_us"] = round(1e6 * many / len(LOADS), 1)
+    result["target_lookup_us"] = TARGET_LOOKUP
     small = ehl.steady(100, 10, grid=65)
     marched = seconds(lambda: ehl.march(small, dt=0.1, steps=STEPS, mass=1.0, velocity=1e-3))
     result["step_in_time_65"] = round(marched / STEPS, 4)

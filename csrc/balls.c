@@ -14,6 +14,13 @@
 /* Rows of a tangent worked on at once: as many as a rigid ring has. */
 enum { TANGENT_ROWS = 5 };
 
+/* A number of balls rounded up to registers of this set; the padding beyond, to the widest set's, stays as it was
+ * carved: zero. */
+BD_INLINE int whole_lanes(int n)
+{
+    return (n + BD_WIDTH - 1) / BD_WIDTH * BD_WIDTH;
+}
+
 /* Basis functions of every ball. */
 void BD_NAMED(bd_bearing_turn)(const bd_bearing *bearing, bd_bearing_work *work, double psi)
 {
@@ -60,10 +67,10 @@ BD_INLINE void indent(const bd_bearing *bearing, bd_bearing_work *work, const do
 {
     const bd_bearing_data *data = &bearing->data;
     const size_t balls = (size_t)bearing->balls, n_coefs = (size_t)data->n_coefs;
-    const size_t n_radial = (size_t)data->n_radial;
+    const size_t n_radial = (size_t)data->n_radial, filled = (size_t)whole_lanes(data->n_balls);
     const double x0 = data->x0, y0 = data->y0, A = data->A, e0 = data->e0;
 
-    for (size_t first = 0; first < balls; first += BD_WIDTH) {
+    for (size_t first = 0; first < filled; first += BD_WIDTH) {
         /* relative motion of the groove centres: dX, dY, their slopes in psi, and their own rates */
         const double *phi = work->phi + first, *dphi = work->dphi + first;
         lanes dX = LANES(work->shift_X + first), dY = LANES(work->shift_Y + first);
@@ -118,8 +125,8 @@ void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work
     const int coefs = bearing->coefs;
 
     indent(bearing, work, z, z_rate, cage_speed);
-    BD_NAMED(bd_ehl_contacts)(&data->contact, bearing->balls, work->delta, work->rate, work->force,
-                              work->stiffness, work->damping);
+    BD_NAMED(bd_ehl_contacts)(&data->contact, bearing->film, whole_lanes(data->n_balls),
+                              work->delta, work->rate, work->force, work->stiffness, work->damping);
     if (work->holds)
         bd_held_contacts(&data->contact, data->n_balls, work);
 

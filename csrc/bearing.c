@@ -18,7 +18,22 @@ size_t bd_bearing_work_size(const bd_bearing_data *data)
 
 size_t bd_bearing_constants(const bd_bearing_data *data)
 {
-    return (3 + 2 * (size_t)data->n_waves) * (size_t)BD_PADDED(data->n_balls);
+    const bool film = data->contact.law == BD_DAMPING_FILM;
+    return (3 + 2 * (size_t)data->n_waves) * (size_t)BD_PADDED(data->n_balls) +
+           (film ? BD_FILM_CELLS * BD_FILM_POWERS : 0);
+}
+
+/* Hermite's cubics of the film law by powers of the distance in w from the cell's start. */
+static void set_film(const bd_contact *contact, double *film)
+{
+    const double *at = contact->table_delta, *rise = contact->table_c, n = BD_FILM_CELLS;
+    for (int i = 0; i < BD_FILM_CELLS; i++, film += BD_FILM_POWERS) {
+        const double over = at[i + 1] - at[i], third = rise[i] + rise[i + 1] - 2.0 * over;
+        film[0] = at[i];
+        film[1] = n * rise[i];
+        film[2] = n * n * (over - rise[i] - third);
+        film[3] = n * n * n * third;
+    }
 }
 
 void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *constants)
@@ -44,6 +59,10 @@ void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *
             wave_cos[w * balls + j] = cos(angle);
             wave_sin[w * balls + j] = sin(angle);
         }
+    double *film = wave_sin + (size_t)data->n_waves * (size_t)balls;
+    bearing->film = data->contact.law == BD_DAMPING_FILM ? film : NULL;
+    if (bearing->film)
+        set_film(&data->contact, film);
     bearing->data = *data;
     bearing->balls = balls;
     bearing->coefs = BD_PADDED(data->n_coefs);

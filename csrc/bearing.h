@@ -12,7 +12,11 @@ struct bd_bearing {
     const double *spacing_cos, *spacing_sin; /* (balls) of 2 pi j/Z */
     const double *absent;              /* (balls) 0, or a gap no ball closes in padding lanes */
     const double *wave_cos, *wave_sin; /* (n_waves x balls) of order * 2 pi j/Z */
+    /* (BD_FILM_CELLS x BD_FILM_POWERS) c in a cell of the film law, by rising powers of the share of the cell; or NULL */
+    const double *film;
 };
+
+enum { BD_FILM_POWERS = 4 };
 
 /* Scratch; all arrays are padded. `phi` is kept twice: a ball per lane to indent, a coefficient per lane
  * to sum. */

@@ -21,10 +21,4 @@ static inline double bd_table_damping(const bd_contact *contact, double delta, d
     return c[i] + *slope * (delta - x[i]);
 }
 
-/* The cell of the film law at x = cells w, 0 or more; what is none goes to an end. */
-static inline int bd_film_cell(double x)
-{
-    return x < (double)BD_FILM_CELLS ? (int)x : x > 0.0 ? BD_FILM_CELLS - 1 : 0;
-}
-
 #endif

@@ -2,86 +2,201 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 
+#include "bearing.h"
 #include "damping_table.h"
 #include "lanes.h"
 
-/* Given:    n contacts (whole lanes): indentation delta and its rate
+/* ---------------------------------------------------------------- what the laws share */
+
+/* Elastic part of one register of contacts. */
+typedef struct elastic {
+    lane_mask touching; /* delta + h0 > 0 */
+    lanes root;         /* u of film and solids, 0 out of contact */
+    lanes force;        /* kappa u^3 */
+    lanes firm;         /* its slope by delta */
+    lanes soft;         /* what the ring's give leaves of that slope; 1 where nothing gives */
+} elastic;
+
+BD_INLINE void squeeze(const bd_contact *contact, bool gives, const double *delta, elastic *found)
+{
+    const double kappa = contact->kappa, cubic = gives ? contact->give * kappa : 0.0;
+    lanes s = LANES(delta) + contact->h0, root;
+    found->touching = LANES_POSITIVE(s);
+    s = LANES_WHERE(found->touching, s);
+    lanes_sqrt(&s, &root);
+    found->soft = (lanes){0} + 1.0;
+    if (gives) {
+        for (int k = 0; k < BD_GIVE_STEPS; k++)
+            root -= (root * root * (1.0 + cubic * root) - s) /
+                    (root * (2.0 + 3.0 * cubic * root) + DBL_MIN);
+        found->soft = 1.0 / (1.0 + (1.5 * cubic) * root);
+        s = root * root;
+    }
+    found->root = root;
+    found->force = kappa * (root * s);
+    found->firm = 1.5 * kappa * root;
+    if (gives)
+        found->firm *= found->soft;
+}
+
+/* Total force of one register with damping c and its slope by delta; a film cannot pull. */
+BD_INLINE void press(const elastic *spring, const lanes *c, const lanes *slope, const double *rate,
+                     double *force, double *stiffness, double *damping)
+{
+    lanes r = LANES(rate), total = spring->force + *c * r;
+    lane_mask loaded = LANES_POSITIVE(total);
+    LANES_AT(force) = LANES_WHERE(loaded, total);
+    LANES_AT(stiffness) = LANES_WHERE(loaded, spring->firm + *slope * r);
+    LANES_AT(damping) = LANES_WHERE(loaded, *c);
+}
+
+/* ---------------------------------------------------------------- the film law */
+
+/* Registers between looking up and using: their chains of division, look-up and cubic then overlap, which are longer
+ * than a processor looks ahead. */
+enum { AHEAD = 4 };
+/* Binary digits of a double, of them those of a cell, and those of a cell's powers. */
+enum { DIGITS = 52, CELL_DIGITS = 6, POWER_DIGITS = 2 };
+/* Just below 1, so that no w reaches the end of the last cell. */
+static const double below_end = 1.0 - 0x1p-50;
+
+/* The cubic of each lane's cell, a power a register. Written lane by lane: a loop would go by way of memory. */
+BD_INLINE void film_cubics(const double *film, const lane_mask *cell, lanes *k0, lanes *k1,
+                           lanes *k2, lanes *k3)
+{
+#define CUBIC(lane) (film + (*cell)[lane])
+#if BD_WIDTH == 4 && (defined(__clang__) || __GNUC__ >= 12)
+    /* halves of two cubics side by side, then turned */
+    typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+#define HALVES(a, b, k)                                                                            \
+    __builtin_shufflevector(*(const pair *)(CUBIC(a) + (k)), *(const pair *)(CUBIC(b) + (k)), 0,   \
+                            1, 2, 3)
+    lanes even = HALVES(0, 2, 0), odd = HALVES(1, 3, 0);
+    *k0 = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+    *k1 = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+    even = HALVES(0, 2, 2), odd = HALVES(1, 3, 2);
+    *k2 = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+    *k3 = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+#undef HALVES
+#else
+#define PAIR(lane, k) CUBIC(lane)[k], CUBIC((lane) + 1)[k]
+#if BD_WIDTH == 2
+#define POWER(k) ((lanes){PAIR(0, k)})
+#elif BD_WIDTH == 4
+#define POWER(k) ((lanes){PAIR(0, k), PAIR(2, k)})
+#else
+#define POWER(k) ((lanes){PAIR(0, k), PAIR(2, k), PAIR(4, k), PAIR(6, k)})
+#endif
+    *k0 = POWER(0);
+    *k1 = POWER(1);
+    *k2 = POWER(2);
+    *k3 = POWER(3);
+#undef POWER
+#undef PAIR
+#endif
+#undef CUBIC
+}
+
+BD_INLINE void film_contacts(const bd_contact *contact, bool gives, const double *restrict film,
+                             int n, const double *restrict delta, const double *restrict rate,
+                             double *restrict force, double *restrict stiffness,
+                             double *restrict damping)
+{
+    const double half = sqrt(contact->c);
+    for (int from = 0; from < n; from += AHEAD * BD_WIDTH) {
+        const int left = (n - from) / BD_WIDTH, count = left < AHEAD ? left : AHEAD;
+        elastic spring[AHEAD];
+        lanes u[AHEAD], by_s[AHEAD];
+        lane_mask cell[AHEAD];
+        for (int i = 0; i < count; i++) {
+            squeeze(contact, gives, delta + from + i * BD_WIDTH, &spring[i]);
+            lanes root = spring[i].root, s = root * root;
+            /* one division, by root (root + half); 0/0 where nothing touches, which `touching` takes out again */
+            lanes inverse = 1.0 / (s + half * root);
+            /* 1 + w: its leading digits are the cell, masked so that what is none reads inside the table */
+            lanes place = (below_end * s) * inverse + 1.0;
+            lane_mask digits = (lane_mask)place;
+            cell[i] = digits >> (DIGITS - CELL_DIGITS - POWER_DIGITS) &
+                      ((BD_FILM_CELLS - 1) << POWER_DIGITS);
+            u[i] = place - (lanes)(digits & -(1LL << (DIGITS - CELL_DIGITS)));
+            by_s[i] = ((0.5 * half) * root) * (inverse * inverse); /* dw/ds */
+            if (gives)
+                by_s[i] *= spring[i].soft;
+        }
+        for (int i = 0; i < count; i++) {
+            const int first = from + i * BD_WIDTH;
+            lanes k0, k1, k2, k3;
+            film_cubics(film, &cell[i], &k0, &k1, &k2, &k3);
+            lanes last = u[i] * k3, both = k2 + last;
+            lanes c = (k0 + u[i] * k1) + (u[i] * u[i]) * both;
+            lanes slope = (k1 + u[i] * (both + both + last)) * by_s[i];
+            c = LANES_WHERE(spring[i].touching, c);
+            press(&spring[i], &c, &slope, rate + first, force + first, stiffness + first,
+                  damping + first);
+        }
+    }
+}
+
+/* ---------------------------------------------------------------- all laws */
+
+/* As bd_ehl_contacts, of a law that the compiler knows: a loop without a branch. */
+BD_INLINE void contacts(const bd_contact *contact, bd_damping_law law, bool gives,
+                        const double *restrict film, int n, const double *restrict delta,
+                        const double *restrict rate, double *restrict force,
+                        double *restrict stiffness, double *restrict damping)
+{
+    if (law == BD_DAMPING_FILM) {
+        film_contacts(contact, gives, film, n, delta, rate, force, stiffness, damping);
+        return;
+    }
+    for (int first = 0; first < n; first += BD_WIDTH) {
+        elastic spring;
+        lanes c = {0}, slope = {0};
+        squeeze(contact, gives, delta + first, &spring);
+        if (law == BD_DAMPING_CONSTANT)
+            c = c + contact->c;
+        if (law == BD_DAMPING_LOAD) {
+            lanes soft = spring.soft;
+            c = contact->c * spring.firm;
+            slope = (contact->c * 0.75 * contact->kappa) * (soft * soft * soft) / spring.root;
+        }
+        if (law == BD_DAMPING_TABLE)
+            for (int j = 0; j < BD_WIDTH; j++) {
+                double slope_j;
+                c[j] = bd_table_damping(contact, delta[first + j], &slope_j);
+                slope[j] = slope_j;
+            }
+        c = LANES_WHERE(spring.touching, c);
+        press(&spring, &c, &slope, rate + first, force + first, stiffness + first, damping + first);
+    }
+}
+
+/* Given:    n contacts (whole lanes): indentation delta and its rate; `film` as in bd_bearing
  * Returned: force     F = max(0, kappa u^3 + c(delta) rate), 0 where delta + h0 <= 0, with the root u of film and
  *                     solids, u^2 + give kappa u^3 = delta + h0
  *           stiffness dF/ddelta at fixed rate, damping dF/drate; all zero where F is clipped
  * Notes:    a film cannot pull, hence the clip. Where c > 0 at the film's edge F jumps there; newton.c finds the force
  *           inside the jump (grazing.h)
  * Reference: paper eq (1). */
-void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *restrict delta,
-                               const double *restrict rate, double *restrict force,
-                               double *restrict stiffness, double *restrict damping)
+void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, const double *restrict film, int n,
+                               const double *restrict delta, const double *restrict rate,
+                               double *restrict force, double *restrict stiffness,
+                               double *restrict damping)
 {
-    const double kappa = contact->kappa, h0 = contact->h0, give = contact->give;
-    const double cubic = give * kappa;
-
-    for (int first = 0; first < n; first += BD_WIDTH) {
-        lanes d = LANES(delta + first), r = LANES(rate + first);
-        lanes s = d + h0, root, c = {0}, slope = {0}; /* slope: dc/ddelta */
-
-        /* elastic part: root of what film and solids are compressed by, zero out of contact */
-        lane_mask touching = LANES_POSITIVE(s);
-        s = LANES_WHERE(touching, s);
-        lanes_sqrt(&s, &root);
-        lanes firm = 1.5 * kappa * root,
-              soft = (lanes){0} + 1.0; /* dF_e/ds, and what the give leaves of it */
-        if (cubic != 0.0) {
-            for (int k = 0; k < BD_GIVE_STEPS; k++)
-                root -= (root * root * (1.0 + cubic * root) - s) /
-                        (root * (2.0 + 3.0 * cubic * root) + DBL_MIN);
-            soft = 1.0 / (1.0 + (1.5 * cubic) * root);
-            firm = (1.5 * kappa) * root * soft;
-            s = root * root;
-        }
-
-        switch (contact->law) {
-        case BD_DAMPING_CONSTANT:
-            c = LANES_WHERE(touching, c + contact->c);
-            break;
-        case BD_DAMPING_LOAD:
-            c = contact->c * firm;
-            slope =
-                LANES_WHERE(touching, (contact->c * 0.75 * kappa) * (soft * soft * soft) / root);
-            break;
-        case BD_DAMPING_FILM: {
-            const double *at = contact->table_delta, *rise = contact->table_c;
-            const double half = sqrt(contact->c);
-            lanes part = 1.0 / (root + half), x = BD_FILM_CELLS * (root * part);
-            lanes u = x, c0, c1, r0, r1;
-            for (int j = 0; j < BD_WIDTH; j++) {
-                const int i = bd_film_cell(x[j]);
-                u[j] -= i;
-                c0[j] = at[i], c1[j] = at[i + 1];
-                r0[j] = rise[i], r1[j] = rise[i + 1];
-            }
-            /* Hermite's cubic, and its slope by x; dx/ds = cells half part^2 soft / 2 root */
-            lanes over = c1 - c0, third = r0 + r1 - 2.0 * over, second = over - r0 - third;
-            c = c0 + u * (r0 + u * (second + u * third));
-            slope = r0 + u * (2.0 * second + u * (3.0 * third));
-            slope = LANES_WHERE(touching,
-                                slope * ((0.5 * BD_FILM_CELLS * half) * part * part * soft) / root);
-            break;
-        }
-        case BD_DAMPING_TABLE:
-            for (int j = 0; j < BD_WIDTH; j++) {
-                double slope_j;
-                c[j] = bd_table_damping(contact, d[j], &slope_j);
-                slope[j] = slope_j;
-            }
-            c = LANES_WHERE(touching, c);
-            break;
-        }
-
-        /* total force; a film cannot pull */
-        lanes total = kappa * (root * s) + c * r;
-        lane_mask loaded = LANES_POSITIVE(total);
-        LANES_AT(force + first) = LANES_WHERE(loaded, total);
-        LANES_AT(stiffness + first) = LANES_WHERE(loaded, firm + slope * r);
-        LANES_AT(damping + first) = LANES_WHERE(loaded, c);
+#define LAW(law)                                                                                   \
+    case law:                                                                                      \
+        if (contact->give * contact->kappa != 0.0)                                                 \
+            contacts(contact, law, true, film, n, delta, rate, force, stiffness, damping);         \
+        else                                                                                       \
+            contacts(contact, law, false, film, n, delta, rate, force, stiffness, damping);        \
+        break;
+    switch (contact->law) {
+        LAW(BD_DAMPING_CONSTANT)
+        LAW(BD_DAMPING_LOAD)
+        LAW(BD_DAMPING_FILM)
+        LAW(BD_DAMPING_TABLE)
     }
+#undef LAW
 }

@@ -70,12 +70,25 @@ static int solve_whole(const bd_model *model, const bd_harmonic_data *data, cons
                             (double *)work->X);
 }
 
-/* Where the answer to a force or, behind the forces, to one at a coefficient of a block stands. */
+/* The column of a force or, behind the forces, of one at a coefficient of a block. */
 static size_t column_of(const bd_model *model, const bd_harmonic_data *data,
                         const bd_harmonic_work *work, int b, size_t which)
 {
     const size_t n_in = (size_t)data->n_in, m = (size_t)model->n_coefs;
-    return which < n_in ? which : n_in + (size_t)work->joint[(size_t)b * m + which - n_in];
+    return which < n_in ? work->joints.first + which
+                        : (size_t)work->joint[(size_t)b * m + which - n_in];
+}
+
+/* The row of a lane's motions in which output or, behind the outputs, the joint of a block is told. */
+static double *row_of(const bd_model *model, const bd_harmonic_data *data,
+                      const bd_harmonic_work *work, int b, size_t which, size_t lane)
+{
+    const size_t n_out = (size_t)data->n_out, m = (size_t)model->n_coefs;
+    const size_t size = 2 * work->joints.width, joints = (size_t)work->n_joints;
+    return which < n_out
+               ? work->x + (lane * n_out + which) * size
+               : work->y +
+                     (lane * joints + (size_t)work->joint[(size_t)b * m + which - n_out]) * size;
 }
 
 /* X_F and X_b of one block, added to the motions of joints and rows. */
@@ -88,8 +101,7 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
                  n_out = (size_t)data->n_out;
     const int *touching = work->touching + (size_t)b * (n_in + m);
     const size_t columns = (size_t)work->n_touching[b];
-    const size_t joints = (size_t)work->n_joints, all = n_in + joints;
-    complex_t *BX = work->BX + lane * all * joints, *RX = work->RX + lane * all * n_out;
+    const size_t width = work->joints.width;
 
     form(model, data, work, block, work->held + block->matrix, index, n, 0, work->D);
     for (size_t c = 0; c < columns; c++) {
@@ -111,8 +123,11 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
                 re += work->B[(first + i) * m + k] * creal(X[i]);
                 im += work->B[(first + i) * m + k] * cimag(X[i]);
             }
-            if (joint >= 0)
-                BX[which * joints + (size_t)joint] += complex_of(re, im);
+            if (joint < 0)
+                continue;
+            double *y = row_of(model, data, work, b, n_out + k, lane) + which;
+            y[0] += re;
+            y[width] += im;
         }
         for (size_t o = 0; o < n_out; o++) {
             if (!work->read[(size_t)b * n_out + o])
@@ -123,15 +138,13 @@ static int solve_block(const bd_model *model, const bd_harmonic_data *data, cons
                 re += row[i] * creal(X[i]);
                 im += row[i] * cimag(X[i]);
             }
-            RX[which * n_out + o] += complex_of(re, im);
+            double *x = row_of(model, data, work, b, o, lane) + which;
+            x[0] += re;
+            x[width] += im;
         }
     }
     return 0;
 }
-
-/* Joining the blocks cancels as many digits as I + P Y is large: near a resonance of a block by itself, and at low
- * frequency where one floats although its bearings' springs hold it. Beyond this all is solved as one. */
-static const double largest_joint = 1e4;
 
 /* Beyond this the fixed order of pivots has cost a digit or two, and a block is solved with rows exchanged: squared,
  * as growth is counted. */
@@ -146,7 +159,6 @@ static void solve_lanes(const bd_model *model, const bd_harmonic_data *data,
     const bd_receptance *reduced = &work->reduced[b];
     const size_t m = (size_t)model->n_coefs, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out,
                  width = (size_t)work->kernels->width;
-    const size_t joints = (size_t)work->n_joints, all = n_in + joints;
     const int *beside = work->beside + (size_t)b * (n_out + m + n_in);
 
     if (reduced->n > 0) {
@@ -171,84 +183,42 @@ static void solve_lanes(const bd_model *model, const bd_harmonic_data *data,
             whole[lane] = solve_block(model, data, lapack, work, b, first + (int)lane, lane) != 0;
             continue;
         }
-        complex_t *BX = work->BX + lane * all * joints, *RX = work->RX + lane * all * n_out;
         const double *response = work->response + lane;
-        for (int p = 0; p < reduced->n_left; p++)
+        for (int p = 0; p < reduced->n_left; p++) {
+            double *row = row_of(model, data, work, b, (size_t)beside[p], lane);
             for (int q = reduced->first_right; q < reduced->n_beside; q++, response += 2 * width) {
-                const size_t row = (size_t)beside[p], from = (size_t)beside[q] - n_out;
-                const size_t which =
-                    column_of(model, data, work, b, from < m ? n_in + from : from - m);
-                const complex_t value = complex_of(response[0], response[width]);
-                if (row < n_out)
-                    RX[which * n_out + row] += value;
-                else
-                    BX[which * joints + (size_t)work->joint[(size_t)b * m + row - n_out]] += value;
+                const size_t from = (size_t)beside[q];
+                const size_t which = from < n_out ? work->joints.first + (size_t)work->twin[from]
+                                     : from < n_out + m
+                                         ? column_of(model, data, work, b, n_in + from - n_out)
+                                         : work->joints.first + from - n_out - m;
+                row[which] += response[0];
+                row[work->joints.width + which] += response[width];
             }
-    }
-}
-
-/* Joins the blocks of one lane; the answer is left in its first n_in columns of RX.
- * Returned: 0, or nonzero where that would be singular or lose too many digits. */
-static int join_blocks(const bd_model *model, const bd_harmonic_data *data, const bd_lapack *lapack,
-                       bd_harmonic_work *work, size_t lane)
-{
-    const size_t m = (size_t)model->n_coefs, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out;
-    const size_t joints = (size_t)work->n_joints, all = n_in + joints;
-    const complex_t *BX = work->BX + lane * all * joints;
-    complex_t *RX = work->RX + lane * all * n_out;
-
-    /* P Y_F and I + P Y, column by column */
-    double largest = 0.0;
-    for (size_t c = 0; c < all; c++) {
-        const complex_t *y = BX + c * joints;
-        complex_t *to = c < n_in ? work->g + c * joints : work->A + (c - n_in) * joints;
-        memset(work->ZX, 0, m * sizeof *work->ZX);
-        for (size_t j = 0; j < joints; j++) {
-            if (y[j] == 0.0)
-                continue;
-            const complex_t *Z = work->Z + (size_t)work->coef[j];
-            for (size_t k = 0; k < m; k++)
-                work->ZX[k] += product(Z[k * m], y[j]);
-        }
-        for (size_t j = 0; j < joints; j++) {
-            const size_t k = (size_t)work->coef[j];
-            to[j] = work->ZX[k] - complex_of(work->S[k] * creal(y[j]), work->S[k] * cimag(y[j]));
-            if (c == n_in + j)
-                to[j] += 1.0;
-            if (c >= n_in)
-                largest = fmax(largest, fabs(creal(to[j])) + fabs(cimag(to[j])));
         }
     }
-    if (!(largest <= largest_joint))
-        return 1;
-    if (bd_solve_complex(lapack, work->n_joints, (double *)work->A, work->pivots, data->n_in,
-                         (double *)work->g))
-        return 1;
-    for (size_t c = 0; c < n_in; c++)
-        for (size_t j = 0; j < joints; j++)
-            for (size_t o = 0; o < n_out; o++)
-                RX[c * n_out + o] -= product(RX[(n_in + j) * n_out + o], work->g[c * joints + j]);
-    return 0;
 }
 
 /* One frequency's response from its lane, or from the solution of all coordinates as one. */
 static bd_status write_response(const bd_model *model, const bd_harmonic_data *data,
-                                const bd_harmonic_work *work, const complex_t *RX, double *out)
+                                const bd_harmonic_work *work, const double *x, double *out)
 {
     const size_t n = (size_t)model->n, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out;
-    for (size_t o = 0; o < n_out; o++)
+    for (size_t o = 0; o < n_out; o++) {
+        const double *row = x ? x + 2 * work->joints.width * o + work->joints.first : NULL;
         for (size_t c = 0; c < n_in; c++) {
             complex_t value = 0.0;
-            if (!RX)
+            if (!x)
                 for (size_t i = 0; i < n; i++)
                     value += work->row[o * n + i] * work->X[c * n + i];
             else
-                value = RX[c * n_out + o];
+                value = complex_of(row[c], row[work->joints.width + c]);
             if (!isfinite(creal(value)) || !isfinite(cimag(value)))
                 return BD_NOT_FINITE;
             out[2 * (o * n_in + c)] = creal(value);
             out[2 * (o * n_in + c) + 1] = cimag(value);
         }
+    }
     return BD_OK;
 }
 
@@ -270,7 +240,8 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
 {
     const size_t m = (size_t)model->n_coefs, n_in = (size_t)data->n_in, n_out = (size_t)data->n_out;
     const int width = work->kernels->width;
-    const size_t lanes = (size_t)width, joints = (size_t)work->n_joints, all = n_in + joints;
+    const size_t lanes = (size_t)width, size = 2 * work->joints.width;
+    const size_t of_joints = (size_t)work->n_joints * size, of_outputs = n_out * size;
 
     for (int from = first; from < first + count; from += width) {
         const int now = first + count - from < width ? first + count - from : width;
@@ -280,23 +251,25 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
             /* at rest a block that floats is singular by itself, though held by its bearings */
             whole[lane] = work->omega[lane] == 0.0;
         }
-        memset(work->BX, 0, lanes * joints * all * sizeof *work->BX);
-        memset(work->RX, 0, lanes * n_out * all * sizeof *work->RX);
+        memset(work->y, 0, lanes * of_joints * sizeof *work->y);
+        memset(work->x, 0, lanes * of_outputs * sizeof *work->x);
         for (int b = 0; b < model->n_blocks; b++)
             solve_lanes(model, data, lapack, work, b, from, now, whole);
 
         for (int lane = 0; lane < now; lane++) {
-            const complex_t *RX = work->RX + (size_t)lane * n_out * all;
+            double *x = work->x + (size_t)lane * of_outputs;
             for (size_t kl = 0; kl < m * m; kl++)
                 work->Z[kl] = complex_of(work->Kb[kl], work->omega[lane] * work->Cb[kl]);
             add_balls(data, from + lane, m, work->Z);
-            if (whole[lane] || join_blocks(model, data, lapack, work, (size_t)lane)) {
+            work->joints.y = work->y + (size_t)lane * of_joints;
+            work->joints.x = x;
+            if (whole[lane] || work->kernels->join(&work->joints)) {
                 if (solve_whole(model, data, lapack, work, from + lane))
                     return BD_SINGULAR_DYNAMIC;
-                RX = NULL;
+                x = NULL;
             }
             const bd_status status = write_response(
-                model, data, work, RX, response + 2 * (size_t)(from + lane) * n_out * n_in);
+                model, data, work, x, response + 2 * (size_t)(from + lane) * n_out * n_in);
             if (status != BD_OK)
                 return status;
         }

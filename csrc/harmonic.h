@@ -5,6 +5,7 @@
 #include <complex.h>
 #include <stdbool.h>
 
+#include "join.h"
 #include "model.h"
 #include "receptance.h"
 
@@ -40,19 +41,22 @@ struct bd_harmonic_work {
     /* joints: a coefficient and a block that it sees, block by block */
     int n_joints, *joint; /* (n_blocks x n_coefs) or -1 */
     int *coef;            /* (n_joints) */
-    complex_t *BX;        /* per lane ((n_in + n_joints) x n_joints) of motions at joints */
-    complex_t *RX;        /* per lane ((n_in + n_joints) x n_out) of rows */
-    complex_t *Z, *A, *g; /* (n_coefs^2), (n_joints^2), (n_joints x n_in) */
-    complex_t *ZX;        /* (n_coefs) */
+    bd_joints joints;     /* of one lane */
+    double *y, *x;        /* per lane, rows of motions at joints and of outputs, as in join.h */
+    double *join_memory;
+    complex_t *Z; /* (n_coefs^2) */
     int *pivots;
     int *touching,
         *n_touching; /* per block: which forces (0 ... n_in) and coefficients (n_in ...) act */
     bool *read;      /* (n_blocks x n_out) whether a row reads a block's motion */
+    int *twin;       /* (n_out) the force that a row is equal to, or -1; no force twice */
+    bool *paired;    /* (n_in) whether a force is the twin of a row */
 
     /* for receptances in lanes */
     bd_receptance *reduced; /* (n_blocks); n is 0 where a block is too large for it */
     int *
-        beside; /* per block: what its columns are: outputs, n_out + coefficients, and forces behind them */
+        beside; /* per block: what its columns are: outputs, n_out + coefficients, and forces behind them.
+                 * Where D is symmetric an output stands for its twin too */
     double *pencil, *columns;
     double *omega, *moduli; /* (lanes), (n_layers x 2 x lanes) of one block's layers */
     double *memory, *response, *growth;

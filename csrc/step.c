@@ -1,7 +1,9 @@
 /* The linear algebra of one step; the order of the calls is in newmark.c. */
 #include "balls.h"
+#include "changed_layers.h"
 #include "dense.h"
 #include "exact.h"
+#include "join.h"
 #include "maxwell.h"
 #include "receptance.h"
 #include "work.h"
@@ -269,6 +271,8 @@ const bd_kernels BD_NAMED(bd_kernels) = {
     .correct = correct,
     .commit = commit,
     .receptance = BD_NAMED(bd_receptance_solve),
+    .join = BD_NAMED(bd_join_blocks),
+    .changed_layers = BD_NAMED(bd_changed_layers_solve),
     .exact_predict = BD_NAMED(bd_exact_predict),
     .exact_commit = BD_NAMED(bd_exact_commit),
     .exact_shares = BD_NAMED(bd_exact_shares),

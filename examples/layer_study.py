@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import sys
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
@@ -23,6 +24,7 @@ import xarray
 
 import bearingdyn as bd
 from bearingdyn import study
+from bearingdyn.notice import StrainedLayer
 
 GRID = {"thickness": [0.004, 0.006, 0.008, 0.011], "width": [0.017, 0.0255], "loss_factor": [0.3, 0.45, 0.6]}
 FREQUENCY = np.linspace(10.0, 6000.0, 1000)
@@ -56,6 +58,15 @@ def receptance(app: bd.Application) -> np.ndarray:
     return motor.response(bd.equilibrium(app), FREQUENCY)["response"].values[:, :, 0]
 
 
+def under_load(app: bd.Application) -> bd.Equilibrium:
+    """The motor under its radial load, which has rested for motor.RESTED."""
+    app.load("shaft.middle", (0, -motor.RADIAL, 0, 0, 0, 0))
+    with warnings.catch_warnings():
+        # the study asks how far a layer strains, and the table says it, and from where on it is too far
+        warnings.simplefilter("ignore", StrainedLayer)
+        return bd.equilibrium(app, after=motor.RESTED)
+
+
 def isolation(frequency: np.ndarray, level: np.ndarray, plain: np.ndarray) -> float:
     """By how much the velocity in NOISY falls from receptances `plain` to `level`, both (f, outputs), dB."""
     band = (frequency >= NOISY[0]) & (frequency <= NOISY[1])
@@ -74,8 +85,7 @@ def design(case: Mapping[str, float]) -> dict[str, float]:
     variant = motor.Design("layer", case["thickness"], case["width"], material)
     app = motor.motor(variant)
     H = receptance(app)
-    app.load("shaft.middle", (0, -motor.RADIAL, 0, 0, 0, 0))
-    loaded = bd.equilibrium(app, after=motor.RESTED)
+    loaded = under_load(app)
     still = bd.static_summary(loaded)
     return {
         "isolation": isolation(FREQUENCY, H[:, 1:3], without_layer()[:, 1:3]),
@@ -148,8 +158,7 @@ def slopes(case: Mapping[str, float]) -> dict[str, tuple[float, dict[str, float]
     weight = FREQUENCY[band, None] ** 2
     after = (weight * np.abs(H[band]) ** 2).mean()
     change = (2 * weight * (np.conj(H[band]) * by[:, band]).real).mean(axis=(1, 2))
-    app.load("shaft.middle", (0, -motor.RADIAL, 0, 0, 0, 0))
-    loaded = bd.gradient(bd.equilibrium(app, after=motor.RESTED), moved)
+    loaded = bd.gradient(under_load(app), moved)
     sag, by_sag = loaded.displacement("shaft.middle.y")
     strain, by_strain = max((loaded.strain(f"{side}_layer") for side in ("left", "right")), key=itemgetter(0))
 
@@ -203,6 +212,7 @@ def main() -> int:
     found = table(Path("out", "layer_study"), progress=True)
     front = found.isel(case=found["front"].values).sortby("sag")
     print(front.to_dataframe().drop(columns=["error", "front"]).to_string(float_format=lambda x: f"{x:.4g}"))
+    print("a layer's linear stiffness is 1 % low at a strain of 4 % and 5 % low at 9 %: see StrainedLayer")
     print(told(best()))
     return 0
 

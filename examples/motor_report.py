@@ -105,11 +105,14 @@ class Steady:
     ring_down: float
 
 
-def describe_rubber(material: bd.Maxwell) -> None:
+def describe_rubber(material: bd.Maxwell, master: bd.MasterCurve) -> None:
     """What the fit gave."""
     source = "epdm70 (measured)" if motor.MEASURED.exists() else "the shipped sample (made, not measured)"
     fit = material.fit
     print(f"rubber from {source}: five branches, {motor.BAND[0]:g}–{motor.BAND[1]:g} Hz, 20 °C")
+    for run, factor in master.levels.items():
+        if factor != 1.0:
+            print(f"  run {run}: moduli times {factor:.3f}, to the level of the first run")
     if fit is not None:
         print(
             f"  error of the fit: G′ {100 * fit.storage_rms:.1f} % rms, "
@@ -348,7 +351,7 @@ def main() -> int:
     clock = Stages()
     with clock.stage("rubber: master curve and fit"):
         low, dma, master = motor.rubber()
-    describe_rubber(low)
+    describe_rubber(low, master)
     four, losses = motor.designs(low), motor.loss_designs(low)
     with clock.stage("housings reduced, one for each bore"):
         for design in four:

@@ -426,6 +426,120 @@ def _dma_kinds() -> Reader:
     return Reader(write, read)
 
 
+def _strain_sweep() -> Reader:
+    import bearingdyn as bd
+
+    rows = "".join(
+        f"{g:g},{4e6 / (1 + g / 5):.4e},{6e5 / (1 + g / 9):.4e},10\n" for g in (0.1, 0.3, 1.0, 3.0, 10.0)
+    )
+
+    def write(folder: Path) -> None:
+        head = "strain (%),storage modulus (Pa),loss modulus (Pa),frequency (Hz)\n"
+        (folder / "s.csv").write_text(head + rows)
+
+    return Reader(write, lambda f: bd.read_strain_sweep(f / "s.csv", mode="shear", temperature=20.0))
+
+
+def _model_file() -> Reader:
+    """A small machine as a model, read and its equilibrium found, with the table of its rubber."""
+    import bearingdyn as bd
+
+    text = """format = 1
+title = "a rotor"
+[parameters]
+load = 100.0
+[materials.rubber]
+type = "Maxwell"
+G0 = 1e6
+G = [2e6]
+tau = [1e-3]
+K = 2e9
+density = 1100.0
+[parts.rotor]
+type = "RigidBody"
+mass = 4.0
+inertia = [0.02, 0.02, 0.004]
+rotating = true
+[bearings.b]
+designation = "6205"
+clearance = "10 µm"
+inner = "rotor.centre"
+outer = "ground"
+[[loads]]
+at = "rotor.centre"
+force = [0, -100.0, 20.0, 0, 0, 0]
+"""
+
+    def write(folder: Path) -> None:
+        (folder / "m.toml").write_text(text, encoding="utf-8")
+
+    return Reader(write, lambda f: bd.read_model(f / "m.toml"))
+
+
+def _ross() -> Reader:
+    import bearingdyn as bd
+
+    steel = {"name": "steel", "rho": 7810, "E": 211e9, "G_s": 81.2e9}
+    shaft = {
+        f"ShaftElement_{k}": {
+            "L": 0.25, "idl": 0.0, "odl": 0.05, "idr": 0.0, "odr": 0.05, "n": k, "axial_force": 0,
+            "torque": 0,
+            "shear_effects": True, "rotary_inertia": True, "gyroscopic": True, "alpha": 0, "beta": 0,
+            "material": steel,
+        }
+        for k in range(3)
+    }  # fmt: skip
+    more = {
+        "DiskElement_a": {"n": 1, "m": 32.6, "Id": 0.178, "Ip": 0.329},
+        **{
+            f"BearingElement_{n}": {"n": n, "kxx": [1e6], "kyy": [1e6], "cxx": [10.0], "cyy": [10.0]}
+            for n in (0, 3)
+        },
+    }
+
+    def write(folder: Path) -> None:
+        (folder / "r.json").write_text(json.dumps({"parameters": {}, **shaft, **more}, indent=1))
+
+    return Reader(write, lambda f: bd.read_ross(f / "r.json", f_max=1e3))
+
+
+def _wav() -> Reader:
+    from bearingdyn import sound
+
+    def write(folder: Path) -> None:
+        for bits in (16, 32):
+            sound.write_wav(folder / f"{bits}.wav", np.sin(np.arange(400.0)), 8000, bits=bits, full_scale=2.0)
+
+    def read(folder: Path) -> None:
+        for bits in (16, 32):
+            sound.read_wav(folder / f"{bits}.wav")
+
+    return Reader(write, read)
+
+
+def _map_store() -> Reader:
+    """The finished searches of a speed map: one that is damaged is searched anew, or named."""
+    import bearingdyn as bd
+    from bearingdyn.kept_arrays import START, kept
+
+    app = bd.Application()
+    app.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+    app.ground("r.centre", stiffness=(0, 0, 1e6, 1e3, 1e3, 0), damping=(10, 10, 10, 1, 1, 0))
+    ball = bd.catalogue.bearing("6205", clearance=0.0, damping=200.0)
+    app.bearing("b", ball, inner="r.centre", outer="ground")
+    app.load("r.centre", (0, -200.0, 0, 0, 0, 0))
+    eq = bd.equilibrium(app)
+    asked = {"speeds": (200.0, 210.0), "record": ["r.centre.y"], "harmonics": 4, "points": 3}
+
+    def read(folder: Path) -> None:
+        bd.speed_map(eq, **asked, several=False, doublings=0, store=folder, progress=False)
+
+    def inside(data: bytes, mutate: Mutate) -> bytes:
+        return kept(mutate(data[START:]))
+
+    return Reader(read, read, inside)
+
+
 READERS: dict[str, Callable[[], Reader]] = {
     "matrix_market": _matrix_market,
     "matrix_market_array": _matrix_market_array,
@@ -444,6 +558,11 @@ READERS: dict[str, Callable[[], Reader]] = {
     "dma_kinds": _dma_kinds,
     "abaqus_mesh": _abaqus_mesh,
     "gmsh": _gmsh,
+    "strain_sweep": _strain_sweep,
+    "model": _model_file,
+    "ross": _ross,
+    "wav": _wav,
+    "map_store": _map_store,
 }
 
 

@@ -111,6 +111,12 @@ def test_too_much_load_and_too_thin_a_film_are_named():
     assert math.isnan(float(sheet["L10mh"][0]))
 
 
+def test_a_bearing_that_carries_nothing_is_named():
+    with pytest.warns(BearingWarning, match="'6205': it carries no load"):
+        sheet = bd.bearing_sheet(one())
+    assert "no load" in str(sheet["warnings"].values[0])
+
+
 def test_a_low_shoulder_cuts_the_ellipse():
     state = one("7205", axial=4000.0)
     with pytest.warns(BearingWarning, match="shoulder cuts"):

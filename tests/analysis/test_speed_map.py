@@ -20,6 +20,11 @@ import rotors
 from bearingdyn import plot
 from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_state, transient
 from bearingdyn.analysis.steady import branches as tracing
+from bearingdyn.analysis.steady.balance import flat, newton, unflat
+from bearingdyn.analysis.steady.factored import Factored, jacobian
+from bearingdyn.analysis.steady.problem import Problem
+from bearingdyn.analysis.steady.reaching import curve_of
+from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.material import FractionalZener
 from bearingdyn.system import assemble
@@ -213,6 +218,58 @@ def test_a_march_can_be_asked_whether_its_motion_is_the_only_one() -> None:
     unbalanced.unbalance("rotor.centre", 1e-6)
     with pytest.raises(ValueError, match="check_unique for the base frequencies"):
         transient(unbalanced, speed=500.0, **asked)
+
+
+def test_the_derivative_as_one_matrix_is_that_of_products_and_of_differences() -> None:
+    """A machine of two bearings in layers, whose balls come and go."""
+    app = rotors.motor()
+    app.load("shaft.end", (0, -600.0, 0, 0, 0, 0))
+    problem = Problem.of(app)
+    lines = Lines.harmonics(6, 16)
+    balance = problem.balance(lines, 700.0)
+    z = problem.standing(lines)
+    rng = np.random.default_rng(0)
+    z[1:3] += 3e-7 * (rng.normal(size=z[1:3].shape) + 1j * rng.normal(size=z[1:3].shape))
+    pressed = balance.press(z)
+    assert np.ptp([along.loads for along in pressed.bearings]) > 0.0
+    J = jacobian(balance, pressed)
+    step = rng.normal(size=z.shape) + 1j * rng.normal(size=z.shape)
+    vector = flat(step)  # the mean loses its imaginary part here
+    linear = balance.linearised(pressed)
+    product = linear.product(vector.copy())
+    whole = linear.prepared(unflat(J @ vector, balance).copy())
+    np.testing.assert_allclose(whole, product, rtol=0, atol=1e-12 * np.abs(product).max())
+    # the balls' force has a kink where one closes: differences see it to the share of a step, 1e-4 here
+    size = 1e-11
+    ends = [balance.residual(z + s * step, balance.press(z + s * step)) for s in (size, -size)]
+    slope = flat((ends[0] - ends[1]) / (2 * size))
+    np.testing.assert_allclose(J @ vector, slope, rtol=0, atol=1e-3 * np.abs(slope).max())
+    kept = J.copy()
+    solved = Factored.of(J).solve(vector)
+    np.testing.assert_allclose(kept @ solved, vector, rtol=0, atol=1e-9 * np.abs(vector).max())
+
+
+def test_a_corrector_that_lands_far_from_its_predictor_is_refused() -> None:
+    problem = Problem.of(equilibrium(rotors.held_jis_rotor()))
+    lines = Lines.harmonics(12, 16)
+    speed = 8000 * RPM
+    found = newton(problem.balance(lines, speed), problem.standing(lines), tolerance=1e-10)
+    curve = curve_of(lambda p: problem.balance(lines, p), found, speed)
+    point = curve.begin(found, speed, -1.0)
+    length = 0.02
+    assert curve.step(point, length) is not None
+    away = np.zeros(len(point.tangent) + 1)
+    away[2 * point.z.shape[1]] = 2.0 / length  # the predictor leaves the tangent by the length of the step
+    assert curve.step(point, length, bend=away) is None
+    assert curve.step(point, length, exact=True, bend=away) is not None  # it does come back to the curve
+
+
+def test_multipliers_of_a_map_are_those_of_its_motions() -> None:
+    """A map takes fewer samples of a passage and leaves out what the bearings do not feel; 1e-3 is asked."""
+    data = made(7900, 8000, points=2)
+    alone = steady_state(rotors.held_jis_rotor(), rpm=8000, record=RECORD, harmonics=12)
+    last = int(np.argmax(data["speed"].values))
+    assert float(data["multiplier"][last]) == pytest.approx(alone.attrs["multiplier"], abs=3e-4)
 
 
 def test_bad_input_is_named_before_work() -> None:

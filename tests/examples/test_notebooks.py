@@ -13,7 +13,7 @@ import matplotlib
 import numpy as np
 import pytest
 
-from bearingdyn.notice import BeyondData
+from bearingdyn.notice import Notice
 from measured import DATA
 
 matplotlib.use("Agg")
@@ -31,7 +31,7 @@ def run(name: str, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     path = next(path for path in NOTEBOOKS if path.name.startswith(name))
     names: dict[str, Any] = {"__name__": "notebook"}
     with warnings.catch_warnings():
-        warnings.simplefilter("error", BeyondData)  # nothing is decided on a modulus that was not measured
+        warnings.simplefilter("error", Notice)  # nor is anything decided on a modulus that was not measured
         exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
     plt.close("all")
     return names

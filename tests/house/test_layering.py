@@ -34,6 +34,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("pictures", "progress", "short_repr", "types"),
     ("checks", "core", "fingerprint", "notice"),
     ("magnitude", "units", "writing"),
+    ("kept_arrays",),
     ("material",),
     ("bearing", "fem"),
     ("cms",),

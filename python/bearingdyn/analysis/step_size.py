@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.driving_periods import rhythms
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.notice import CoarseStep, GrowingStep, warn
+from bearingdyn.notice import CoarseStep, GrowingStep, OutsideBand, warn
 from bearingdyn.system import System, natural
 from bearingdyn.types import Array
 
@@ -62,7 +63,11 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
     decay += 0.5 * np.einsum("ij,ij->j", z, eq.bearing_C @ z)
     for layer in system.layers:
         material = layer.material if layer.strain is None else layer.material.rest
-        loss = np.imag(np.asarray(material.complex_modulus(omega))) - omega * getattr(material, "eta0", 0.0)
+        with warnings.catch_warnings():
+            # all modes of the model are looked at, those far above the march's band too
+            warnings.simplefilter("ignore", OutsideBand)
+            loss = np.imag(np.asarray(material.complex_modulus(omega)))
+        loss -= omega * getattr(material, "eta0", 0.0)
         decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)
     gain = np.maximum(share, 0.0) * (omega * dt) ** 4 / (48.0 * dt)
     grown = gain - decay

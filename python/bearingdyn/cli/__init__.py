@@ -42,12 +42,15 @@ Every command takes --json and --help. Exit codes: 0 good, 1 a check does not ho
 that cannot be used. SI units throughout, temperatures in C.
 """
 
+NEGATIVE = re.compile(r"-([0-9]+\.?[0-9]*|\.[0-9]+)e[+-]?[0-9]+|-inf(inity)?|-nan", re.IGNORECASE)
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command, by default that of sys.argv, and return its exit code."""
     parser = _parser()
+    given = sys.argv[1:] if argv is None else argv
     try:
-        arguments = parser.parse_args(argv)
+        arguments = parser.parse_args([_no_option(word) for word in given])
     except SystemExit as stop:  # argparse has said why
         return int(stop.code or 0)
     # a name with θ must not stop a terminal that cannot show it
@@ -76,6 +79,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         print("bearingdyn: interrupted", file=sys.stderr)
         return INTERRUPTED
     return code
+
+
+def _no_option(word: str) -> str:
+    """The word, a negative number set off by a blank: argparse takes -5e2 and -inf for options."""
+    return f" {word}" if NEGATIVE.fullmatch(word) else word
 
 
 def _reason(error: Exception) -> str:

@@ -55,7 +55,7 @@ from bearingdyn.fem.revolution_harmonics import (
     Harmonic,
     assemble_harmonic,
     deviatoric_strains,
-    harmonic_slope,
+    harmonic_slopes,
 )
 from bearingdyn.fem.rigid_motion import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
 from bearingdyn.fem.solid_matrices import SolidMatrices, assemble_solid
@@ -97,7 +97,7 @@ __all__ = [
     "face_points",
     "face_shapes",
     "factorise",
-    "harmonic_slope",
+    "harmonic_slopes",
     "lagrange",
     "lowest_modes",
     "o_ring_mesh",

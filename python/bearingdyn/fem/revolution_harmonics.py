@@ -10,6 +10,7 @@ ch. 4), which does not lock as ν → ½. Bulk and shear modulus enter as scalar
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -200,7 +201,7 @@ def _make_deviatoric(B: Array) -> None:
 def deviatoric_strains(
     mesh: RevolutionMesh, order: int, components: tuple[int, ...], u: Array
 ) -> tuple[Array, Array]:
-    """Deviatoric strain of shapes u (n, k) at the 3×3 points of every element, and the points' volumes.
+    """Deviatoric strain of a revolution's shapes u (n, k) at 3×3 points of each element, and their volumes.
 
     Parameters
     ----------
@@ -227,7 +228,7 @@ def deviatoric_strains(
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
-    """Where element matrices (m, 9c, 9c) add up in a csc matrix.
+    """Pattern of a harmonic's matrix: where element matrices (m, 9c, 9c) add up in csc.
 
     Parameters
     ----------
@@ -250,7 +251,7 @@ class Pattern:
 
 
 def pattern(mesh: RevolutionMesh, c: int) -> Pattern:
-    """The pattern of a mesh's elements with c components at each node."""
+    """The pattern of a harmonic's matrix for a mesh with c components at each node."""
     nodes = mesh.r.size
     key = (
         mesh.elements[:, None, :] * nodes + mesh.elements[:, :, None]
@@ -321,8 +322,8 @@ def assemble_harmonic(
     return gathered_harmonic(mesh, order, components, mass, volumetric, deviatoric)
 
 
-def harmonic_slope(h: Harmonic, dr: Array, dz: Array) -> Harmonic:
-    """Derivative of a harmonic's matrices where the nodes of its mesh move at the rates dr, dz (nodes,).
+def harmonic_slopes(h: Harmonic, rates: Iterable[tuple[Array, Array]]) -> list[Harmonic]:
+    """Derivatives of a harmonic's matrices where the nodes of its mesh move at rates dr, dz (nodes,) each.
 
     By a complex step of the nodes within the element matrices, which is exact to round-off.
 
@@ -330,17 +331,22 @@ def harmonic_slope(h: Harmonic, dr: Array, dz: Array) -> Harmonic:
     ----------
     h
         Matrices of the mesh where it is.
-    dr, dz
-        Rates of its nodes.
+    rates
+        Of its nodes, by each parameter.
 
     References
     ----------
     W. Squire and G. Trapp, SIAM Rev. 40 (1998) 110.
     """
     mesh, step = h.mesh, 1e-30
-    moved = replace(mesh, r=mesh.r + 1j * step * dr, z=mesh.z + 1j * step * dz)
-    mass, volumetric, deviatoric = (A.imag / step for A in _element_matrices(moved, h.order, h.components))
-    return gathered_harmonic(mesh, h.order, h.components, mass, volumetric, deviatoric)
+    where, found = pattern(mesh, len(h.components)), []
+    for dr, dz in rates:
+        moved = replace(mesh, r=mesh.r + 1j * step * dr, z=mesh.z + 1j * step * dz)
+        mass, volumetric, deviatoric = (
+            A.imag / step for A in _element_matrices(moved, h.order, h.components)
+        )
+        found.append(gathered_harmonic(mesh, h.order, h.components, mass, volumetric, deviatoric, where))
+    return found
 
 
 def gathered_harmonic(

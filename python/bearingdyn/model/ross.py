@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.application import Application
-from bearingdyn.checks import existing, number, positive
+from bearingdyn.checks import existing, nonnegative, number, numbers, positive, whole
 from bearingdyn.fem import Section
 from bearingdyn.material import Elastic
 from bearingdyn.parts import Disc, Shaft
@@ -61,6 +61,17 @@ def read_ross(
     """
     file = existing(path, "ROSS file")
     speed, f_max = number("speed", speed, "it must be a speed in rad/s"), positive("f_max", f_max)
+    damping = nonnegative("damping", damping)
+    try:
+        return _rotor(file, speed, damping, f_max)
+    except ValueError as error:  # of a part, which does not know where its numbers stand
+        if str(file) in str(error):
+            raise
+        raise ValueError(f"{file}: {error}") from error
+
+
+def _rotor(file: Path, speed: float, damping: float, f_max: float) -> Application:
+    """The rotor of the file."""
     elements = _elements(file)
     pieces = _pieces(file, elements)
     nodes = np.concatenate([[0.0], np.cumsum([piece[0][1] for piece in pieces])])
@@ -78,8 +89,9 @@ def read_ross(
     seats: dict[str, float] = {}
     total: dict[str, Array] = {}
     for name, one in held.items():
+        z = _node(file, name, one, nodes)
         place = f"n{int(one['n'])}"
-        seats[place] = _node(file, name, one, nodes)
+        seats[place] = z
         total[place] = total.get(place, np.zeros((2, 6))) + springs[name]
     if not seats:
         raise ValueError(f"{file}: it has no bearing with coefficients; nothing would hold the shaft")
@@ -113,11 +125,7 @@ def _elements(file: Path) -> dict[str, dict[str, Any]]:
 
 def _given(file: Path, name: str, one: Mapping[str, Any], key: str) -> float:
     """A number of an element."""
-    value = one.get(key)
-    good = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    if not good:
-        raise ValueError(f"{file}, {name}: {key} is {value!r}; it must be a finite number")
-    return float(value)  # type: ignore[arg-type]
+    return number(f"{file}, {name}: {key}", one.get(key), "it must be a finite number")
 
 
 def _pieces(
@@ -138,7 +146,7 @@ def _pieces(
             steps = [Section(L / n, odl + t * (odr - odl), idl + t * (idr - idl)) for t in middle]
         except ValueError as error:
             raise ValueError(f"{file}, {name}: {error}") from None
-        found.append(((int(one.get("n", k)), L), steps))
+        found.append(((whole(f"{file}, {name}: n", one.get("n", k), 0), L), steps))
     found.sort(key=lambda piece: piece[0][0])
     if [piece[0][0] for piece in found] != list(range(len(found))):
         raise ValueError(f"{file}: its shaft elements must follow each other from node 0, one at each")
@@ -158,7 +166,7 @@ def _metal(file: Path, name: str, one: Mapping[str, Any]) -> Elastic:
 
 def _node(file: Path, name: str, one: Mapping[str, Any], nodes: Array) -> float:
     n = one.get("n")
-    if not isinstance(n, int) or not 0 <= n < nodes.size:
+    if not isinstance(n, int) or isinstance(n, bool) or not 0 <= n < nodes.size:
         raise ValueError(f"{file}, {name}: n is {n!r}; it must be a node of the shaft, 0 to {nodes.size - 1}")
     return float(nodes[n])
 
@@ -168,13 +176,13 @@ def _coefficients(file: Path, name: str, one: Mapping[str, Any], speed: float) -
     if one.get("n_link") is not None:
         raise ValueError(f"{file}, {name}: n_link is {one['n_link']}; a bearing here is held by the ground")
     at = one.get("frequency")
-    grid = np.atleast_1d(np.asarray(at if at else [0.0], dtype=np.float64))
+    grid = numbers(f"{file}, {name}: frequency", at if at else 0.0, "it must be ascending, rad/s")
 
     def value(key: str) -> float:
         given = one.get(key, 0.0)
         try:
             row = np.atleast_1d(np.asarray(given if given is not None else 0.0, dtype=np.float64))
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             row = np.array([math.nan])
         if row.ndim != 1 or row.size not in (1, grid.size) or not np.isfinite(row).all():
             raise ValueError(f"{file}, {name}: {key} is {given!r}; it must be {grid.size} finite numbers")

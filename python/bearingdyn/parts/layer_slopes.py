@@ -10,14 +10,14 @@ combinations of differences between moduli, which leaves what they span, and so 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from bearingdyn.checks import require
-from bearingdyn.fem import Harmonic, factorise, harmonic_slope
+from bearingdyn.fem import Harmonic, factorise, harmonic_slopes
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.revolved_boundaries import Boundaries
 from bearingdyn.parts.revolved_shapes import ROUND_OFF
@@ -37,20 +37,20 @@ class LayerSlopes:
     H: Array
 
 
-def layer_slopes(layer: Layer, name: str) -> LayerSlopes:
-    """Derivative of the matrices that `layer.superelement()` has, the moduli of its shapes held.
+def layer_slopes(layer: Layer, names: Sequence[str]) -> dict[str, LayerSlopes]:
+    """Derivatives of the matrices that `layer.superelement()` has, the moduli of its shapes held.
 
     Parameters
     ----------
     layer
         With flat ends.
-    name
-        "r_inner", "r_outer", "width", "K" or "density".
+    names
+        Of "r_inner", "r_outer", "width", "K" and "density"; together they share the shapes' factors.
 
     Returns
     -------
-    LayerSlopes
-        Per m, Pa or kg/m³, in the coordinates of the superelement.
+    dict of str to LayerSlopes
+        By name, per m, Pa or kg/m³, in the coordinates of the superelement.
 
     Raises
     ------
@@ -60,83 +60,110 @@ def layer_slopes(layer: Layer, name: str) -> LayerSlopes:
     require(layer.recess == 0, "Layer.recess", layer.recess, "it must be 0 for a derivative: flat ends")
     body = layer.body
     mesh = body.mesh
-    across = (mesh.r - layer.r_inner) / layer.thickness
-    dr, dz = np.zeros_like(mesh.r), np.zeros_like(mesh.z)
-    if name == "r_inner":
-        dr = 1.0 - across
-    elif name == "r_outer":
-        dr = across
-    elif name == "width":
-        dz = mesh.z / layer.width
+    across, still = (mesh.r - layer.r_inner) / layer.thickness, np.zeros_like(mesh.r)
+    rates = {
+        "r_inner": (1.0 - across, still),
+        "r_outer": (across, still),
+        "width": (still, mesh.z / layer.width),
+    }
+    moving = [name for name in names if name in DIMENSIONS]
+    bending = [name for name in names if name != "density"]
     # the moduli of the shapes, of the one region, at every level
     levels = [level[0] for level in shape_moduli(body.regions, body.moduli)]
     bulk, density = layer.material.K, layer.material.density
     n = body._size
-    M, K, H = (np.zeros((n, n)) for _ in range(3))
+    found = {name: LayerSlopes(*(np.zeros((n, n)) for _ in range(3))) for name in names}
     for h, Psi, places in body._placed():
-        slope = harmonic_slope(h, dr, dz) if name in DIMENSIONS else None
-        bent = _shape_slope(h, Psi, body._boundaries, bulk, levels, slope, name == "K", (dr, dz))
-        deviatoric, volumetric, mass = (h.matrix(A.sum(axis=0)) for A in _data(h))
-        first, second, third = (
-            (None, None, None) if slope is None else (h.matrix(A.sum(axis=0)) for A in _data(slope))
-        )
-        more = [(H, deviatoric, first), (K, bulk * volumetric, None if second is None else bulk * second)]
-        more.append((M, density * mass, None if third is None else density * third))
-        for full, A, dA in more:
-            half = bent.T @ (A @ Psi)
-            a = half + half.T
-            if dA is not None:
-                a = a + Psi.T @ (dA @ Psi)
-            if name == "K" and full is K:
-                a = a + Psi.T @ (volumetric @ Psi)
-            if name == "density" and full is M:
-                a = a + Psi.T @ (mass @ Psi)
+        slopes = dict(zip(moving, harmonic_slopes(h, [rates[name] for name in moving]), strict=True))
+        whole = _Matrices.of(h)
+        loads = {
+            name: _Motion(slopes[name], *rates[name]) if name in slopes else _Motion(None, still, still)
+            for name in bending
+        }
+        shapes = _shape_slopes(h, Psi, body._boundaries, bulk, levels, loads)
+        sides = whole.deviatoric @ Psi, bulk * (whole.volumetric @ Psi), density * (whole.mass @ Psi)
+        for name, to in found.items():
+            reduced = [np.zeros((Psi.shape[1],) * 2) for _ in range(3)]
+            if name in shapes:
+                reduced = [half + half.T for half in (shapes[name].T @ side for side in sides)]
+            if name in slopes:
+                own = _Matrices.of(slopes[name])
+                reduced[0] += Psi.T @ (own.deviatoric @ Psi)
+                reduced[1] += bulk * (Psi.T @ (own.volumetric @ Psi))
+                reduced[2] += density * (Psi.T @ (own.mass @ Psi))
+            elif name == "K":
+                reduced[1] += Psi.T @ sides[1] / bulk
+            elif name == "density":
+                reduced[2] += Psi.T @ sides[2] / density
             for index, sign in places:
-                full[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (a + a.T)
+                for full, a in zip((to.H, to.K, to.M), reduced, strict=True):
+                    full[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (a + a.T)
     P = body._free_of_rigid_motion(n)
-    return LayerSlopes(M, P @ K @ P, P @ H @ P)
+    return {name: LayerSlopes(to.M, P @ to.K @ P, P @ to.H @ P) for name, to in found.items()}
 
 
-def _data(h: Harmonic) -> tuple[Array, Array, Array]:
-    return h.deviatoric, h.volumetric, h.mass
+@dataclass(frozen=True, eq=False)
+class _Matrices:
+    """Sparse matrices of all regions of a harmonic, per unit of modulus and density."""
+
+    deviatoric: Any
+    volumetric: Any
+    mass: Any
+
+    @classmethod
+    def of(cls, h: Harmonic) -> _Matrices:
+        return cls(*(h.matrix(A.sum(axis=0)) for A in (h.deviatoric, h.volumetric, h.mass)))
 
 
-def _shape_slope(
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """How a parameter moves the shapes: by slopes of matrices, None for the bulk modulus, and nodes."""
+
+    slope: Harmonic | None
+    dr: Array
+    dz: Array
+
+
+def _shape_slopes(
     h: Harmonic,
     Psi: Array,
     boundaries: Boundaries,
     bulk: float,
     levels: Sequence[float],
-    slope: Harmonic | None,
-    by_bulk: bool,
-    rates: tuple[Array, Array],
-) -> Array:
-    """Derivative of the shapes Psi (n, columns) of one family."""
+    motions: Mapping[str, _Motion],
+) -> dict[str, Array]:
+    """Derivatives of the shapes Psi (n, columns) of one family, by each motion."""
     at, R = boundaries.held(h)
     inner = np.setdiff1d(h.free, at)
-    dR = _rigid_slope(h, boundaries, at, rates)
-
-    def solved(G: float) -> tuple[Array, Array]:
-        """Constraint shapes at a modulus, and their derivative."""
-        K = h.stiffness([bulk], [G])
-        lu: Any = factorise(K[inner][:, inner])
-        u, du = np.zeros((h.n, R.shape[1])), np.zeros((h.n, R.shape[1]))
-        u[at], du[at] = R, dR
-        u[inner] = -lu.solve(np.asarray(K[inner][:, at] @ R))
-        load = K[inner][:, at] @ dR
-        if slope is not None:
-            load = load + (slope.stiffness([bulk], [G]) @ u)[inner]
-        if by_bulk:
-            load = load + (h.matrix(h.volumetric.sum(axis=0)) @ u)[inner]
-        du[inner] = -lu.solve(np.asarray(load))
-        return u, du
-
+    dR = {name: _rigid_slope(h, boundaries, at, (m.dr, m.dz)) for name, m in motions.items()}
     fixed = R.shape[1]
-    bent = np.zeros_like(Psi)
-    if slope is None and not by_bulk:
-        return bent
+
+    def solved(G: float) -> tuple[Array, dict[str, Array]]:
+        """Constraint shapes at a modulus, and their derivatives."""
+        rows = h.stiffness([bulk], [G])[inner]
+        lu: Any = factorise(rows[:, inner])
+        edge = rows[:, at]
+        u = np.zeros((h.n, fixed))
+        u[at] = R
+        u[inner] = -lu.solve(np.asarray(edge @ R))
+        loads = []
+        for name, m in motions.items():
+            A = h.matrix(h.volumetric.sum(axis=0)) if m.slope is None else m.slope.stiffness([bulk], [G])
+            loads.append(edge @ dR[name] + (A @ u)[inner])
+        within = -lu.solve(np.hstack(loads))
+        found = {}
+        for k, name in enumerate(motions):
+            du = np.zeros_like(u)
+            du[at], du[inner] = dR[name], within[:, k * fixed : (k + 1) * fixed]
+            found[name] = du
+        return u, found
+
+    if not motions:
+        return {}
     static, d_static = solved(levels[0])
-    bent[:, :fixed] = d_static
+    bent = {name: np.zeros_like(Psi) for name in motions}
+    for name, to in bent.items():
+        to[:, :fixed] = d_static[name]
     if Psi.shape[1] == fixed:
         return bent
     K = h.stiffness([bulk], [levels[0]])
@@ -145,13 +172,12 @@ def _shape_slope(
     moving = np.diag(k) > ROUND_OFF * scale
     moving[: fixed // 2] = False  # as the basis does: of the first face nothing
     unit = 1.0 / np.sqrt(np.diag(k)[moving])
-    raw, d_raw = [], []
-    for G in levels[1:]:
-        u, du = solved(G)
-        raw.append((u - static)[:, moving] * unit)
-        d_raw.append((du - d_static)[:, moving] * unit)
-    mix = np.linalg.lstsq(np.hstack(raw), Psi[:, fixed:], rcond=None)[0]
-    bent[:, fixed:] = np.hstack(d_raw) @ mix
+    others = [solved(G) for G in levels[1:]]
+    raw = np.hstack([(u - static)[:, moving] * unit for u, _ in others])
+    mix = np.linalg.lstsq(raw, Psi[:, fixed:], rcond=None)[0]
+    for name, to in bent.items():
+        turned = np.hstack([(du[name] - d_static[name])[:, moving] * unit for _, du in others])
+        to[:, fixed:] = turned @ mix
     return bent
 
 

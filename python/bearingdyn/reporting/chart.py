@@ -20,7 +20,7 @@ BINS = 2000  # of a thinned curve, two points each
 
 @dataclass(frozen=True)
 class Curve:
-    """One line of a chart: its name, and x (n,) ascending and y (n,), NaN where there is nothing.
+    """One curve of a report's chart: its name, x (n,) ascending and y (n,), NaN where there is nothing.
 
     beside: name of a line before it, whose colour it takes, dashed.
     """
@@ -33,7 +33,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart to zoom and read off: a title, what its axes are, and its curves.
+    """A report's chart to zoom and read off: a title, what its axes are, and its curves.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class Chart:
 
 
 def thinned(curve: Curve) -> Curve:
-    """A curve of many points by the lowest and the highest of each of BINS pieces, in their order."""
+    """A chart's curve of many points by the lowest and highest of each of BINS pieces, in order."""
     n = curve.x.size
     if n <= MOST:
         return curve
@@ -122,10 +122,10 @@ def thinned(curve: Curve) -> Curve:
 
 
 def floats(values: Array) -> str:
-    """Numbers as little-endian 32-bit floats in base64."""
+    """A chart's numbers as little-endian 32-bit floats in base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
 
 
 def json_text(held: object) -> str:
-    """JSON that may stand inside a script element: no end of it within."""
+    """A chart's JSON, as it may stand inside a script element: no end of it within."""
     return json.dumps(held, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")

@@ -22,7 +22,7 @@ PER_BODY = 10.0  # sides along the longest extent of a body, at least
 
 @dataclass(frozen=True, eq=False)
 class Radiators:
-    """Bodies that radiate together.
+    """Radiators: bodies that radiate together.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class Radiators:
 
 
 def digest(*arrays: Array | Index) -> str:
-    """Hash of arrays, their shapes with them."""
+    """Hash of arrays by which radiators are known, their shapes with them."""
     found = hashlib.sha256()
     for a in arrays:
         found.update(f"{a.dtype.kind}{a.shape}".encode())

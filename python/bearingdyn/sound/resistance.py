@@ -10,16 +10,15 @@ single frequency near one solved twice it may be too low, by 1.7 dB at 9 points 
 
 from __future__ import annotations
 
-import io
 import logging
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from bearingdyn.kept_arrays import read_arrays, write_arrays
 from bearingdyn.notice import RepairedResistance, UnsureInterpolation, warn
 from bearingdyn.progress import Progress
 from bearingdyn.short_repr import short
@@ -27,7 +26,6 @@ from bearingdyn.sound.field import pressure_at
 from bearingdyn.sound.radiation import SAFE, SAFE_ON_FLOOR, Radiation, solve
 from bearingdyn.sound.radiators import Radiators, digest
 from bearingdyn.types import Array, Complex
-from bearingdyn.writing import write_whole
 
 log = logging.getLogger(__name__)
 
@@ -40,7 +38,7 @@ NEGATIVE = 1e-4  # of the largest eigenvalue: less is the discretisation's own e
 
 @dataclass(frozen=True, eq=False)
 class Octave:
-    """Radiation solved in one octave.
+    """Radiation resistance solved in one octave.
 
     Parameters
     ----------
@@ -115,7 +113,7 @@ def _difference(best: Array, rough: Array) -> Array:
 
 
 def octaves(low: float, high: float) -> list[tuple[float, float]]:
-    """Octaves, Hz, that reach from below `low` to `high`, the highest first."""
+    """Octaves of a radiation resistance, Hz, from below `low` to `high`, the highest first."""
     found = [(0.5 * high, high)]
     while found[-1][0] > low:
         found.append((0.5 * found[-1][0], found[-1][0]))
@@ -134,7 +132,7 @@ def solved_octave(
     cache: Path | None = None,
     tell: Progress | None = None,
 ) -> Octave:
-    """The radiation of bodies in one octave, from the folder `cache` where it is known.
+    """Radiation resistance of bodies in one octave, from the folder `cache` where it is known.
 
     Parameters
     ----------
@@ -160,7 +158,7 @@ def solved_octave(
     """
     size = element_size or radiators.size(sound_speed / high)
     facts = np.array([low, high, density, sound_speed, size, VERSION, *LEVELS, TOLERANCE])
-    name = f"radiation-{digest(facts, microphones)[:16]}-{radiators.fingerprint()[:32]}.npz"
+    name = f"radiation-{digest(facts, microphones)[:16]}-{radiators.fingerprint()[:32]}.arrays"
     if cache is not None and (known := _read(cache / name)) is not None:
         _warn(known)
         return known
@@ -232,7 +230,7 @@ def _ways(radiators: Radiators, microphones: Array, k: float) -> Complex:
 
 
 def heard(octave: Octave, radiators: Radiators, f: Array, microphones: Array, sound_speed: float) -> Complex:
-    """Pressure at the microphones per unit of velocity of each coordinate, (f, p, n), Pa s/m.
+    """Pressure at microphones beside the radiation resistance: per unit of velocity, (f, p, n), Pa s/m.
 
     Parameters
     ----------
@@ -287,22 +285,15 @@ FIELDS = tuple(field.name for field in fields(Octave))
 
 
 def _write(path: Path, octave: Octave) -> None:
-    data = io.BytesIO()
-    held: dict[str, Any] = {name: getattr(octave, name) for name in FIELDS}
-    np.savez(data, **held)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, data.getvalue())
+    write_arrays(path, {name: getattr(octave, name) for name in FIELDS})
 
 
 def _read(path: Path) -> Octave | None:
     """What a file holds; None where there is none, or one that was cut."""
-    if not path.exists():
-        return None
-    try:
-        with np.load(path) as held:
-            a = {name: held[name] for name in FIELDS}
-    except (OSError, ValueError, KeyError, EOFError):
-        log.warning("%s cannot be read; the octave is solved again", path)
+    a = read_arrays(path, FIELDS)
+    if a is None:
+        if path.exists():
+            log.warning("%s cannot be read; the octave is solved again", path)
         return None
     return Octave(
         float(a["low"]), float(a["high"]), a["nodes"], a["resistance"], a["pressure"],

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+import re
 import struct
 from collections.abc import Sequence
 
@@ -10,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import existing, items, number, one_of, positive, require
+from bearingdyn.magnitude import plausible
 from bearingdyn.notice import ClippedSound, warn
 from bearingdyn.sound.signals import signal
 from bearingdyn.types import Array
@@ -70,6 +73,7 @@ def write_wav(
     one_of("bits", bits, (16, 32))
     rate = positive("rate", rate, "it must be samples a second, a whole number")
     require(rate % 1 == 0 and rate < 2**31, "rate", rate, "it must be samples a second, a whole number")
+    plausible("sample rate", "rate", rate)
     pause = number("pause", pause, "it must be seconds of zero or more")
     require(pause >= 0, "pause", pause, "it must be seconds of zero or more")
     given = items("pressure", pressure, "it must be samples (n,), Pa, or a list of such signals")
@@ -141,10 +145,15 @@ def read_wav(path: str | os.PathLike[str]) -> tuple[Array, int]:
             at += 8 + size + size % 2
     if at != len(raw) or not {b"fmt ", b"data"} <= chunks.keys():
         raise ValueError(f"{path} is no whole .wav file; write it by bd.write_wav")
+    if len(chunks[b"fmt "]) < 16:
+        raise ValueError(f"{path} is no whole .wav file: it does not say its form; write it by bd.write_wav")
     form, channels, rate, _, _, bits = struct.unpack_from("<HHIIHH", chunks[b"fmt "])
     text = chunks.get(b"LIST", b"").decode("latin-1")
     if "full scale 1.0 = " not in text or (form, bits) not in ((PCM, 16), (FLOAT, 32)) or channels != 1:
         raise ValueError(f"{path} holds no calibration; write it by bd.write_wav")
-    full_scale = float(text.split("full scale 1.0 = ")[1].split()[0])
+    scale = re.match(r"[0-9.]+(e[+-]?[0-9]{1,3})?(?= Pa)", text.split("full scale 1.0 = ")[1])
+    full_scale = float(scale[0]) if scale and scale[0].count(".") < 2 else 0.0
+    if not (0.0 < full_scale < math.inf) or len(chunks[b"data"]) % (bits // 8):
+        raise ValueError(f"{path} holds no calibration, or no whole samples; write it by bd.write_wav")
     kind, divisor = ("<i2", FULL) if bits == 16 else ("<f4", 1.0)
     return np.frombuffer(chunks[b"data"], kind).astype(np.float64) / divisor * full_scale, int(rate)

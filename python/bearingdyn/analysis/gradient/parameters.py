@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,7 +12,7 @@ from bearingdyn.application import GROUND, Channel, Place
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import meant, name_list, named, number, require
 from bearingdyn.material import Maxwell
-from bearingdyn.parts import DIMENSIONS, Layer, RigidBody, layer_slopes
+from bearingdyn.parts import DIMENSIONS, Layer, LayerSlopes, RigidBody, layer_slopes
 from bearingdyn.system import System
 from bearingdyn.types import Array
 
@@ -25,7 +25,7 @@ _OFFERED = (
 
 @dataclass(eq=False)
 class Change:
-    """Derivative of a system's arrays with respect to a parameter; what is missing does not change.
+    """Derivative of a system's arrays with respect to one of the parameters; what is missing is constant.
 
     Attributes
     ----------
@@ -86,22 +86,13 @@ def changes_of(system: System, parameters: object) -> dict[str, Change]:
     ValueError
         For a parameter that the system has not; says what there is.
     """
-    known: dict[str, Change] = {}
-    # equal layers stand on both sides of many machines
-    layers: dict[tuple[int, str], Any] = {}
-
-    def one(path: str) -> Change:
-        if path not in known:
-            known[path] = _change(system, path, layers)
-        return known[path]
-
     given: Mapping[str, Any]
     if isinstance(parameters, Mapping):
         given = named("parameters", parameters, "it must be a mapping, name -> parameter")
     else:
         given = {name: name for name in name_list("parameters", parameters, "parameters")}
     require(bool(given), "parameters", parameters, "give one at least")
-    found = {}
+    asked: dict[str, dict[str, float]] = {}
     for name, what in given.items():
         words = f"parameters[{name!r}]"
         if isinstance(what, Mapping):
@@ -109,14 +100,39 @@ def changes_of(system: System, parameters: object) -> dict[str, Change]:
         else:
             several = [what] if isinstance(what, str) else name_list(words, what, "parameters")
             weights = dict.fromkeys(several, 1.0)
-        total = Change()
+        asked[name] = {path: number(f"{words}[{path!r}]", weight) for path, weight in weights.items()}
+
+    paths = list(dict.fromkeys(path for weights in asked.values() for path in weights))
+    layers = _Layers(system, paths)
+    known = {path: _change(system, path, layers) for path in paths}
+    found = {}
+    for name, weights in asked.items():
+        found[name] = total = Change()
         for path, weight in weights.items():
-            total.add(one(path), number(f"{words}[{path!r}]", weight))
-        found[name] = total
+            total.add(known[path], weight)
     return found
 
 
-def _change(system: System, path: str, layers: dict[tuple[int, str], Any]) -> Change:
+class _Layers:
+    """Derivatives of layers, all of one layer at once; a layer may stand on many sides of a machine."""
+
+    def __init__(self, system: System, paths: Sequence[str]) -> None:
+        sources = {t.name: t.source for t in system.parts if isinstance(t.source, Layer)}
+        self.asked: dict[int, list[str]] = {}
+        for path in paths:
+            part, _, tail = path.partition(".")
+            if part in sources and tail in (*DIMENSIONS, "K", "density"):
+                names = self.asked.setdefault(id(sources[part]), [])
+                names += [tail] if tail not in names else []
+        self.found: dict[int, dict[str, LayerSlopes]] = {}
+
+    def __call__(self, layer: Layer, name: str) -> LayerSlopes:
+        if id(layer) not in self.found:
+            self.found[id(layer)] = layer_slopes(layer, self.asked[id(layer)])
+        return self.found[id(layer)][name]
+
+
+def _change(system: System, path: str, layers: _Layers) -> Change:
     """The change by one named parameter."""
     named_place = Place.parse(path) if "." in path else Place(path, "")
     head, tail = named_place.part, named_place.name
@@ -143,10 +159,7 @@ def _change(system: System, path: str, layers: dict[tuple[int, str], Any]) -> Ch
             material = system.layers[own[0]].material if own else None
             if tail in (*DIMENSIONS, "K", "density"):
                 require(isinstance(material, Maxwell), "parameter", path, "it needs a layer of bd.Maxwell")
-                key = id(term.source), tail
-                if key not in layers:
-                    layers[key] = layer_slopes(term.source, tail)
-                S, slopes = term.place, layers[key]
+                S, slopes = term.place, layers(term.source, tail)
                 inertia = S.T @ (slopes.M @ term.rigid[:, :3])
                 weights = {(head, tail): 1.0} if tail in DIMENSIONS else {}
                 return Change(
@@ -190,7 +203,7 @@ def _spring(system: System, path: str, place: str, word: str, component: str) ->
 
 
 def shear_names(material: Maxwell) -> list[str]:
-    """Names of a Maxwell model's parameters."""
+    """Names of a Maxwell model's parameters for a gradient."""
     n = material.G.size
     return ["G0", *(f"G{k + 1}" for k in range(n)), *(f"tau{k + 1}" for k in range(n)), "eta0"]
 
@@ -227,7 +240,7 @@ def relaxation_slope(material: Maxwell, name: str, state: str | float) -> float:
 
 
 def arm_slope(bearing: BallBearing) -> float:
-    """Derivative of ln R_i with respect to the clearance, 1/m: R_i is the arm of the tilts unless given."""
+    """The parameter clearance: derivative of ln R_i, 1/m; R_i is the arm of the tilts unless given."""
     geometry = bearing.geometry
     if bearing.overrides.arm is not None:
         return 0.0
@@ -236,7 +249,7 @@ def arm_slope(bearing: BallBearing) -> float:
 
 
 def kernel_slope(bearing: BallBearing) -> dict[str, float]:
-    """Derivative of the kernel's fields with respect to the clearance, 1 and m."""
+    """The parameter clearance: derivative of the kernel's fields, 1 and m."""
     P, A = float(bearing.clearance or 0.0), bearing.geometry.A
     # y0 = A − P/2 and e0 = −(P/2)(2A − P/2); an axial offset adds to e0 what does not depend on P
     return {"y0": -0.5, "e0": -A + 0.5 * P}

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -50,7 +50,7 @@ class Pressed:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """The equations of one system at one speed on chosen lines.
+    """Harmonic balance: the equations of a steady motion of one system at one speed on chosen lines.
 
     Parameters
     ----------
@@ -83,8 +83,8 @@ class Balance:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     @cached_property
-    def kernels(self) -> list[_Packed]:
-        return [_Packed(term.kernel().packed()) for term in self.system.bearings]
+    def kernels(self) -> tuple[_Packed, ...]:
+        return packed(self.system)
 
     @cached_property
     def bodies(self) -> list[tuple[Array, Array]]:
@@ -132,6 +132,18 @@ class Balance:
     def driven(self) -> Complex:
         """z_F (L, m): what the loads alone would do, with the reference on."""
         return self._driven[:, : len(self.receptances.B)]
+
+    def towards(self, speed: float, a: Balance, b: Balance) -> Balance:
+        """The balance at a speed near by, its receptances straight on from here by the slope from a to b."""
+        near = replace(self, speed=speed)
+        share = (speed - self.speed) / (b.speed - a.speed)
+        near.__dict__.update(
+            _answers=self._answers + share * (b._answers - a._answers),
+            _driven=self._driven + share * (b._driven - a._driven),
+            kernels=self.kernels,
+            slots=self.slots,
+        )
+        return near
 
     def moved(self, z: Complex, g: Complex) -> Complex:
         """Amplitudes (L, k) of the rows."""
@@ -198,9 +210,15 @@ class _Packed:
         return self.fields
 
 
+@lru_cache(maxsize=8)
+def packed(system: System) -> tuple[_Packed, ...]:
+    """The kernels of a system's bearings, packed once for many calls."""
+    return tuple(_Packed(term.kernel().packed()) for term in system.bearings)
+
+
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Derivative of the residual at a motion, times vectors: P⁻¹ J, P the same with the mean tangent alone.
+    """Harmonic balance linearised: P⁻¹ J at a motion, times vectors; P has the mean tangent alone.
 
     Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's
     imaginary part is kept at zero.
@@ -252,20 +270,20 @@ class Linearised:
 
 
 def flat(z: Complex) -> Array:
-    """Amplitudes (L, m) as real numbers."""
+    """Amplitudes (L, m) of a harmonic balance as real numbers."""
     z = np.ascontiguousarray(z)
     z[0].imag = 0.0
     return z.view(np.float64).reshape(-1)
 
 
 def unflat(vector: Array, balance: Balance) -> Complex:
-    """Real numbers as amplitudes (L, m)."""
+    """Real numbers as amplitudes (L, m) of a harmonic balance."""
     return np.ascontiguousarray(vector).view(np.complex128).reshape(balance.lines.count, -1)
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A motion and how well it balances.
+    """A motion found by harmonic balance, and how well it balances.
 
     Parameters
     ----------
@@ -290,7 +308,7 @@ class Found:
 
 
 def measure(residual: Complex, z: Complex) -> tuple[float, int]:
-    """The largest residual over the largest amplitude, and its line."""
+    """How well a motion balances: the largest residual over the largest amplitude, and its line."""
     sizes = np.abs(residual).max(axis=1, initial=0.0)
     if not sizes.any():
         return float(sizes.sum()), 0
@@ -305,7 +323,7 @@ def newton(
     most: int = 40,
     tell: Callable[[int, float], object] | None = None,
 ) -> Found:
-    """Newton's iteration from amplitudes z, its steps halved while they do not help."""
+    """Newton's iteration of a harmonic balance from amplitudes z, steps halved while they do not help."""
     pressed = balance.press(z)
     r = balance.residual(z, pressed)
     size, line = measure(r, z)

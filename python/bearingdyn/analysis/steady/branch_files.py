@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 from dataclasses import dataclass
@@ -15,13 +14,13 @@ from bearingdyn.analysis.steady.branches import Branch, Mark
 from bearingdyn.analysis.steady.continuation import Point
 from bearingdyn.analysis.steady.stability import Stability
 from bearingdyn.fingerprint import fingerprint
+from bearingdyn.kept_arrays import read_arrays, write_arrays
 from bearingdyn.types import Array
-from bearingdyn.writing import write_whole
 
 
 @dataclass(frozen=True)
 class BranchFiles:
-    """A folder of finished searches, and what told their maps apart."""
+    """Files of the branches of a speed map: a folder of finished searches, and what tells maps apart."""
 
     folder: Path
     told: str
@@ -34,16 +33,25 @@ class BranchFiles:
         return cls(path, fingerprint(about))
 
     def _path(self, search: object) -> Path:
-        return self.folder / f"{fingerprint((self.told, search))}.npz"
+        return self.folder / f"{fingerprint((self.told, search))}.arrays"
 
     def read(self, search: object) -> list[Branch] | None:
-        """The branches of a search, or None where it was not finished."""
+        """The branches of a search, or None where it was not finished, or its file is damaged.
+
+        Raises
+        ------
+        ValueError
+            For a file that is whole, and holds something else.
+        """
         path = self._path(search)
-        if not path.exists():
+        held = read_arrays(path)
+        if held is None:
             return None
-        with np.load(path, allow_pickle=False) as arrays:
-            heads = json.loads(str(arrays["heads"]))
-            return [_branch({k: arrays[f"{i}.{k}"] for k in KEPT}, head) for i, head in enumerate(heads)]
+        try:
+            heads = json.loads(str(held["heads"]))
+            return [_branch({k: held[f"{i}.{k}"] for k in KEPT}, head) for i, head in enumerate(heads)]
+        except (ValueError, LookupError, TypeError) as error:
+            raise ValueError(f"{path} is no finished search of a map ({error}); delete it") from error
 
     def write(self, search: object, branches: list[Branch]) -> None:
         """Keep a finished search."""
@@ -52,9 +60,7 @@ class BranchFiles:
         for i, branch in enumerate(branches):
             heads.append([branch.passages, branch.origin, [m.event for m in branch.marks]])
             arrays |= {f"{i}.{k}": v for k, v in _arrays(branch).items()}
-        held = io.BytesIO()
-        np.savez(held, heads=np.array(json.dumps(heads)), **arrays)  # type: ignore[arg-type]
-        write_whole(self._path(search), held.getbuffer())
+        write_arrays(self._path(search), {"heads": np.array(json.dumps(heads)), **arrays})
 
 
 KEPT = ("z", "numbers", "tangent", "moved", "multipliers", "period")

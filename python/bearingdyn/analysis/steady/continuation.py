@@ -10,26 +10,38 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
-from bearingdyn.analysis.steady.balance import Balance, Found, Pressed, flat, measure
+from bearingdyn.analysis.steady.balance import Balance, Found, Linearised, Pressed, flat, measure
+from bearingdyn.analysis.steady.factored import Factored, few, jacobian
 from bearingdyn.analysis.steady.krylov import gmres
 from bearingdyn.types import Array, Complex
 
 # of the parameter, relative, over which the residual's slope is taken: half the digits
 SLOPE = 1e-6
 # corrections of a point, and how many are wanted: more shorten the next step, fewer lengthen it
-CORRECTIONS, WANTED = 10, 4
+CORRECTIONS, WANTED = 16, 9
 # largest turn of the tangent in a step, rad: beyond it the step is taken anew at half the length
-LARGEST_TURN = 0.5
+LARGEST_TURN = 0.8
+# of a motion's size, by which a step may change it where the parameter hardly moves
+LONGEST_MOVE = 1.0
+# of a step, by which the corrector may move its point: beyond it another branch was met
+LARGEST_CORRECTION = 0.5
+# turns below which the next step may be longer, and above which it is shorter
+EASY_TURN, HARD_TURN = 0.3, 0.55
+# of the speed, within which receptances go straight on from one to the next correction
+NEAR = 1e-4
+# of the residual that a correction with an earlier derivative may leave, before the derivative is made anew
+SLOW = 0.3
 # steps shorter than this share of the longest end a branch
 SHORTEST = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A converged motion z (L, m) at a parameter, and the tangent there: flat parts and the parameter's."""
+    """A point of a continuation: a converged motion z (L, m) at a parameter, and the tangent there."""
 
     z: Complex
     parameter: float
@@ -42,7 +54,7 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """What is followed.
+    """The curve that a continuation follows.
 
     Parameters
     ----------
@@ -64,39 +76,24 @@ class Curve:
     tolerance: float = 1e-10
     slope_step: float = SLOPE
 
-    def solve(
-        self,
-        balance: Balance,
-        pressed: Pressed,
-        column: Complex,
-        border: tuple[Array, float],
-        right: Complex | None,
-        across: float,
-        tolerance: float,
-    ) -> tuple[Array, float]:
-        """(dz flat, dp) with J dz + F_p dp = right, and border · (dz, dp) = across, in its measure."""
+    def solver(
+        self, balance: Balance, pressed: Pressed, column: Complex, border: tuple[Array, float]
+    ) -> Solver:
+        """What solves J dz + F_p dp = right, border · (dz, dp) = across, in the curve's measure."""
+        if few(column):
+            return Triangles.of(self, balance, pressed, column, border)
         linear = balance.linearised(pressed)
-        q = linear.prepared(column) * self.scale
-        tz, tp = border
-
-        def product(v: Array) -> Array:
-            out = np.empty_like(v)
-            out[:-1] = (linear.product(v[:-1] * self.size) + v[-1] * q) / self.size
-            out[-1] = tz @ v[:-1] + tp * v[-1]
-            return out
-
-        rhs = np.zeros(len(q) + 1)
-        if right is not None:
-            rhs[:-1] = linear.prepared(right) / self.size
-        rhs[-1] = across
-        x, _ = gmres(product, rhs, tolerance)
-        return x[:-1], float(x[-1])
+        return Products(self, linear, linear.prepared(column) * self.scale, border)
 
     def column(self, z: Complex, parameter: float, residual: Complex) -> Complex:
         """dF/dp (L, m)."""
+        other = self.beyond(parameter)
         step = self.slope_step * max(abs(parameter), self.scale)
-        other = self.at(parameter + step)
         return (other.residual(z, other.press(z, tangents=False)) - residual) / step
+
+    def beyond(self, parameter: float) -> Balance:
+        """The balance a little beyond a parameter, for slopes."""
+        return self.at(parameter + self.slope_step * max(abs(parameter), self.scale))
 
     def begin(self, found: Found, parameter: float, direction: float) -> Point:
         """A converged motion as the first point, its tangent along rising (+1) or falling parameter."""
@@ -105,48 +102,84 @@ class Curve:
         )
         return self.with_tangent(point, np.zeros(2 * found.z.size), direction)
 
-    def with_tangent(self, point: Point, border: Array, slope: float, column: Complex | None = None) -> Point:
-        """The point with its own tangent, along the border given; the column dF/dp may be a neighbour's."""
-        balance = self.at(point.parameter)
-        if column is None:
+    def with_tangent(self, point: Point, border: Array, slope: float, solver: Solver | None = None) -> Point:
+        """The point with its own tangent, along the border given; the solver may be a neighbour's."""
+        if solver is None:
+            balance = self.at(point.parameter)
             r = balance.residual(point.z, point.pressed)
             column = self.column(point.z, point.parameter, r)
-        dz, dp = self.solve(balance, point.pressed, column, (border, slope), None, 1.0, 1e-8)
+            solver = self.solver(balance, point.pressed, column, (border, slope))
+        dz, dp = solver.solve(None, 1.0, 1e-8)
         length = math.sqrt(float(dz @ dz) + dp * dp)
         return replace(point, tangent=dz / length, slope=dp / length)
 
-    def step(self, point: Point, length: float, exact: bool = False) -> Point | None:
+    def step(
+        self, point: Point, length: float, exact: bool = False, bend: Array | None = None
+    ) -> Point | None:
         """The point at a length of arc further on, or None where the corrector fails.
 
         With `exact`, its tangent is made from the slope at the point itself, not at a neighbour of the last
-        correction.
+        correction; `bend` is how the tangent turns with the arc, its parameter's part last.
         """
-        z = point.z + self.size * length * unflat_like(point.tangent, point.z)
-        p = point.parameter + self.scale * length * point.slope
-        return self.correct(z, p, (point.tangent, point.slope), exact)
+        along, rise = point.tangent, point.slope
+        if bend is not None:
+            along, rise = along + 0.5 * length * bend[:-1], rise + 0.5 * length * float(bend[-1])
+        z = point.z + self.size * length * unflat_like(along, point.z)
+        p = point.parameter + self.scale * length * rise
+        new = self.correct(z, p, (point.tangent, point.slope), exact)
+        if new is None or exact or self.apart(new, z, p) <= LARGEST_CORRECTION * abs(length):
+            return new
+        return None
+
+    def apart(self, point: Point, z: Complex, p: float) -> float:
+        """How far a point lies from a motion at a parameter, in the curve's measure."""
+        away = float(np.linalg.norm(point.z - z))
+        # without bearings there is no motion to measure
+        return math.hypot(away / self.size if away else 0.0, (point.parameter - p) / self.scale)
 
     def correct(self, z: Complex, p: float, border: tuple[Array, float], exact: bool = False) -> Point | None:
         """Onto the curve, across the border from (z, p)."""
+        solver: Solver | None = None
         column: Complex | None = None
+        anchor = balance = self.at(p)
+        pair = anchor, anchor
+        made = 0
         last = math.inf
         for iteration in range(CORRECTIONS):
-            balance = self.at(p)
             pressed = balance.press(z)
             r = balance.residual(z, pressed)
             size, _ = measure(r, z)
+            if size <= self.tolerance and balance is not anchor:
+                anchor = balance = self.at(p)
+                r = balance.residual(z, pressed)
+                size, _ = measure(r, z)
+                last = math.inf
             if not math.isfinite(size) or (iteration > 2 and size > 4.0 * last):
                 return None
             if size <= self.tolerance:
                 point = Point(z, p, pressed, size, iteration, *border)
-                return self.with_tangent(point, *border, None if exact else column)
-            if column is None or iteration % 3 == 0:
-                column = self.column(z, p, r)
+                return self.with_tangent(point, *border, None if exact else solver)
+            if solver is None or not solver.lasting or size > SLOW * last:
+                anchor = balance = self.at(p)
+                if column is None or iteration - made >= 3:
+                    r = balance.residual(z, pressed)
+                    column, made = self.column(z, p, r), iteration
+                    pair = balance, self.beyond(p)
+                solver = self.solver(balance, pressed, column, border)
             forcing = min(1e-2, max(0.03 * size, 0.1 * self.tolerance / size))
-            dz, dp = self.solve(balance, pressed, column, border, -r, 0.0, forcing)
+            dz, dp = solver.solve(-r, 0.0, forcing)
             z = z + self.size * unflat_like(dz, z)
             p = p + self.scale * dp
+            balance = self.beside(anchor, pair, p)
             last = size
         return None
+
+    def beside(self, anchor: Balance, pair: tuple[Balance, Balance], p: float) -> Balance:
+        """The balance at a parameter: near an anchor straight on from it, by the slope between two others."""
+        a, b = pair
+        if a.speed == b.speed or not abs(p - anchor.speed) <= NEAR * abs(p):
+            return self.at(p)
+        return anchor.towards(p, a, b)
 
     def turn(self, a: Point, b: Point) -> float:
         """Angle between the tangents of two points, rad."""
@@ -154,13 +187,87 @@ class Curve:
         return math.acos(min(1.0, max(-1.0, cosine)))
 
 
+class Solver(Protocol):
+    """Solves for a correction (dz flat, dp) in a curve's measure."""
+
+    @property
+    def lasting(self) -> bool:
+        """Whether it is worth keeping for the next correction."""
+
+    def solve(self, right: Complex | None, across: float, tolerance: float) -> tuple[Array, float]:
+        """Of a residual (L, m), none for zero, and a step across the border."""
+
+
+@dataclass(frozen=True, eq=False)
+class Products:
+    """A solver of many lines: by products with the derivative."""
+
+    curve: Curve
+    linear: Linearised
+    column: Array
+    border: tuple[Array, float]
+    lasting: bool = False
+
+    def solve(self, right: Complex | None, across: float, tolerance: float) -> tuple[Array, float]:
+        """To a tolerance, relative."""
+        size, (tz, tp) = self.curve.size, self.border
+
+        def product(v: Array) -> Array:
+            out = np.empty_like(v)
+            out[:-1] = (self.linear.product(v[:-1] * size) + v[-1] * self.column) / size
+            out[-1] = tz @ v[:-1] + tp * v[-1]
+            return out
+
+        rhs = np.zeros(len(self.column) + 1)
+        if right is not None:
+            rhs[:-1] = self.linear.prepared(right) / size
+        rhs[-1] = across
+        x, _ = gmres(product, rhs, tolerance)
+        return x[:-1], float(x[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """A solver of few lines: the derivative with its border, factored."""
+
+    curve: Curve
+    factored: Factored
+    lasting: bool = True
+
+    @classmethod
+    def of(
+        cls,
+        curve: Curve,
+        balance: Balance,
+        pressed: Pressed,
+        column: Complex,
+        border: tuple[Array, float],
+    ) -> Triangles:
+        """At a motion."""
+        n = 2 * column.size
+        A = np.empty((n + 1, n + 1))
+        A[:n, :n] = jacobian(balance, pressed)
+        A[:n, n] = flat(column) * (curve.scale / curve.size)
+        A[n, :n], A[n, n] = border
+        return cls(curve, Factored.of(A))
+
+    def solve(self, right: Complex | None, across: float, tolerance: float) -> tuple[Array, float]:
+        """To round-off."""
+        rhs = np.zeros(len(self.factored.pivots))
+        if right is not None:
+            rhs[:-1] = flat(right) / self.curve.size
+        rhs[-1] = across
+        x = self.factored.solve(rhs)
+        return x[:-1], float(x[-1])
+
+
 def unflat_like(vector: Array, z: Complex) -> Complex:
-    """Real numbers as amplitudes of the shape of z."""
+    """Real numbers of a continuation as amplitudes of the shape of z."""
     return np.ascontiguousarray(vector).view(np.complex128).reshape(z.shape)
 
 
 def follow(curve: Curve, start: Point, low: float, high: float, longest: float, most: int) -> Iterator[Point]:
-    """Points of a branch from one of its own until it leaves low … high, or can be followed no further.
+    """Continuation by arc length: points from one of its own until the curve leaves low … high, or ends.
 
     Parameters
     ----------
@@ -175,9 +282,11 @@ def follow(curve: Curve, start: Point, low: float, high: float, longest: float, 
     """
     length = biggest = longest / curve.scale
     point = start
+    bend: Array | None = None
     for _ in range(most):
         while True:
-            new = curve.step(point, length)
+            turning = 0.0 if bend is None else length * float(np.linalg.norm(bend))
+            new = curve.step(point, length, bend=bend if turning <= HARD_TURN else None)
             if new is not None and curve.turn(point, new) <= LARGEST_TURN:
                 break
             length *= 0.5
@@ -187,11 +296,12 @@ def follow(curve: Curve, start: Point, low: float, high: float, longest: float, 
         if not low <= new.parameter <= high:
             return
         turned = curve.turn(point, new)
+        bend = np.append(new.tangent - point.tangent, new.slope - point.slope) / length
         point = new
-        wish = 1.5 if new.iterations < WANTED and turned < 0.3 * LARGEST_TURN else 1.0
-        if new.iterations > WANTED + 1 or turned > 0.6 * LARGEST_TURN:
+        wish = 1.5 if new.iterations < WANTED and turned < EASY_TURN else 1.0
+        if new.iterations > WANTED + 2 or turned > HARD_TURN:
             wish = 0.6
-        length = min(biggest, wish * length)
+        length = min(max(biggest, min(LONGEST_MOVE, biggest / max(abs(point.slope), 1e-12))), wish * length)
 
 
 def locate(
@@ -202,7 +312,7 @@ def locate(
     tolerance: float,
     most: int = 30,
 ) -> Point | None:
-    """The point between two where a test is zero, by secants on the arc (Illinois)."""
+    """The point of a continuation between two where a test is zero, by secants on the arc (Illinois)."""
     a, b = 0.0, _distance(curve, before, after)
     fa, fb = test(before), test(after)
     if not fa * fb < 0.0:

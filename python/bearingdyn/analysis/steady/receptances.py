@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -29,7 +29,7 @@ POLES_AGREE = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Poles:
-    """Of one block λ (p,), and its D⁻¹ = right (n, p) · 1/(iω − λ) · left (p, n)."""
+    """Poles λ (p,) of one block's receptances, D⁻¹ = right (n, p) · 1/(iω − λ) · left (p, n)."""
 
     values: Complex
     right: Complex
@@ -84,7 +84,7 @@ class Poles:
 
 
 def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
-    """D (f, n, n) of a system without its bearings; η0 sits in G*(ω)."""
+    """Dynamic stiffness D (f, n, n), inverse of the receptances, of a system without its bearings."""
     D = (
         (block.K + speed * block.N)
         + 1j * omega[:, None, None] * (block.C + speed * block.G)
@@ -97,7 +97,7 @@ def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
 
 
 def part_of(system: System, block: Index) -> System:
-    """The coordinates of one block as a system by itself: its matrices and layers alone."""
+    """One block of a system by itself, for its receptances: its matrices and layers alone."""
     inside = np.ix_(block, block)
     return System(
         M=system.M[inside],
@@ -111,7 +111,7 @@ def part_of(system: System, block: Index) -> System:
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """One block of the structure: its coordinates, itself, and its poles if they do not move with speed."""
+    """A block of receptances: its coordinates, itself, and its poles if they do not move with speed."""
 
     index: Index
     system: System
@@ -134,9 +134,19 @@ class Block:
         return np.asarray(rows @ np.linalg.solve(D, right))
 
 
+@lru_cache(maxsize=4)
+def taken_apart(system: System) -> tuple[System, Array, tuple[Block, ...]]:
+    """A system in its modes, x = T q, T and its blocks: once for the many speeds that are asked of it."""
+    if any(not isinstance(t.material, Maxwell) for t in system.layers):
+        modal, T = system, np.eye(system.n)
+    else:
+        modal, T = system.modal()
+    return modal, T, tuple(Block.of(modal, index) for index in modal.blocks())
+
+
 @dataclass(frozen=True, eq=False)
 class Receptances:
-    """What a system answers without its balls' forces but with a reference of them.
+    """Receptances of a system without its balls' forces but with a reference of them.
 
     Parameters
     ----------
@@ -158,18 +168,15 @@ class Receptances:
         """All bearings' coefficients (m, n)."""
         return self.system.B
 
-    @cached_property
-    def blocks(self) -> list[Block]:
+    @property
+    def blocks(self) -> tuple[Block, ...]:
         """The blocks of the structure."""
-        modal, _ = self.modal
-        return [Block.of(modal, index) for index in modal.blocks()]
+        return taken_apart(self.system)[2]
 
-    @cached_property
+    @property
     def modal(self) -> tuple[System, Array]:
         """The system in modes of its own, x = T q, in which blocks are well scaled."""
-        if any(not isinstance(t.material, Maxwell) for t in self.system.layers):
-            return self.system, np.eye(self.system.n)
-        return self.system.modal()
+        return taken_apart(self.system)[:2]
 
     def reference(self, omega: Array) -> Complex:
         """Z (f, m, m) = K + iωC of the reference, with what lubricated balls add."""

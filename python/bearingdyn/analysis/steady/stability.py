@@ -40,7 +40,7 @@ REAL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """One block of the structure in first order, u = (q, q̇, branches): its parts of A, and rows of z.
+    """For stability, one block of the structure in first order, u = (q, q̇, branches): parts of A, rows of z.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Chunk:
 
 @dataclass(frozen=True, eq=False)
 class FirstOrder:
-    """The structure in first order, block by block, and the flexibility (m, m) of what follows at once."""
+    """For stability, the structure in first order by blocks, and flexibility (m, m) of its fast modes."""
 
     chunks: tuple[Chunk, ...]
     flexibility: Array
@@ -114,7 +114,7 @@ class FirstOrder:
 
 
 def maxwell_system(system: System, band: tuple[float, float]) -> System:
-    """The system with every law that has no branches replaced by its Maxwell approximation."""
+    """For stability, the system with every law without branches replaced by its Maxwell approximation."""
     from dataclasses import replace
 
     if all(isinstance(t.material, Maxwell) for t in system.layers):
@@ -219,7 +219,7 @@ class Propagator:
     free
         (6m, n) z and ż at 0, Δ/2 and Δ without forces.
     felt
-        (6m, 3m) what they lose by the forces.
+        (4m, 3m) what they lose by the forces at Δ/2 and Δ.
     """
 
     after: Array
@@ -246,9 +246,8 @@ class Propagator:
         full, whole = half @ half, _advance(half, first)
         both = rows.reshape(2 * m, n)
         free = np.concatenate([both, both @ half, both @ full])
-        felt = np.zeros((3, 2 * m, 3 * m))
-        felt[1], felt[2] = both @ first.reshape(n, 3 * m), both @ whole.reshape(n, 3 * m)
-        return cls(full, whole.reshape(n, 3 * m), free, felt.reshape(6 * m, 3 * m))
+        felt = np.concatenate([both @ first.reshape(n, 3 * m), both @ whole.reshape(n, 3 * m)])
+        return cls(full, whole.reshape(n, 3 * m), free, felt)
 
     def steps(self, K: Array, C: Array) -> Array:
         """S (steps, 3m, 6m): the forces at the three places are S · free · u(0).
@@ -259,18 +258,25 @@ class Propagator:
             (2·steps + 1, m, m) tangents at every place, the last that of the first.
         """
         m = K.shape[1]
+        T = np.concatenate([K, C], axis=2)
         count = (len(K) - 1) // 2
-        T = np.zeros((count, 3, m, 3, 2, m))
-        for j in range(3):
-            T[:, j, :, j, 0, :] = K[j : j + 2 * count : 2]
-            T[:, j, :, j, 1, :] = C[j : j + 2 * count : 2]
-        own = T.reshape(count, 3 * m, 6 * m)
-        return np.asarray(np.linalg.solve(np.eye(3 * m) + own @ self.felt, own))
+        S = np.zeros((count, 3 * m, 6 * m))
+        # the force at the beginning is known from u(0); those later feel it and one another
+        S[:, :m, : 2 * m] = T[:-1:2]
+        later = np.zeros((count, 2 * m, 4 * m))
+        later[:, :m, : 2 * m], later[:, m:, 2 * m :] = T[1::2], T[2::2]
+        felt = later @ self.felt
+        right = np.concatenate([-(felt[:, :, :m] @ T[:-1:2]), later], axis=2)
+        S[:, m:] = np.linalg.solve(np.eye(2 * m) + felt[:, :, m:], right)
+        return S
 
     def over(self, S: Array, U: Array) -> Array:
         """U (n, k) after all steps."""
+        n = len(self.after)
+        both = np.concatenate([self.after, self.free])
         for s in S:
-            U = self.after @ U - self.W @ (s @ (self.free @ U))
+            X = both @ U
+            U = X[:n] - self.W @ (s @ X[n:])
         return U
 
     def along(self, S: Array, u: Array) -> Array:
@@ -330,7 +336,7 @@ def _advance(half: Array, weights: Array) -> Array:
 
 @dataclass(frozen=True)
 class Stability:
-    """Multipliers (k,) of a period, s, the largest first."""
+    """Stability: multipliers (k,) of a period, s, the largest first."""
 
     multipliers: Complex
     period: float
@@ -357,7 +363,7 @@ class Stability:
 
 
 def kind(multiplier: complex) -> str:
-    """What a multiplier of this phase brings where it leaves the unit circle."""
+    """Kind of a loss of stability: what a multiplier of this phase brings where it leaves the unit circle."""
     if abs(multiplier.imag) <= REAL * abs(multiplier):
         return "fold" if multiplier.real > 0 else "flip"
     return "neimark-sacker"
@@ -365,10 +371,10 @@ def kind(multiplier: complex) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Floquet:
-    """Stability of a motion, and the directions (n, k) of u that go with its multipliers."""
+    """Stability of a motion, and what a period makes of a departure, (n, n)."""
 
     stability: Stability
-    vectors: Complex
+    once: Array
     propagator: Propagator
     steps: Array
 
@@ -377,12 +383,12 @@ class Floquet:
 
         None where none is near.
         """
-        values = self.stability.multipliers
+        values, vectors = np.linalg.eig(self.once)
         real = [k for k, v in enumerate(values) if kind(complex(v)) == "flip"]
         if not real:
             return None
         k = min(real, key=lambda k: abs(values[k] + 1.0))
-        z = self.propagator.along(self.steps, np.real(self.vectors[:, k]))
+        z = self.propagator.along(self.steps, np.real(vectors[:, k]))
         twice = np.concatenate([z, -z])
         spectrum = np.fft.rfft(twice, axis=0) / len(z)
         out = np.zeros((lines.count, z.shape[1]), dtype=np.complex128)
@@ -392,7 +398,7 @@ class Floquet:
 
 
 def band_of(highest: float) -> int:
-    """Number of the half octave, of rad/s, up to which modes are kept for lines up to `highest`."""
+    """Half octave, of rad/s, up to which stability keeps modes, for lines up to `highest`."""
     return math.ceil(2.0 * math.log2(FOLLOWS * highest))
 
 
@@ -404,7 +410,7 @@ def floquet(
     C: Array,
     kept: int = 6,
 ) -> Floquet:
-    """Multipliers of a period from tangents (2·steps, m, m) at equal distances along it.
+    """Stability by Floquet: multipliers of a period from tangents (2·steps, m, m) evenly along it.
 
     Parameters
     ----------
@@ -423,15 +429,14 @@ def floquet(
     propagator = Propagator.of(model, speed, period / count, K0, C0)
     K, C = K - K0, C - C0
     S = propagator.steps(np.concatenate([K, K[:1]]), np.concatenate([C, C[:1]]))
-    n = model.size
-    once = propagator.over(S, np.eye(n))
-    values, vectors = np.linalg.eig(once)
+    once = propagator.over(S, np.eye(model.size))
+    values = np.asarray(np.linalg.eigvals(once), dtype=np.complex128)
     order = np.argsort(-np.abs(values))[:kept]
-    return Floquet(Stability(values[order], period), vectors[:, order], propagator, S)
+    return Floquet(Stability(values[order], period), once, propagator, S)
 
 
 def pooled(blocks: Sequence[Array], m: int) -> Array:
-    """Tangents (N, n, n) of every bearing as one (N, m, m)."""
+    """Tangents (N, n, n) of every bearing as one (N, m, m), for stability."""
     out = np.zeros((len(blocks[0]), m, m))
     at = 0
     for b in blocks:

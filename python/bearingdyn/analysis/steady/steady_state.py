@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
+from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced
 from bearingdyn.analysis.steady.motion import Motion
 from bearingdyn.analysis.steady.problem import Problem, motion_of
@@ -20,6 +22,7 @@ from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability,
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
+from bearingdyn.notice import OutsideBand
 from bearingdyn.system import System
 from bearingdyn.units import takes
 
@@ -107,6 +110,17 @@ def steady_state(
         Where the balance is not found: names the speed, the line and its residual; `partial` is the nearest
         state that was.
 
+    Warns
+    -----
+    BearingWarning
+        Where the contact pressure of a ball exceeds 4.2 GPa (ISO 76) in the motion.
+    OpenSideWarning
+        Where balls of an angular contact bearing are pressed where it has no shoulder, or none onto it.
+    NothingPushes
+        Where no ball is pressed, and no load acts.
+    OutsideBand
+        Where a line that counts in a layer's motion lies outside the band of its material.
+
     References
     ----------
     T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989) 149.
@@ -143,13 +157,19 @@ def steady_state(
     problem = Problem.of(source, subharmonic, contacts)
     problem.system.check_speed(speed)
     channels = [channel_of(problem.system, name) for name in record]
-    balance, found, left = _found(problem, speed, harmonics, subharmonic, start, tolerance)
-    state = stability_of(problem, balance, found) if stability and found.converged else None
-    several = len(problem.bases.bases) > 1
-    asked = {"harmonics": harmonics or (SEVERAL if several else HARMONICS), "subharmonic": subharmonic}
-    result = _dataset(problem, balance, found, record, channels, state, {**asked, "lines_left": left})
+    with warnings.catch_warnings():
+        # of the lines that are tried, few move a layer; those are told of below
+        warnings.simplefilter("ignore", OutsideBand)
+        balance, found, left = _found(problem, speed, harmonics, subharmonic, start, tolerance)
+        state = stability_of(problem, balance, found) if stability and found.converged else None
+        several = len(problem.bases.bases) > 1
+        asked = {"harmonics": harmonics or (SEVERAL if several else HARMONICS), "subharmonic": subharmonic}
+        result = _dataset(problem, balance, found, record, channels, state, {**asked, "lines_left": left})
+        moved = Motion(balance, found).x
     if not found.converged:
         raise _failed(problem, balance, found, result)
+    warn_of_band(problem.system, balance.omega, moved)
+    warn_of_motions([(balance, found.z, f"in the steady motion at {speed:g} rad/s")])
     return result
 
 
@@ -182,12 +202,12 @@ def _found(
 def stability_of(
     problem: Problem, balance: Balance, found: Found, model: FirstOrder | None = None, samples: int = SAMPLES
 ) -> Stability | None:
-    """Multipliers of a motion with one base; None for several."""
+    """Multipliers of a steady state with one base; None for several."""
     if len(problem.bases.bases) != 1 or not problem.system.bearings:
         return None
     model = model or first_order(problem, balance)
     lines = balance.lines
-    count = max(samples, 2 * (lines.samples // 2))
+    count = max(samples, 4 * lines.count)
     pressed = balance.press(found.z, lines=Lines(lines.index, lines.steps, count))
     m = found.z.shape[1]
     period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
@@ -197,7 +217,7 @@ def stability_of(
 
 
 def first_order(problem: Problem, balance: Balance) -> FirstOrder:
-    """The structure as its stability needs it, for speeds up to the balance's."""
+    """The structure as a steady state's stability needs it, for speeds up to the balance's."""
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))

@@ -6,13 +6,14 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ehl import harmonic_approach
 from bearingdyn.bearing.ehl.dimensionless_groups import LOAD, Groups
+from bearingdyn.bearing.ehl.figures import Figured, Figures
 from bearingdyn.bearing.ehl.flooding import Flooding
 from bearingdyn.bearing.ehl.grid import Grid, prolonged
 from bearingdyn.bearing.ehl.newton import Border, NegativeFilm, State, newton
@@ -33,21 +34,6 @@ _EXTRAPOLATED = 1 / (2**1.7 - 1) - 1 / 3
 # less than this are such jumps, no trend; extrapolation from two grids would add a third to them.
 _FALLS = 0.5
 _FILMS = np.array([True, True, True, False, False])  # of Figures, those without jumps
-
-
-class Figures(NamedTuple):
-    """Figures of a steady film, or their estimated relative errors."""
-
-    Hc: float
-    """Film at the centre, h/Rx √(E′Rx/(η0us))."""
-    Hmin: float
-    """Least film, likewise."""
-    H0: float
-    """Film of the force law F = κ(δ + h0)^{3/2}, likewise."""
-    K0: float
-    """Stiffness over that of the dry contact, 1.5 F/δ_dry."""
-    C0: float
-    """Damping, c = C0 (F/δ_dry)(2a/us)."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -72,7 +58,7 @@ class Level:
 
 
 @dataclass(frozen=True, repr=False)
-class Steady:
+class Steady(Figured):
     """Steady film of a fully flooded point contact, isothermal; scales of H. Moes."""
 
     M: float
@@ -106,31 +92,6 @@ class Steady:
         """Figures and their absolute errors."""
         grids = np.array([level.figures for level in self.levels[-3:]])
         return _limit(grids, _FILMS) if self.extrapolated else _finest(grids)
-
-    @property
-    def Hc(self) -> float:
-        """Film at the centre, h/Rx √(E′Rx/(η0us))."""
-        return self.figures.Hc
-
-    @property
-    def Hmin(self) -> float:
-        """Least film, likewise."""
-        return self.figures.Hmin
-
-    @property
-    def H0(self) -> float:
-        """Film h0 of the force law F = κ(δ + h0)^{3/2}, likewise."""
-        return self.figures.H0
-
-    @property
-    def K0(self) -> float:
-        """Stiffness at low frequency over that of the dry contact, 1.5 F/δ_dry."""
-        return self.figures.K0
-
-    @property
-    def C0(self) -> float:
-        """Damping at low frequency, c = C0 (F/δ_dry)(2a/us)."""
-        return self.figures.C0
 
     @property
     def approach(self) -> float:

@@ -22,7 +22,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ehl import travelling_film
-from bearingdyn.bearing.ehl.steady_film import Figures
+from bearingdyn.bearing.ehl.figures import Figured, Figures
 from bearingdyn.bearing.ehl.table_places import place
 from bearingdyn.bearing.film_thickness import film_formula
 from bearingdyn.checks import require
@@ -37,7 +37,7 @@ _NO_PIEZO = 1e-6  # L at which the formula of the film is that of an isoviscous 
 
 
 @dataclass(frozen=True)
-class Lookup:
+class Lookup(Figured):
     """Figures of a contact looked up in the table, and its answer over frequency."""
 
     M: float
@@ -48,31 +48,6 @@ class Lookup:
     """Stiffness over that of the dry contact at `OMEGA`."""
     C: tuple[float, ...]
     """Damping in the scale of C0 at `OMEGA`."""
-
-    @property
-    def Hc(self) -> float:
-        """Film at the centre, h/Rx √(E′Rx/(η0us))."""
-        return self.figures.Hc
-
-    @property
-    def Hmin(self) -> float:
-        """Least film, likewise."""
-        return self.figures.Hmin
-
-    @property
-    def H0(self) -> float:
-        """Film h0 of the force law F = κ(δ + h0)^{3/2}, likewise."""
-        return self.figures.H0
-
-    @property
-    def K0(self) -> float:
-        """Stiffness at low frequency over that of the dry contact."""
-        return self.figures.K0
-
-    @property
-    def C0(self) -> float:
-        """Damping at low frequency, c = C0 (F/δ_dry)(2a/us)."""
-        return self.figures.C0
 
     @cached_property
     def _rest(self) -> Any:
@@ -120,50 +95,47 @@ def lookup(M: float, L: float, D: float) -> Lookup:
     ValueError
         Outside of the table; `steady` solves there.
     """
-    pieces = _pieces()
-    weights, where = [], []
     if not (M > 0 and D > 0):
         _refuse(M, L, D)
+    pieces = _pieces()
     log_D = math.log(D)
-    for x, (low, high), breaks in zip(
-        (place(math.log(M), log_D), L, log_D), pieces.ends, pieces.breaks, strict=True
+    x, y, z = place(math.log(M), log_D), L, log_D
+    (low_x, high_x), (low_y, high_y), (low_z, high_z) = pieces.ends
+    if not (
+        low_x - _SLACK <= x <= high_x + _SLACK
+        and low_y - _SLACK <= y <= high_y + _SLACK
+        and low_z - _SLACK <= z <= high_z + _SLACK
     ):
-        if not low - _SLACK <= x <= high + _SLACK:
-            _refuse(M, L, D)
-        i = bisect_right(breaks, x, 1) - 1
-        u = x - breaks[i]
-        where.append(i)
-        weights.append((u * u * u, u * u, u, 1.0))
-    first, second, third = weights
-    block = pieces.coefficients[tuple(where)]
-    partly = (np.array([a * b for a in first for b in second]) @ block).reshape(4, -1)
-    q = (np.array(third) @ partly).tolist()
+        _refuse(M, L, D)
+    xs, ys, zs = pieces.breaks
+    i, j, k = bisect_right(xs, x, 1) - 1, bisect_right(ys, y, 1) - 1, bisect_right(zs, z, 1) - 1
+    u, v, w = x - xs[i], y - ys[j], z - zs[k]
+    rows: list[float] = []
+    for a in (u * u * u, u * u, u, 1.0):
+        b = a * v
+        rows += (b * v * v, b * v, b, a)
+    partly = np.dot(rows, pieces.coefficients[i, j, k]).reshape(4, -1)
+    q = np.dot((w * w * w, w * w, w, 1.0), partly).tolist()
     Hc = film_formula(M, L or _NO_PIEZO, D) * math.exp(q[0])
     K0, C0 = 1 / (1 + math.exp(-q[3])), math.exp(q[4])
-    n = len(OMEGA)
-    return Lookup(
-        M,
-        L,
-        D,
-        Figures(Hc, Hc * math.exp(q[1]), Hc * math.exp(q[2]), K0, C0),
-        tuple([K0 + x for x in q[5 : 5 + n]]),
-        tuple([C0 * x for x in q[5 + n :]]),
-    )
+    figures = Figures(Hc, Hc * math.exp(q[1]), Hc * math.exp(q[2]), K0, C0)
+    K, C = [K0 + x for x in q[5 : 5 + len(OMEGA)]], [C0 * x for x in q[5 + len(OMEGA) :]]
+    return Lookup(M, L, D, figures, tuple(K), tuple(C))
 
 
 def nearest_in_table(L: float, D: float) -> tuple[float, float]:
-    """The L and D of the table that are nearest to those given."""
+    """The L and D of the table that are nearest to those looked up."""
     _, (L_low, L_high), (D_low, D_high) = _pieces().ends
     return min(max(L, L_low), L_high), min(max(D, math.exp(D_low)), math.exp(D_high))
 
 
 def table_ends(D: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Least and largest M that the table holds for D, and least and largest L."""
+    """Ends of what can be looked up in the table for D: least and largest M, least and largest L."""
     return loads_between(D), _pieces().ends[1]
 
 
 def loads_between(D: float) -> tuple[float, float]:
-    """Least and largest M that the table holds for D."""
+    """Least and largest M that can be looked up in the table for D."""
     log_D = math.log(D)
     low, high = _pieces().ends[0]
     # x is linear in ln M
@@ -193,7 +165,7 @@ def _pieces() -> _Pieces:
 
 
 def joined(rows: list[dict[str, float]]) -> _Pieces:
-    """The splines through the rows of a table: along the load for each L and D, then over L and ln D."""
+    """Splines for looking up in a table: along the load for each L and D, then over L and ln D."""
     lines = defaultdict(list)
     for row in sorted(rows, key=lambda row: row["M"]):
         lines[row["L"], row["D"]].append((place(math.log(row["M"]), math.log(row["D"])), _smooth(row)))
