@@ -19,7 +19,10 @@ from bearingdyn.notice import BeyondData
 matplotlib.use("Agg")
 
 ROOT = Path(__file__).resolve().parents[2]
-GUIDE = [*sorted((ROOT / "docs" / "guide").glob("*.md")), ROOT / "docs" / "gallery.md"]
+GUIDE = [
+    *sorted((ROOT / "docs" / "guide").glob("*.md")),
+    *(ROOT / "docs" / f"{name}.md" for name in ("gallery", "from_ross", "from_fe")),
+]
 BLOCK = re.compile(r"^```(python|text)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
