@@ -5,10 +5,11 @@ elliptic, rolling along the minor axis (D = Rx/Ry ≤ 1).
 """
 
 from bearingdyn.bearing.ehl.dimensionless_groups import scales
+from bearingdyn.bearing.ehl.figures import Figures
 from bearingdyn.bearing.ehl.lubricated_contact import LubricatedContact, SolvedContact, look_up, solve
 from bearingdyn.bearing.ehl.march import March, march
 from bearingdyn.bearing.ehl.oil import relative_density
-from bearingdyn.bearing.ehl.steady_film import Figures, Level, Steady, steady
+from bearingdyn.bearing.ehl.steady_film import Level, Steady, steady
 from bearingdyn.bearing.ehl.table_lookup import Lookup, loads_between, lookup, nearest_in_table, table_ends
 from bearingdyn.bearing.ehl.table_places import turning_load
 

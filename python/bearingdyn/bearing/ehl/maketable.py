@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from bearingdyn.bearing.ehl import harmonic_approach
-from bearingdyn.bearing.ehl.steady_film import Figures, Steady, steady
+from bearingdyn.bearing.ehl.figures import Figures
+from bearingdyn.bearing.ehl.steady_film import Steady, steady
 from bearingdyn.bearing.ehl.table_lookup import OMEGA
 from bearingdyn.bearing.ehl.table_places import HIGHEST, D, L, loads, place
 

@@ -110,7 +110,7 @@ def lookup(M: float, L: float, D: float) -> Lookup:
     xs, ys, zs = pieces.breaks
     i, j, k = bisect_right(xs, x, 1) - 1, bisect_right(ys, y, 1) - 1, bisect_right(zs, z, 1) - 1
     u, v, w = x - xs[i], y - ys[j], z - zs[k]
-    rows = []
+    rows: list[float] = []
     for a in (u * u * u, u * u, u, 1.0):
         b = a * v
         rows += (b * v * v, b * v, b, a)
