@@ -1,4 +1,4 @@
-"""What the film of a point contact costs, on one core: steady state, eight frequencies, step in time, look-up.
+"""What the film of a point contact costs, on one core: steady state, harmonic answer, step in time, look-up.
 
 OPENBLAS_NUM_THREADS=1 python benchmarks/ehl.py [--json]
 

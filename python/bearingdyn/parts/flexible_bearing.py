@@ -147,7 +147,7 @@ class FlexibleBearing:
         return self._around(self.ring.back, self._sign * self._settle(q, angle).g, azimuth)
 
     def hoop_stress(self, q: ArrayLike, azimuth: ArrayLike, angle: float = 0.0) -> Array:
-        """Stress along the ring's outside at mid-width, (p,), Pa, by its orders; of an inner ring, along its bore.
+        """Stress along the ring's outside at mid-width, an inner one's bore, (p,), Pa, by its orders.
 
         It is that of the bending between the balls, without fit and spin. The pressure p of what holds the
         ring is left out, which adds −ν/(1 − ν) p.
