@@ -13,7 +13,7 @@ export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 # What the installed package and the C tests are made from. The lists are kept in files that change only when a list
 # does, so that a removed file counts as a change too.
 SOURCES := $(sort $(shell find csrc python -type f \( -name '*.[ch]' -o -name '*.py' -o -name '*.pyi' -o -name py.typed \
-             -o -name '*.csv' -o -name '*.json' -o -name '*.toml' -o -name '*.js' -o -name '*.css' \
+             -o -name '*.csv' -o -name '*.json' -o -name '*.toml' -o -name '*.js' -o -name '*.css' -o -name '*.html' \
              -o -name meson.build \)) meson.build meson.options pyproject.toml)
 C_TESTS := $(sort $(wildcard tests/c/*))
 C_FILES  = $(wildcard csrc/*.[ch] csrc/binding/*.[ch] tests/c/*.[ch])
@@ -50,15 +50,18 @@ ctest: $(BUILD)/ctest/build.ninja
 	meson compile -C $(BUILD)/ctest
 	meson test -C $(BUILD)/ctest --print-errorlogs
 
-# The C tests, then the Python suite, both against code built with both sanitizers. The Python tests use a sanitized copy
-# of the package; the interpreter's own leaks do not count.
+# The C tests, then the tests of the binding and of what calls C most directly, both against code built with both
+# sanitizers. The Python tests use a sanitized copy of the package; the interpreter's own leaks do not count.
+ASAN_TESTS := tests/core tests/bearing/test_kernel.py tests/bearing/test_imperfections.py tests/cms/test_part_march.py \
+  tests/analysis/test_march.py tests/analysis/test_exact_step.py tests/analysis/test_softening_march.py \
+  tests/analysis/test_steady_borne.py tests/sound/test_radiation.py
 asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 	meson compile -C $(BUILD)/asan
 	meson test -C $(BUILD)/asan --print-errorlogs
 	meson install -C $(BUILD)/asan --quiet
 	LD_PRELOAD="$(SANITIZERS)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1 \
-	  PYTHONMALLOC=malloc PYTHONPATH=$(BUILD)/asan/site \
-	  $(PY) -m pytest --capture=sys
+	  PYTHONMALLOC=malloc PYTHONPATH=$(BUILD)/asan/site OPENBLAS_NUM_THREADS=1 \
+	  $(PY) -m pytest -n auto --dist loadfile --capture=sys $(ASAN_TESTS)
 
 # Lines of Python and of C that the C tests and the quick Python tests run through, the least covered files first.
 # The Python tests use a copy of the package whose extension counts lines.

@@ -175,9 +175,11 @@ static void solve_lanes(const bd_model *model, const bd_harmonic_data *data,
         const double *response = work->response + lane;
         for (int p = 0; p < reduced->n_left; p++)
             for (int q = reduced->first_right; q < reduced->n_beside; q++, response += 2 * width) {
-                const size_t row = (size_t)beside[p], from = (size_t)beside[q] - n_out;
-                const size_t which =
-                    column_of(model, data, work, b, from < m ? n_in + from : from - m);
+                const size_t row = (size_t)beside[p], from = (size_t)beside[q];
+                const size_t which = from < n_out ? (size_t)work->twin[from]
+                                     : from < n_out + m
+                                         ? column_of(model, data, work, b, n_in + from - n_out)
+                                         : from - n_out - m;
                 const complex_t value = complex_of(response[0], response[width]);
                 if (row < n_out)
                     RX[which * n_out + row] += value;
@@ -224,10 +226,18 @@ static int join_blocks(const bd_model *model, const bd_harmonic_data *data, cons
     if (bd_solve_complex(lapack, work->n_joints, (double *)work->A, work->pivots, data->n_in,
                          (double *)work->g))
         return 1;
-    for (size_t c = 0; c < n_in; c++)
-        for (size_t j = 0; j < joints; j++)
-            for (size_t o = 0; o < n_out; o++)
-                RX[c * n_out + o] -= product(RX[(n_in + j) * n_out + o], work->g[c * joints + j]);
+    for (size_t j = 0; j < joints; j++) {
+        const complex_t *from = RX + (n_in + j) * n_out;
+        int count = 0; /* rows that see the joint: those of its block */
+        for (size_t o = 0; o < n_out; o++)
+            if (from[o] != 0.0)
+                work->rows[count++] = (int)o;
+        for (size_t c = 0; c < n_in; c++) {
+            const complex_t g = work->g[c * joints + j];
+            for (int i = 0; i < count; i++)
+                RX[c * n_out + (size_t)work->rows[i]] -= product(from[work->rows[i]], g);
+        }
+    }
     return 0;
 }
 

@@ -48,11 +48,15 @@ struct bd_harmonic_work {
     int *touching,
         *n_touching; /* per block: which forces (0 ... n_in) and coefficients (n_in ...) act */
     bool *read;      /* (n_blocks x n_out) whether a row reads a block's motion */
+    int *twin;       /* (n_out) the force that a row is equal to, or -1; no force twice */
+    bool *paired;    /* (n_in) whether a force is the twin of a row */
+    int *rows;       /* (n_out) */
 
     /* for receptances in lanes */
     bd_receptance *reduced; /* (n_blocks); n is 0 where a block is too large for it */
     int *
-        beside; /* per block: what its columns are: outputs, n_out + coefficients, and forces behind them */
+        beside; /* per block: what its columns are: outputs, n_out + coefficients, and forces behind them.
+                 * Where D is symmetric an output stands for its twin too */
     double *pencil, *columns;
     double *omega, *moduli; /* (lanes), (n_layers x 2 x lanes) of one block's layers */
     double *memory, *response, *growth;

@@ -127,21 +127,24 @@ static void reduce(const bd_model *model, const bd_harmonic_data *data, bd_harmo
                 *pencil++ = work->HL[work->HL_at[l] + ij];
         }
 
-    int count = 0;
-    for (size_t o = 0; o < n_out; o++)
-        if (work->read[(size_t)b * n_out + o])
-            beside[count++] = (int)o;
-    reduced->first_right = count;
-    /* coefficients are both rows and columns; forces come last */
     const int *touching = work->touching + (size_t)b * (n_in + m);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int c = 0; c < work->n_touching[b]; c++)
-            if ((touching[c] >= (int)n_in) == (pass == 0))
-                beside[count++] = pass == 0 ? (int)n_out + touching[c] - (int)n_in
-                                            : (int)(n_out + m) + touching[c];
-        if (pass == 0)
-            reduced->n_left = count;
+    int count = 0;
+    /* what is both row and column stands between the rows and the forces: coefficients, and rows with a twin */
+    for (int both = 0; both < 2; both++) {
+        for (size_t o = 0; o < n_out; o++)
+            if (work->read[(size_t)b * n_out + o] &&
+                both == (reduced->symmetric && work->twin[o] >= 0))
+                beside[count++] = (int)o;
+        if (!both)
+            reduced->first_right = count;
     }
+    for (int c = 0; c < work->n_touching[b]; c++)
+        if (touching[c] >= (int)n_in)
+            beside[count++] = (int)n_out + touching[c] - (int)n_in;
+    reduced->n_left = count;
+    for (int c = 0; c < work->n_touching[b]; c++)
+        if (touching[c] < (int)n_in && !(reduced->symmetric && work->paired[touching[c]]))
+            beside[count++] = (int)(n_out + m) + touching[c];
     reduced->n_beside = count;
     for (size_t i = 0; i < n; i++)
         for (int c = 0; c < count; c++) {
@@ -250,10 +253,13 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
     work->touching = zeroed((size_t)model->n_blocks * columns, sizeof *work->touching);
     work->n_touching = zeroed((size_t)model->n_blocks, sizeof *work->n_touching);
     work->read = zeroed((size_t)model->n_blocks * n_out, sizeof *work->read);
+    work->twin = zeroed(n_out, sizeof *work->twin);
+    work->paired = zeroed(n_in, sizeof *work->paired);
+    work->rows = zeroed(n_out, sizeof *work->rows);
     if (!work->reduced || !work->HL || !work->HL_at || !work->force || !work->row || !work->B ||
         !work->Kb || !work->Cb || !work->S || !work->held || !work->joint || !work->coef ||
         !work->D || !work->X || !work->Z || !work->ZX || !work->pivots || !work->touching ||
-        !work->n_touching || !work->read) {
+        !work->n_touching || !work->read || !work->twin || !work->paired || !work->rows) {
         bd_harmonic_work_free(work);
         return NULL;
     }
@@ -295,6 +301,15 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
                 if (work->row[o * n + i] != 0.0)
                     work->read[(size_t)b * n_out + o] = true;
     }
+    for (size_t o = 0; o < n_out; o++) {
+        work->twin[o] = -1;
+        for (size_t k = 0; k < n_in && work->twin[o] < 0; k++)
+            if (!work->paired[k] &&
+                memcmp(work->row + o * n, work->force + k * n, n * sizeof *work->row) == 0) {
+                work->twin[o] = (int)k;
+                work->paired[k] = true;
+            }
+    }
     memcpy(work->Kb, data->bearing_K, m * m * sizeof *work->Kb);
     memcpy(work->Cb, data->bearing_C, m * m * sizeof *work->Cb);
     hold_blocks(model, data, work);
@@ -309,13 +324,13 @@ void bd_harmonic_work_free(bd_harmonic_work *work)
 {
     if (!work)
         return;
-    void *pieces[] = {work->HL,       work->HL_at,      work->force, work->row,     work->B,
-                      work->Kb,       work->Cb,         work->D,     work->X,       work->BX,
-                      work->Z,        work->A,          work->g,     work->RX,      work->pivots,
-                      work->S,        work->held,       work->joint, work->coef,    work->ZX,
-                      work->touching, work->n_touching, work->read,  work->reduced, work->beside,
-                      work->pencil,   work->columns,    work->omega, work->moduli,  work->memory,
-                      work->response, work->growth};
+    void *pieces[] = {work->HL,       work->HL_at,      work->force,  work->row,      work->B,
+                      work->Kb,       work->Cb,         work->D,      work->X,        work->BX,
+                      work->Z,        work->A,          work->g,      work->RX,       work->pivots,
+                      work->S,        work->held,       work->joint,  work->coef,     work->ZX,
+                      work->touching, work->n_touching, work->read,   work->twin,     work->paired,
+                      work->rows,     work->reduced,    work->beside, work->pencil,   work->columns,
+                      work->omega,    work->moduli,     work->memory, work->response, work->growth};
     for (size_t i = 0; i < sizeof pieces / sizeof pieces[0]; i++)
         free(pieces[i]);
     free(work);

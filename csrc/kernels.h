@@ -1,6 +1,6 @@
 /* kernels.h - inside the core: the hot loops, once per instruction set.
  *
- * ehl.c, balls.c, step.c, exact.c and receptance.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
+ * ehl.c, balls.c, step.c, exact.c, receptance.c and changed_layers.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
  * functions carry the name as a suffix, and each set ends in one table of pointers. Nothing else of
  * the core depends on the instruction set. */
 #ifndef BD_KERNELS_H
@@ -15,6 +15,7 @@
 #endif
 
 typedef struct bd_receptance bd_receptance;
+typedef struct bd_changed_layers bd_changed_layers;
 
 typedef struct bd_kernels {
     int width; /* doubles per register */
@@ -45,6 +46,11 @@ typedef struct bd_kernels {
     /* receptance.c: what rows and columns of a block see of each other at `width` frequencies */
     void (*receptance)(const bd_receptance *block, const double *omega, const double *moduli,
                        double *memory, double *response, double *growth);
+    /* changed_layers.c: motions of layers whose moduli have changed, and their derivatives. Returned: 0, or nonzero where
+     * they are infinite */
+    int (*changed_layers)(const bd_changed_layers *layers, const double *receptance, size_t stride,
+                          const double *alone, const double *change, const double *slope,
+                          double *memory, int *order, double *y, double *moved);
     /* exact.c: as predict and observe, as commit, and what bearing forces are to the modes, of an exact step */
     void (*exact_predict)(const bd_model *model, bd_work *work, const bd_state *state);
     int (*exact_commit)(const bd_model *model, bd_work *work, bd_state *state);

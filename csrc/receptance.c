@@ -170,16 +170,21 @@ void BD_NAMED(bd_receptance_solve)(const bd_receptance *block, const double *ome
         }
     }
 
-    /* minus the corner that is left of [D Q; P 0] */
-    for (int p = 0; p < n_left; p++)
-        for (int q = right; q < end; q++) {
-            const double *a = L + (size_t)(n + p) * PAIR, *b = U + (size_t)q * PAIR;
-            lanes re = {0}, im = {0};
-            for (int k = 0; k < n; k++, a += stride, b += stride)
-                MINUS_PRODUCT(re, im, RE(a), IM(a), RE(b), IM(b));
-            LANES_AT(response) = -re;
-            LANES_AT(response + BD_WIDTH) = -im;
-            response += PAIR;
+    /* minus the corner that is left of [D Q; P 0]; among columns that are both P and Q it is symmetric with D */
+    const int seen = end - right, both = block->symmetric ? block->first_right : n_left;
+    for (int p = 0; p < n_left; p++) {
+        double *row = response + (size_t)(p * seen) * PAIR;
+        const int from = p > both ? p - both : 0;
+        for (int q = 0; q < from; q++) {
+            const double *mirror = response + (size_t)((both + q) * seen + from) * PAIR;
+            LANES_AT(row + q * PAIR) = LANES(mirror);
+            LANES_AT(row + q * PAIR + BD_WIDTH) = LANES(mirror + BD_WIDTH);
         }
+        for (int i = 2 * from; i < 2 * seen; i++)
+            LANES_AT(row + i * BD_WIDTH) = (lanes){0};
+        eliminate(n, from, seen, L + (size_t)(n + p) * PAIR, U + (size_t)right * PAIR, stride, row);
+        for (int i = 2 * from; i < 2 * seen; i++)
+            LANES_AT(row + i * BD_WIDTH) = -LANES(row + i * BD_WIDTH);
+    }
     LANES_AT(growth) = grown;
 }

@@ -1,5 +1,6 @@
 /* The linear algebra of one step; the order of the calls is in newmark.c. */
 #include "balls.h"
+#include "changed_layers.h"
 #include "dense.h"
 #include "exact.h"
 #include "maxwell.h"
@@ -269,6 +270,7 @@ const bd_kernels BD_NAMED(bd_kernels) = {
     .correct = correct,
     .commit = commit,
     .receptance = BD_NAMED(bd_receptance_solve),
+    .changed_layers = BD_NAMED(bd_changed_layers_solve),
     .exact_predict = BD_NAMED(bd_exact_predict),
     .exact_commit = BD_NAMED(bd_exact_commit),
     .exact_shares = BD_NAMED(bd_exact_shares),

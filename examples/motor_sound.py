@@ -83,15 +83,16 @@ def picture(found: Mapping[str, xarray.Dataset]) -> Any:
         ax = new_axes(width=7.4, height=3.6)
         labels = list(found)
         wide = 0.8 / len(labels)
-        highest = max(float(levels["weighted_level"].max()) for levels in found.values())
-        floor = 10.0 * np.floor(highest / 10.0) - 50.0
+        # below the lowest, so that every band of every design has its bar
+        lowest = min(float(levels["weighted_level"].min()) for levels in found.values())
+        floor = 10.0 * np.floor(lowest / 10.0 - 0.2)
         for k, label in enumerate(labels):
             level = found[label]["weighted_level"].values
             at = np.arange(level.size) + (k - (len(labels) - 1) / 2) * wide
             total = float(found[label]["weighted_total"])
             ax.bar(
                 at,
-                np.maximum(level - floor, 0.0),
+                level - floor,
                 wide,
                 bottom=floor,
                 color=colour(k),

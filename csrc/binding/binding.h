@@ -127,6 +127,11 @@ extern const char bd_py_bearing_force_doc[], bd_py_bearing_settle_doc[], bd_py_c
 PyObject *bd_py_helmholtz(PyObject *module, PyObject *args);
 extern const char bd_py_helmholtz_doc[];
 
+/* ---------------------------------------------------------------- changed_layers.c */
+
+PyObject *bd_py_changed_layers(PyObject *module, PyObject *args);
+extern const char bd_py_changed_layers_doc[];
+
 /* ---------------------------------------------------------------- along.c */
 
 PyObject *bd_py_bearing_along(PyObject *module, PyObject *args);

@@ -79,6 +79,7 @@ static PyMethodDef module_methods[] = {
     {"bearing_along", bd_py_bearing_along, METH_VARARGS, bd_py_bearing_along_doc},
     {"bearing_settle", bd_py_bearing_settle, METH_VARARGS, bd_py_bearing_settle_doc},
     {"check_scheme", bd_py_check_scheme, METH_O, bd_py_check_scheme_doc},
+    {"changed_layers", bd_py_changed_layers, METH_VARARGS, bd_py_changed_layers_doc},
     {"helmholtz", bd_py_helmholtz, METH_VARARGS, bd_py_helmholtz_doc},
     {"status_text", status_text, METH_VARARGS, status_text_doc},
     {NULL, NULL, 0, NULL},

@@ -182,6 +182,7 @@ PUBLIC = {
             "save",
         ),
         "reporting": ("report",),
+        "explorer": ("Explorer",),
     },
 }
 _HOME = {name: home for homes in PUBLIC.values() for home, names in homes.items() for name in names}

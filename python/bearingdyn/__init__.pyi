@@ -74,6 +74,7 @@ from bearingdyn.core import (
     Scheme,
     SolverError,
 )
+from bearingdyn.explorer import Explorer as Explorer
 from bearingdyn.fem import (
     MM_TONNE,
     SolidMesh,
@@ -174,6 +175,7 @@ __all__ = [
     "Elastic",
     "EndFace",
     "Equilibrium",
+    "Explorer",
     "Feet",
     "FilmDamping",
     "FlexibleBearing",

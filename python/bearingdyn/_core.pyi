@@ -93,6 +93,16 @@ def bearing_settle(
     bearing: dict[str, object], loads: _Array, radius: _Array, angle: float, shaft_angle: float, /
 ) -> tuple[_Array, _Array, _Array]: ...
 def check_scheme(scheme: dict[str, object], /) -> None: ...
+def changed_layers(
+    receptance: NDArray[np.complex128],
+    which: NDArray[np.intp],
+    alone: NDArray[np.complex128],
+    change: NDArray[np.complex128],
+    slope: NDArray[np.complex128],
+    end: NDArray[np.int32],
+    isa: str | int,
+    /,
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]: ...
 def helmholtz(
     points: _Array, faces: NDArray[np.int32], k: float, floor: float | None, /
 ) -> tuple[

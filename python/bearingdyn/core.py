@@ -34,7 +34,7 @@ NO_CONVERGENCE = _core.STATUSES["NO_CONVERGENCE"]
 
 
 class Packable(Protocol):
-    """What is passed to the core as a dict of named fields, such as a bearing."""
+    """Packable for the core: what is passed to it as a dict of named fields, such as a bearing."""
 
     def packed(self) -> dict[str, object]:
         """The fields by name."""
@@ -271,7 +271,7 @@ def bearing_force(
 def bearing_settle(
     kernel: Packable, loads: Array, radius: Array, angle: float, shaft_angle: float = 0.0
 ) -> tuple[Array, Array, Array]:
-    """Where a bearing comes to rest under each of many loads, its outer ring held.
+    """Where the core finds a bearing at rest under each of many loads, its outer ring held.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def bearing_settle(
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """One bearing through the samples (s) of a motion.
+    """What the core says of one bearing along the samples (s) of a motion.
 
     Parameters
     ----------
@@ -332,7 +332,7 @@ def bearing_along(
     window: float = 0.0,
     tangents: bool = True,
 ) -> Along:
-    """Forces of a bearing, sample by sample, along a motion that is given.
+    """Forces of a bearing by the core, sample by sample, along a motion that is given.
 
     Parameters
     ----------
@@ -460,10 +460,52 @@ def harmonic(
     return model.harmonic(omega, speed, modulus, bearing_K, bearing_C, ball, across, force, row, progress)
 
 
+def changed_layers(
+    receptance: Complex,
+    which: Index,
+    alone: Complex,
+    change: Complex,
+    slope: Complex,
+    end: ArrayLike,
+    isa: str = "best",
+) -> tuple[Complex, Complex]:
+    """Motions of layers whose moduli have changed, from those of the linear system (csrc/changed_layers.h).
+
+    Parameters
+    ----------
+    receptance
+        R (f, r, r) of the layers' coordinates, layer after layer, m/N and its like.
+    which
+        (e,) the frequency that each entry is of.
+    alone
+        (e, r) their motions at the linear moduli.
+    change
+        (e, layers) of the complex shear moduli, Pa.
+    slope
+        (e, layers) its derivative by something of the layer, such as the logarithm of its strain.
+    end
+        Where each layer's coordinates end.
+    isa
+        Instruction set.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        y (e, r) = (I + R Δ)⁻¹ alone, Δ = 2 change on each layer, and its derivatives (e, layers, r).
+
+    Raises
+    ------
+    ArithmeticError
+        Where the changed system is singular.
+    """
+    rows = receptance if receptance.strides[2] == receptance.itemsize else np.ascontiguousarray(receptance)
+    return _core.changed_layers(rows, which, alone, change, slope, np.asarray(end, dtype=np.int32), isa)
+
+
 def helmholtz(
     points: Array, faces: Index, wave_number: float, floor: float | None = None
 ) -> tuple[Complex, Complex, Complex, Complex, Complex]:
-    """Integral operators of sound outside a surface of triangles (csrc/radiation.h), time as exp(+iωt).
+    """The core's integral operators of sound outside triangles (csrc/radiation.h), time as exp(+iωt).
 
     Parameters
     ----------

@@ -112,6 +112,20 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             "a foam has 1e5 Pa, rubber 2e9, diamond 4.4e11",
             _STRESSES,
         ),
+        "bulk branch": Magnitude(
+            "",
+            (0.0, 100.0),
+            (0.0, 3.0),
+            "glassy polymers are two to three times as stiff in volume as rubbery ones",
+            (Slip("per cent", 0.01),),
+        ),
+        "spread": Magnitude(
+            "",
+            (0.0, 2.0),
+            (0.0, 0.5),
+            "two specimens differ by 0.05, a modulus that is hardly known by 0.3",
+            (Slip("per cent", 0.01),),
+        ),
         "wave speed": Magnitude(
             "m/s", (20.0, math.inf), (20.0, math.inf), "sound runs at 20 m/s or more in any solid"
         ),
@@ -173,6 +187,9 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "solid length": Magnitude(
             "m", (1e-8, 100.0), (1e-6, 100.0), "of a mesh that read_mesh was told is that large", _LENGTHS
         ),
+        "specimen": Magnitude(
+            "m", (1e-6, 1.0), (1e-4, 0.2), "specimens are 1 to 50 mm thick and wide", (_MM,)
+        ),
         "ball diameter": Magnitude(
             "m", (1e-6, 0.5), (1e-4, 0.2), "balls of bearings have 0.3 mm to 150 mm", _LENGTHS
         ),
@@ -213,6 +230,9 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "waviness": Magnitude(
             "m", (0.0, 2e-4), (0.0, 5e-5), "waves of ground races are 1 nm to some µm high", (_UM, _NM, _MM)
         ),
+        "bore wave": Magnitude(
+            "m", (0.0, 0.01), (0.0, 5e-4), "bores are out of round by 1 to 100 µm", (_UM, _MM)
+        ),
         "wave order": Magnitude(
             "waves a turn",
             (0.0, 1e6),
@@ -245,6 +265,18 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "gyration ratio": Magnitude("", (0.0, 300.0), (0.0, 30.0), "wheels and rods reach ten or twenty"),
         "stiffness": Magnitude(
             "N/m", (0.0, 1e18), (0.0, 1e14), "a machine's bed has 1e9 N/m; hold rigidly what is stiffer"
+        ),
+        "bed stiffness": Magnitude(
+            "N/m³", (0.0, 1e20), (0.0, 1e17), "1 mm of rubber has 1e9 to 1e12 N/m³, 10 mm of steel 2e13"
+        ),
+        "support damping": Magnitude(
+            "s", (0.0, 100.0), (0.0, 0.1), "of a spring with a loss factor of 0.1 at 100 Hz it is 1.6e-4 s"
+        ),
+        "conductance": Magnitude(
+            "W/K", (1e-12, 1e9), (1e-6, 1e5), "a film of still air has 1e-2 W/K, a ring in its bore 1e2"
+        ),
+        "sample rate": Magnitude(
+            "Hz", (1.0, 1e9), (1e3, 1e7), "sound is sampled at 8000 to 192 000 Hz", (Slip("kHz", 1e3),)
         ),
         "damping": Magnitude("N s/m", (0.0, 1e15), (0.0, 1e10), "a machine's dampers have 1 to 1e6 N s/m"),
         "contact damping": Magnitude("N s/m", (0.0, 1e9), (0.0, 1e6), "one ball in oil has 10 to 1e4 N s/m"),

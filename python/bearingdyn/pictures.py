@@ -11,5 +11,5 @@ from typing import Any
 
 
 def picture(kind: str, thing: object, *arguments: Any, **keywords: Any) -> Any:
-    """What the function `kind` of bearingdyn.plot makes of an object."""
+    """Picture of an object: what the function `kind` of bearingdyn.plot makes of it."""
     return getattr(import_module("bearingdyn.plot"), kind)(thing, *arguments, **keywords)

@@ -175,7 +175,7 @@ def _root(name: str, text: str) -> tuple[float, _Exponents]:
 
 
 def si(field: str, value: Any, unit: str | tuple[str, ...]) -> Any:
-    """A value in SI: what is no quantity of pint stays as it is.
+    """A value in units of SI: what is no quantity of pint stays as it is.
 
     Parameters
     ----------

@@ -60,3 +60,18 @@ def test_what_cannot_be_used_is_one_line(
 ) -> None:
     assert main(["bearing", *line]) == 2
     assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("word", ["-5e2", "-500", "-.5E+3", "-5000e-1"])
+def test_a_negative_number_is_no_option_however_it_is_written(
+    word: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["bearing", "6205", "--radial", "2000", "--axial", word, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert abs(found["axial_load"]["value"]) == pytest.approx(500.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("word", ["-inf", "-nan", "-1e400"])
+def test_a_number_without_end_is_refused_by_its_name(word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bearing", "6205", "--radial", "2000", "--axial", word]) == 2
+    assert "axial is" in capsys.readouterr().err

@@ -56,6 +56,8 @@ def test_the_table_and_the_picture_show_every_design(capsys: pytest.CaptureFixtu
     ax = motor_sound.picture(found)
     assert len(ax.patches) == 2 * found["layer"].sizes["band"]
     heights = [p.get_height() + p.get_y() for p in ax.patches]
+    # no band is hidden, the quietest neither
+    assert min(p.get_height() for p in ax.patches) > 1.0
     assert max(heights) == pytest.approx(float(found["no layer"]["weighted_level"].max()))
 
 

@@ -497,6 +497,7 @@ def test_universal_file_keeps_groups(tmp_path, end):
             "a.unv, line 6: dataset 15: dataset 15 is of an older kind",
         ),
         ("a.unv", unv().replace("       116", "       119"), r"line \d+: dataset 2412: elements of type 119"),
+        ("a.unv", unv().replace("       116", "       322"), r"line \d+: dataset 2412: elements of type 322"),
         ("a.med", "x", "a.med has the suffix '.med', a mesh of Salome, which is not read; export"),
     ],
 )

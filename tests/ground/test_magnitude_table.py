@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import tempfile
 import warnings
 
 import numpy as np
@@ -204,6 +205,25 @@ SLIPS = {
     "box in mm": lambda: bd.box_mesh([0, 100.0], [0, 20.0], [0, 30.0]),
     "arm as a diameter": lambda: bd.FlexibleRing(0.0228, 0.026, 0.015, 2 * ball().arm),
     "overflow": lambda: ball().displacement([0, 1e200, 0, 0, 0, 0]),
+    "fractional law in MPa": lambda: bd.FractionalZener(1.0, 5.0, 1e-4, 0.5, K=2e9, density=1100.0),
+    "power law's modulus in MPa": lambda: bd.PowerLaw(5.0, 0.2, 100.0, K=2e9, density=1100.0),
+    "loss in volume in per cent": lambda: bd.BulkRelaxation((20.0,), (1e-3,)),
+    "spread in per cent": lambda: bd.Maxwell(1e6, [], [], K=2e9, density=1100.0).with_spread(level=8.0),
+    "strain sweep in MPa": lambda: bd.StrainSweep([1e-3, 0.01, 0.1], [5.0, 4.0, 3.0], [0.5, 0.6, 0.5], 1.0),
+    "specimen in mm": lambda: bd.specimen_factor(2.0, diameter=20.0),
+    "bore's waves in µm": lambda: bd.BoreShape({3: (5.0, 0.0)}),
+    "bore's interference in µm": lambda: bd.BoreShape({}, interference=10.0),
+    "bed in N/mm³": lambda: bd.RingBed(1e30),
+    "feet in degrees": lambda: bd.RingPoints([0.0, 120.0, 240.0], 1e7),
+    "conductance in W/K": lambda: bd.ThermalNetwork().link("a", "b", 1e12),
+    "sound at 48 kHz": lambda: bd.write_wav(f"{tempfile.gettempdir()}/slip.wav", np.zeros(8), 48.0),
+    "ratings in kN": lambda: bd.bearing_sheet(
+        bd.equilibrium(rotor((0, -400.0, 100.0, 0, 0, 0))), C={"b": 14.0}, C0={"b": 7.85}
+    ),
+    "shoulder in mm": lambda: bd.bearing_sheet(
+        bd.equilibrium(rotor((0, -400.0, 100.0, 0, 0, 0))), shoulder={"b": 1.5}
+    ),
+    "table of a load of nothing": lambda: bd.stiffness_table(ball(), [[0.0] * 6]),
     "pressed by 1 mm": lambda: ball().force([0, -1e-3, 0, 0, 0, 0]),
     "pressed by 10 in µm": lambda: ball().force([0, -10.0, 0, 0, 0, 0]),
 }

@@ -46,6 +46,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("sound",),
     ("model", "plot", "study"),
     ("reporting",),
+    ("explorer",),
     ("examples",),
     ("",),
     ("check", "demo"),

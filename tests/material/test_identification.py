@@ -15,11 +15,13 @@ import make_sample_dma as made
 from bearingdyn.material import (
     WLF,
     Arrhenius,
+    DMAData,
     FractionalZener,
     MasterCurve,
     Maxwell,
     OutsideBand,
     PowerLaw,
+    RelaxationData,
     ShiftTable,
     TabulatedModulus,
     fit_dense,
@@ -32,6 +34,7 @@ from bearingdyn.material import (
     to_ansys,
     to_calculix,
 )
+from bearingdyn.notice import FewerBranches
 from measured import DATA
 
 SOLID = {"K": 2e9, "density": 1200.0}
@@ -44,6 +47,29 @@ def master():
 
 
 # ---------------------------------------------------------------- fit
+
+
+def test_branches_that_the_data_do_not_hold_are_said():
+    """Data made from two branches: of eight asked for a few come out, in frequency and in time.
+
+    Twins of nearly one relaxation time may stay, so that their number hangs on the arithmetic; what they
+    make together is the material.
+    """
+    model = Maxwell(1e6, [2e6, 1e6], [1e-4, 1e-2], 0.0, **SOLID)
+    f = np.geomspace(0.1, 1e5, 60)
+    G = model.complex_modulus(2 * np.pi * f)
+    data = DMAData(f, np.full(f.size, 20.0), G.real, G.imag, "shear")
+    with pytest.warns(FewerBranches, match=r'n is 8, and the data hold [2-6] branches.*, or n="auto"'):
+        found = fit_maxwell(data, n=8, dashpot=False, **SOLID)
+    np.testing.assert_allclose(found.complex_modulus(2 * np.pi * f), G, rtol=1e-3)
+    t = np.geomspace(1e-5, 10.0, 60)
+    relaxed = RelaxationData.of(t, model.relaxation(t), np.full(t.size, 20.0), "shear")
+    with pytest.warns(FewerBranches, match="n is 6, and the data hold"):
+        fit_maxwell(relaxed, n=6, **SOLID)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        fit_maxwell(data, n=2, dashpot=False, **SOLID)
+        fit_maxwell(data, n="auto", dashpot=False, **SOLID)
 
 
 def test_measured_rubber_in_five_branches():

@@ -33,7 +33,7 @@ def taps(every: int) -> Array:
 
 
 class Decimator:
-    """Keeps every n-th step of a march, low-passed; the same bits however the rows are cut.
+    """Decimates a march: keeps every n-th step, low-passed; the same bits however the rows are cut.
 
     Parameters
     ----------

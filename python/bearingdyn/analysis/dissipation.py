@@ -31,7 +31,7 @@ PIECE = 2000
 
 @dataclass(frozen=True, eq=False)
 class Sink:
-    """Something that dissipates energy: the power is Σ (rows v)², or the core's own channel of it."""
+    """One place of dissipation: its power is Σ (rows v)², or the core's own channel of it."""
 
     name: str
     rows: Array
@@ -145,7 +145,7 @@ def dissipation(
 
 
 def sinks(system: System) -> list[Sink]:
-    """What loses energy in a system, in its own coordinates."""
+    """All places of dissipation in a system, in its own coordinates."""
     none = np.zeros((0, system.n))
     found = []
     layer = 0

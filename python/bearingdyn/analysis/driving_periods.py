@@ -17,14 +17,14 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, order=True)
 class Rhythm:
-    """Something that drives a march: how long one period lasts, s, and what it is."""
+    """A driving period: how long it lasts, s, and what drives the march with it."""
 
     period: float
     what: str
 
 
 def rhythms(system: System, speed: float) -> list[Rhythm]:
-    """Everything that drives a march of this system at a shaft speed, rad/s; the fastest first."""
+    """All driving periods of a march of this system at a shaft speed, rad/s; the fastest first."""
     found: list[tuple[float, str]] = []
     for term in system.bearings:
         kernel = term.kernel()

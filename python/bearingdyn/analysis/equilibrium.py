@@ -341,7 +341,7 @@ def _turned(system: System, angle: float) -> tuple[BearingTerm, ...]:
 
 
 def state_of(source: object) -> dict[str, str]:
-    """Attribute of a result that says which state of the layers its equilibrium has.
+    """Attribute of a result that says with which modulus of the layers its equilibrium was found.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ TERMS = 26  # of Taylor's series within the unit circle
 
 
 def phi(z: Complex, last: int) -> list[Complex]:
-    """φ_0 … φ_last of z: exp(z), and φ_(k+1) = (φ_k − 1/k!)/z, by its series within the unit circle."""
+    """φ functions of the exact step, φ_0 … φ_last of z: exp(z), and φ_(k+1) = (φ_k − 1/k!)/z."""
     z = np.asarray(z, dtype=np.complex128)
     small = np.abs(z) < 1
     inner, outer = np.where(small, z, 0), np.where(small, 1, z)

@@ -22,7 +22,7 @@ Balls = Callable[[Array], tuple[Complex, Array] | None]
 def film_modes(
     system: System, speed: float, balls: Balls, values: Complex, eigen: Eigen
 ) -> tuple[Complex, Complex]:
-    """Eigenvalues (m,) and shapes (n, m) of λ²M + λ(C + ΩG) + K + ΩN + layers(λ) + B'Z(ω)B, ω = |Im λ|.
+    """Modes on films: λ (m,), shapes (n, m) of λ²M + λ(C + ΩG) + K + ΩN + layers(λ) + B'Z(|Im λ|)B.
 
     Band by band of frequencies the films are springs and dashpots as they are in its middle, and `eigen`
     finds all modes; each is then followed to the Z of its own frequency. Z is of motions that go on: at λ

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, requested
 from bearingdyn.analysis.linearised import Contacts, linear
+from bearingdyn.analysis.overload import warn_of_swings
 from bearingdyn.analysis.response_band import response_band
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, softening_layers, warn_of_strain
 from bearingdyn.application import QUANTITIES, RATES, Application
@@ -125,6 +126,8 @@ def frequency_response(
         At 0 Hz, where layers have their relaxed modulus, if their data do not speak of it.
     BeyondSweep
         With an amplitude, where a layer's strain leaves the sweep its law of softening comes from.
+    BearingWarning
+        With an amplitude, where a contact pressure exceeds 4.2 GPa (ISO 76) while the rings move so.
 
     References
     ----------
@@ -159,7 +162,8 @@ def frequency_response(
             "take the lowest frequency that the data reach instead, or equilibrium(app, after=...) for a "
             "deflection, ",
         )
-    rows, power = requested(wanted, state.system.n), QUANTITIES.index(quantity)
+    B = state.system.B
+    rows, power = np.vstack([requested(wanted, state.system.n), B]), QUANTITIES.index(quantity)
     dims: tuple[str, ...] = ("frequency", "output", "input")
     coords: dict[str, tuple[Any, str]] = {
         "frequency": (f, "Hz"),
@@ -172,7 +176,7 @@ def frequency_response(
     bearings = state.dynamic(omega if any(o.bearings for o in wanted) else omega[:0])
     with told(progress, "frequency") as tell:
         if levels is None:
-            x = state.solve(omega, force, rows, speed, tell)
+            x = state.solve(omega, force, rows[: len(rows) - len(B)], speed, tell)
             response = recovered(wanted, given, x, omega, speed, power, bearings)
         else:
             drives = [_drive(level, given, omega, power) for level in levels]
@@ -185,6 +189,12 @@ def frequency_response(
                 responses.append(recovered(wanted, given, x, omega, speed, power, bearings, moduli))
             response, strain = np.stack(responses), np.stack([one.strain for one in found])
             warn_of_strain(state.system, strain)
+            if isinstance(source, Equilibrium):
+                swings = np.concatenate(
+                    [o.x[:, len(rows) - len(B) :].transpose(0, 2, 1).reshape(-1, len(B)) for o in found]
+                )
+                each = [f"in the response to {name} at {v:.6g} Hz" for v in f for name in inputs]
+                warn_of_swings(source, swings, each * len(found))
             coords["layer"] = (layer_names(state.system), "")
             if np.ndim(amplitude) == 1:  # type: ignore[arg-type]
                 dims = ("amplitude", *dims)

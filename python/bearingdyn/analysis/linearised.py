@@ -46,24 +46,39 @@ class Linear:
         for k, layer in enumerate(system.layers):
             modulus[:, k] = layer.material.complex_modulus(omega)
         # η0 sits in G*(ω) here, so C is the structure's own
+        moving = omega > 0
+        if moving.all():
+            return self._respond(system, omega, modulus, force, rows, speed, progress)
         x = np.zeros((omega.size, len(rows), len(force)), dtype=np.complex128)
-        for part in (omega > 0, omega == 0):
+        for part in (moving, ~moving):
             if part.any():
                 held = system if omega[part][0] > 0 else self.held_at_rest(modulus[part][0], force)
-                model = held.model([], relaxed=False)
-                x[part] = core.harmonic(
-                    model,
-                    omega[part],
-                    modulus[part],
-                    self.K,
-                    self.C,
-                    force,
-                    rows,
-                    speed,
-                    progress,
-                    self.balls and self.balls(omega[part]),
-                )
+                x[part] = self._respond(held, omega[part], modulus[part], force, rows, speed, progress)
         return x
+
+    def _respond(
+        self,
+        system: System,
+        omega: Array,
+        modulus: Complex,
+        force: Array,
+        rows: Array,
+        speed: float,
+        progress: core.Progress | None,
+    ) -> Complex:
+        """Motions (f, k, i) at the moduli (f, layers) of the system's layers."""
+        return core.harmonic(
+            system.model([], relaxed=False),
+            omega,
+            modulus,
+            self.K,
+            self.C,
+            force,
+            rows,
+            speed,
+            progress,
+            self.balls and self.balls(omega),
+        )
 
     def dynamic(self, omega: Array) -> Complex:
         """K + iωC of all bearings (f, coefs, coefs), with what lubricated balls add, at omega (f,), rad/s."""

@@ -97,7 +97,7 @@ def averaged(found: Sequence[LubricatedBalls | None]) -> LubricatedBalls | None:
 
 
 def azimuth_terms(kernel: BearingKernel, azimuth: float) -> Array:
-    """cos or sin of order·ψ of each coefficient at each ball (Z, n), the first ball at the azimuth, rad."""
+    """Azimuth terms of lubricated balls: cos or sin of order·ψ of each coefficient at each ball (Z, n)."""
     psi = azimuth + 2 * math.pi * np.arange(kernel.Z)[:, None] / kernel.Z
     return np.where(kernel.sine, np.sin(kernel.order * psi), np.cos(kernel.order * psi))
 

@@ -13,7 +13,7 @@ DIRECTIONS = ("lateral", "axial", "torsional")
 
 
 def directions(system: System, shapes: Complex) -> NDArray[np.str_]:
-    """The largest of DIRECTIONS in each mode shape (m, n), over the places of the parts that turn.
+    """Direction of each mode shape (m, n): the largest of DIRECTIONS over the places that turn.
 
     A turn θz counts with the radius of gyration of its part about its first interface, tilts θx, θy likewise,
     so that a rigid body that only tilts is lateral. All parts count if none turns.

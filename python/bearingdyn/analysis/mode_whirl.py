@@ -13,7 +13,7 @@ LATERAL = 1e-8
 
 
 def whirl(system: System, shapes: Complex) -> Array:
-    """Whirl (m,) of modes, −1 … 1: of the turning parts, in shapes (m, n) e^{λt} with Im λ > 0.
+    """Whirl (m,) of modes, −1 backward … 1 forward: of the turning parts, in shapes (m, n) e^{λt}, Im λ > 0.
 
     It is 2 Σ Im(x y*)/Σ(|x|² + |y|²) over the interfaces and outputs of those parts. Where they do not move
     sideways, as a rigid body that tilts about its centre, their tilts θx, θy take the place of x, y.

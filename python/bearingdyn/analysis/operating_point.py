@@ -53,12 +53,12 @@ HOTTEST = 250.0
 
 
 class ThermalRunaway(ArithmeticError):
-    """There is no warm running state: heat grows faster than it is carried away."""
+    """There is no operating point: heat grows faster than it is carried away."""
 
 
 @dataclass(frozen=True, eq=False)
 class OperatingPoint:
-    """A warm running state.
+    """An operating point: the warm running state of an application.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class OperatingPoint:
 
 
 def estimated_network(app: Application, ambient: float = 20.0) -> ThermalNetwork:
-    """A network of an application's bearings and layers, where nothing better is known.
+    """Estimated thermal network for an operating point: bearings and layers, where nothing better is known.
 
     Each bearing has nodes "name.inner" and "name.outer". Its seats pass heat on as ISO 15312's reference
     does, 320 W/(m² K) of their area; a layer of rubber behind the outer ring lies in between, as a ring of
@@ -176,7 +176,7 @@ def operating_point(
     rounds: int = 200,
     rpm: float | None = None,
 ) -> OperatingPoint:
-    """The warm running state: temperatures, viscosities, clearances and layers that agree with their heat.
+    """The operating point: temperatures, viscosities, clearances and layers that agree with their heat.
 
     Parameters
     ----------

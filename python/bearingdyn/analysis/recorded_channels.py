@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def recorded(result: object) -> None:
-    """Check what `transient` returned; ValueError for anything else."""
+    """Check recorded channels, what `transient` returned; ValueError for anything else."""
     table("result", result, ["record", "channel", "time"], "transient")
 
 

@@ -45,7 +45,7 @@ def drive_of(speed: float | tuple[ArrayLike, ArrayLike]) -> float | tuple[Array,
 
 
 def angle_turned(stepping: core.Stepping, t: float) -> float:
-    """Angle, rad, through which the shaft has turned from 0 to t, s."""
+    """Angle, rad, through which a shaft of this speed has turned from 0 to t, s."""
     times, speeds = stepping.profile
     knots = np.unique(np.concatenate([[0.0, t], times[(times > 0.0) & (times < t)]]))
     return float(np.trapezoid(np.interp(knots, times, speeds), knots))

@@ -13,10 +13,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bearingdyn import core
 from bearingdyn.checks import positive, require
@@ -29,11 +29,10 @@ if TYPE_CHECKING:
 
 # below this strain the law is at its limit of small ones to 1e-12
 NO_STRAIN = 1e-10
-# of ln γ, before the last step is judged; motions then hold to some 1e-10
-CLOSE = 1e-9
+# of ln γ, the last step; its square is what strains and motions lack then
+CLOSE = 5e-6
 # Newton converges in some five steps; a step in ln γ is cut to this, so that it cannot leap over a bend
 STEPS, LEAP = 80, 0.7
-SLOPE = 1e-4  # of ln γ, over which the law's slope is taken
 # periods of the slowest motion that a march remembers: its ripple then moves the amplitude by 0.01 %
 MEMORY = 5.0
 SLACK = 1.02  # of the highest strain of a sweep, before a warning
@@ -47,18 +46,36 @@ class Softened:
     ----------
     x
         (f, k, c) motions of the rows asked for.
-    each
-        (f, k, i) motions under each force alone, of unit size, at the moduli of the first case.
     strain
-        (f, l) each case, (f, l, c): the strain that counts.
+        (f, l, c) the strain that counts.
     change
         (f, l, c) G* less that of the isotherms, Pa.
     """
 
     x: Complex
-    each: Complex
     strain: Array
     change: Complex
+    _linear: _Linear
+    _loss: Complex
+
+    def each(self) -> Complex:
+        """Motions (f, k, i) under each force alone, of unit size, at the moduli of the first case."""
+        of, first = self._linear, self._loss[:, :, :1]
+        alone = np.linalg.solve(np.eye(of.R.shape[1]) + of.R * first.transpose(0, 2, 1), of.seen)
+        return np.asarray(of.direct - of.by_layers @ (first * alone))
+
+
+@dataclass(frozen=True, eq=False)
+class _Linear:
+    """The linear response of rows k and layer coordinates r to forces i, and to those coordinates' own.
+
+    direct (f, k, i), by_layers (f, k, r), seen (f, r, i), R (f, r, r).
+    """
+
+    direct: Complex
+    by_layers: Complex
+    seen: Complex
+    R: Complex
 
 
 def softening_layers(system: System) -> list[int]:
@@ -75,7 +92,7 @@ def softened(
     drives: Sequence[Complex],
     tell: core.Progress | None = None,
 ) -> list[Softened]:
-    """Motions rows (k, n) under forces (i, n) driven together or alone.
+    """Response of layers that soften: motions rows (k, n) under forces (i, n) driven together or alone.
 
     Parameters
     ----------
@@ -96,113 +113,119 @@ def softened(
     own = np.vstack([layer.L.T for layer in soft])
     x = state.solve(omega, np.vstack([force, own]), np.vstack([rows, own]), speed, tell)
     k, i = len(rows), len(force)
-    direct, by_layers = x[:, :k, :i], x[:, :k, i:]
-    seen, R = x[:, k:, :i], x[:, k:, i:]
-    ends = np.cumsum([0, *(layer.L.shape[1] for layer in soft)])
-    parts = [slice(a, b) for a, b in pairwise(ends.tolist())]
-    found = []
+    of = _Linear(x[:, :k, :i], x[:, :k, i:], x[:, k:, :i], x[:, k:, i:])
+    ranks = [layer.L.shape[1] for layer in soft]
+    found, near = [], None
     for drive in drives:
-        linear = seen @ drive
-        y, strain, change = _strains(omega, R, linear, soft, parts)
-        loss = np.repeat(2 * change, np.diff(ends), axis=1)  # (f, r, c)
-        first = loss[:, :, :1]
-        alone = np.linalg.solve(np.eye(R.shape[1]) + R * first.transpose(0, 2, 1), seen)
-        found.append(
-            Softened(
-                direct @ drive - by_layers @ (loss * y),
-                direct - by_layers @ (first * alone),
-                strain,
-                change,
-            )
-        )
+        y, strain, change, near = _strains(omega, of.R, of.seen @ drive, soft, ranks, near)
+        loss = np.repeat(2 * change, ranks, axis=1)  # (f, r, c)
+        moved = of.direct @ drive - np.einsum("fkr,frc->fkc", of.by_layers, loss * y)
+        found.append(Softened(moved, strain, change, of, loss))
     return found
 
 
 def _strains(
-    omega: Array, R: Complex, linear: Complex, soft: Sequence[LayerTerm], parts: Sequence[slice]
-) -> tuple[Complex, Array, Complex]:
-    """Layer coordinates y (f, r, c), strain (f, l, c) and change of modulus (f, l, c)."""
-    count, rank, cases = linear.shape
-    alone = linear.transpose(0, 2, 1).reshape(-1, rank)
-    receptance = np.repeat(R, cases, axis=0)
-    w = np.repeat(omega, cases)
+    omega: Array,
+    R: Complex,
+    linear: Complex,
+    soft: Sequence[LayerTerm],
+    ranks: Sequence[int],
+    near: Array | None,
+) -> tuple[Complex, Array, Complex, Array]:
+    """Layer coordinates y (f, r, c), strain, change of modulus and `near` (f, l, c) of the next level.
+
+    near: ln γ less that of the linear motions, from which to begin.
+    """
+    count, _, cases = linear.shape
+    ends = np.cumsum(ranks)
+    weights = _weights(soft, ranks)
+
+    def flat(values: Any) -> Any:  # (f, ·, c) to (e, ·)
+        return values.transpose(0, 2, 1).reshape(count * cases, -1)
+
+    alone, w = flat(linear), np.repeat(omega, cases)
+    which = np.repeat(np.arange(count), cases)
     y = alone.copy()
-    g = np.log(np.maximum(_strain(y, soft, parts), NO_STRAIN))
+    begin = _log_strain(y, weights)
+    g = begin + (0.0 if near is None else flat(near))
     change = np.zeros(g.shape, dtype=np.complex128)
     todo = np.flatnonzero(w > 0)  # at rest there is no amplitude
     for _ in range(STEPS):
         if not todo.size:
             break
-        change[todo], slope = _laws(w[todo], g[todo], soft)
-        y[todo], residual, J = _evaluate(
-            receptance[todo], alone[todo], change[todo], slope, g[todo], soft, parts
-        )
-        near = np.abs(residual).max(axis=1) < CLOSE
-        step = -np.linalg.solve(J, residual[..., None])[..., 0]
-        step *= np.minimum(1.0, LEAP / np.maximum(np.abs(step).max(axis=1), 1e-300))[:, None]
-        g[todo] = np.maximum(g[todo] + step, np.log(NO_STRAIN))
-        todo = todo[~near]
+        at = g[todo]
+        law, slope = _laws(w[todo], at, soft)
+        there, moved = core.changed_layers(R, which[todo], alone[todo], law, slope, ends)
+        step, close = _newton(there, moved, at, weights)
+        at = np.maximum(at + step, np.log(NO_STRAIN))
+        g[todo] = at
+        done = todo[close]
+        # the last step is taken along the derivatives: what is left is of the second order in CLOSE
+        y[done] = there[close] + np.einsum("el,elr->er", step[close], moved[close])
+        todo = todo[~close]
     if todo.size:
         raise ArithmeticError(
             f"the strain of the layers was not found at {w[todo[0]] / 2 / np.pi:.6g} Hz: the response may "
             f"jump there from one amplitude to another; take a smaller amplitude"
         )
-    strain = _strain(y, soft, parts)
-    shaped = (count, cases, -1)
-    return (
-        y.reshape(shaped).transpose(0, 2, 1),
-        strain.reshape(shaped).transpose(0, 2, 1),
-        change.reshape(shaped).transpose(0, 2, 1),
-    )
+    moving = w > 0
+    change[moving], _ = _laws(w[moving], g[moving], soft)
+
+    def shaped(values: Any) -> Any:  # and back
+        return values.reshape(count, cases, -1).transpose(0, 2, 1)
+
+    return shaped(y), shaped(_strain(y, weights)), shaped(change), shaped(g - begin)
 
 
-def _strain(y: Complex, soft: Sequence[LayerTerm], parts: Sequence[slice]) -> Array:
+def _weights(soft: Sequence[LayerTerm], ranks: Sequence[int]) -> Array:
+    """Weights (r, l) of |y|² in the γ² of each layer."""
+    weights = np.zeros((sum(ranks), len(soft)))
+    first = 0
+    for k, (layer, rank) in enumerate(zip(soft, ranks, strict=True)):
+        weights[first : first + rank, k] = layer.strain
+        first += rank
+    return weights
+
+
+def _strain(y: Complex, weights: Array) -> Array:
     """γ (e, l) of coordinates y (e, r)."""
-    squares = y.real**2 + y.imag**2
-    each = [squares[:, part] @ np.asarray(t.strain) for t, part in zip(soft, parts, strict=True)]
-    return np.asarray(np.sqrt(np.stack(each, axis=1)))
+    return np.asarray(np.sqrt((y.real**2 + y.imag**2) @ weights))
+
+
+def _log_strain(y: Complex, weights: Array) -> Array:
+    """ln γ (e, l) of coordinates y (e, r), of the least strain where there is less."""
+    return np.asarray(np.log(np.maximum(_strain(y, weights), NO_STRAIN)))
 
 
 def _laws(w: Array, g: Array, soft: Sequence[LayerTerm]) -> tuple[Complex, Complex]:
     """Change of modulus (e, l) at ln γ = g (e, l), and its slope over it."""
     change, slope = np.zeros((2, *g.shape), dtype=np.complex128)
     for k, layer in enumerate(soft):
-        law, at = layer.material.payne, g[:, k]
-        change[:, k] = law.change(w, np.exp(at))
-        ahead, back = (law.change(w, np.exp(at + d)) for d in (SLOPE, -SLOPE))
-        slope[:, k] = (ahead - back) / (2 * SLOPE)
+        gamma = np.exp(g[:, k])
+        change[:, k] = layer.material.payne.change(w, gamma)
+        slope[:, k] = layer.material.payne.slope(gamma)
     return change, slope
 
 
-def _evaluate(
-    R: Complex,
-    alone: Complex,
-    change: Complex,
-    slope: Complex,
-    g: Array,
-    soft: Sequence[LayerTerm],
-    parts: Sequence[slice],
-) -> tuple[Complex, Array, Array]:
-    """y (e, r) at moduli assumed, ln γ(y) − g (e, l), and the derivative of it (e, l, l)."""
-    ranks = [part.stop - part.start for part in parts]
-    inverse = np.linalg.inv(np.eye(R.shape[1]) + R * np.repeat(2 * change, ranks, axis=1)[:, None, :])
-    y = np.einsum("eij,ej->ei", inverse, alone)
-    gamma = _strain(y, soft, parts)
+def _newton(y: Complex, moved: Complex, g: Array, weights: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Newton's step (e, l) in ln γ, and where it is the last (e,).
+
+    What is to vanish is ln γ(y) − g, of motions y (e, r) and their derivatives (e, l, r).
+    """
+    gamma = _strain(y, weights)
     held = gamma < NO_STRAIN
-    residual = np.log(np.maximum(gamma, NO_STRAIN)) - g
-    J = np.zeros((len(g), len(soft), len(soft)))
-    for m, part in enumerate(parts):
-        pull = np.einsum("eij,ej->ei", R[:, :, part], 2 * slope[:, m, None] * y[:, part])
-        moved = -np.einsum("eij,ej->ei", inverse, pull)
-        for k, (layer, mine) in enumerate(zip(soft, parts, strict=True)):
-            power = (y[:, mine].conj() * moved[:, mine]).real @ np.asarray(layer.strain)
-            J[:, k, m] = np.where(held[:, k], 0.0, power / np.maximum(gamma[:, k], NO_STRAIN) ** 2)
-        J[:, m, m] -= 1.0
-    return y, residual, J
+    gamma = np.maximum(gamma, NO_STRAIN)
+    residual = np.log(gamma) - g
+    power = (y.conj()[:, None, :] * moved).real @ weights  # (e, m, k): of layer k by layer m
+    J = np.where(held[:, :, None], 0.0, power.transpose(0, 2, 1) / gamma[:, :, None] ** 2)
+    J -= np.eye(g.shape[1])
+    step = -np.linalg.solve(J, residual[..., None])[..., 0]
+    size = np.abs(step).max(axis=1)
+    return step * np.minimum(1.0, LEAP / np.maximum(size, 1e-300))[:, None], size < CLOSE
 
 
 def warn_of_strain(system: System, strain: Array) -> None:
-    """Warn of layers that vibrate beyond the sweep their law comes from; strain (…, l, c)."""
+    """Warn of softening layers that vibrate beyond the sweep their law comes from; strain (…, l, c)."""
     for number, k in enumerate(softening_layers(system)):
         layer = system.layers[k]
         known = layer.material.payne.strains

@@ -17,7 +17,7 @@ WINDOWS = ("hann", "none")
 
 
 def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarray.Dataset:
-    """One-sided amplitude spectrum (zero-to-peak) of a recorded channel, its mean removed.
+    """Spectrum of a recorded channel: one-sided amplitudes (zero-to-peak), its mean removed.
 
     A sine of amplitude A whose frequency is on a line of the spectrum shows as A, whatever the window. The
     resolution is 1/T of a record of length T.

@@ -29,7 +29,7 @@ from bearingdyn.units import takes
 
 @dataclass(frozen=True, eq=False)
 class StateSpace:
-    """ẋ = A x + B u, y = C x + D u, in SI units.
+    """A linear model in state space: ẋ = A x + B u, y = C x + D u, in SI units.
 
     Parameters
     ----------

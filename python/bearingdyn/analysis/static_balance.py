@@ -27,7 +27,7 @@ UNFELT = 1e-9
 
 
 def diagonal_blocks(blocks: Sequence[Array]) -> Array:
-    """Square matrices along the diagonal of one, in which a static balance is written."""
+    """Blocks of the matrix in which a static balance is written: square matrices along its diagonal."""
     n = sum(len(b) for b in blocks)
     out = np.zeros((n, n))
     at = 0

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.application import COMPONENTS
 from bearingdyn.bearing import BallBearing, Running
 from bearingdyn.checks import instance, numbers, one_of, real, require, whole
+from bearingdyn.notice import UnloadedBearing, warn
 from bearingdyn.types import Array
 from bearingdyn.writing import write_whole
 
@@ -53,6 +54,13 @@ def stiffness_table(
     ValueError
         For loads of another shape, or as `BallBearing.displacement`.
 
+    Warns
+    -----
+    UnloadedBearing
+        For a load of zero.
+    BearingWarning
+        As `BallBearing.displacement`.
+
     Examples
     --------
     >>> import bearingdyn as bd
@@ -71,6 +79,12 @@ def stiffness_table(
     omega = numbers("speeds", speeds, "give one or more speeds in rad/s")
     tau = numbers("damping_time", damping_time, "it must be zero or positive, in s", 0.0)[0]
     K, q = np.zeros((len(omega), len(f), 6, 6)), np.zeros((len(omega), len(f), 6))
+    if not f.any(axis=1).all():
+        warn(
+            f"loads[{int(np.argmin(f.any(axis=1)))}] is zero: a bearing that bears nothing has no stiffness, "
+            f"unless it is clamped",
+            UnloadedBearing,
+        )
     for i, speed in enumerate(omega):
         state: BallBearing | Running = bearing if speed == 0 else Running(bearing, float(speed))
         for j, load in enumerate(f):

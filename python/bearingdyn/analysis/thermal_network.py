@@ -26,7 +26,7 @@ class _Body:
 
 @dataclass(eq=False)
 class ThermalNetwork:
-    """Nodes with a temperature each, joined by conductances, in the steady state.
+    """A thermal network: nodes with a temperature each, joined by conductances, in the steady state.
 
     Parameters
     ----------
@@ -73,6 +73,7 @@ class ThermalNetwork:
             For a conductance that is not positive, or a node joined to itself.
         """
         G = positive(f"conductance of {a!r} to {b!r}", conductance, "it must be positive and finite, in W/K")
+        plausible("conductance", f"conductance of {a!r} to {b!r}", G)
         require(a != b, "b", b, "a node cannot be joined to itself")
         for name in (a, b):
             self._nodes.setdefault(name, len(self._nodes))

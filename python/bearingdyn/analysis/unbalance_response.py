@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, requested
 from bearingdyn.analysis.linearised import linear
+from bearingdyn.analysis.overload import warn_of_swings
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, warn_of_strain
 from bearingdyn.application import QUANTITIES, Application
 from bearingdyn.checks import name_list, numbers, one_of, one_speed
@@ -63,6 +64,8 @@ def unbalance_response(
 
     Warns
     -----
+    BearingWarning
+        Where a contact pressure exceeds 4.2 GPa (ISO 76) while the rings move so about their equilibrium.
     BeyondSweep
         Where a layer's strain leaves the sweep its law of softening comes from.
     """
@@ -81,7 +84,8 @@ def unbalance_response(
     if not loads:
         raise ValueError("there is no unbalance; add one with app.unbalance(place, moment, phase)")
     wanted = [Output.of(system, name) for name in outputs]
-    rows = requested(wanted, system.n)
+    rows = np.vstack([requested(wanted, system.n), system.B])
+    swings = np.zeros((given.size, len(system.B)), dtype=np.complex128)
     forces = any(o.bearings for o in wanted)
     inputs = [
         Input(name, force, part=load.part, load=own)
@@ -100,15 +104,18 @@ def unbalance_response(
             if soft:
                 drive = speed**2 * phase.reshape(1, -1, 1)  # all together make the strain
                 (found,) = softened(state, omega, force, rows, turning, [drive])
-                strain[k], x = found.strain[0], found.each
+                strain[k], x = found.strain[0], found.each()
                 moduli = moduli_of(system, omega, found.change)
             else:
                 x, moduli = state.solve(omega, force, rows, turning, None), None
             bearings = state.dynamic(omega if forces else omega[:0])
             unit = recovered(wanted, inputs, x, omega, turning, power, bearings, moduli)
             response[k] = speed**2 * (unit[0] @ phase)
+            swings[k] = speed**2 * (x[0, len(rows) - len(system.B) :] @ phase)
     if soft:
         warn_of_strain(system, strain)
+    if isinstance(source, Equilibrium):
+        warn_of_swings(source, swings, [f"in the response at {speed:.6g} rad/s" for speed in given])
 
     from bearingdyn.results import dataset, inputs_of
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -17,7 +18,7 @@ from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.application.plan import Plan
 from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, RowSet
-from bearingdyn.checks import require, truth
+from bearingdyn.checks import named, require, truth
 from bearingdyn.magnitude import plausible
 from bearingdyn.pictures import picture
 from bearingdyn.types import Array
@@ -148,9 +149,58 @@ class Application:
         require(ready, f"part {name!r}", part, remedy)
         twin = next((known for known, source in plan.sources.items() if source is part), None)
         # the twin's own, before a temperature was put on it
-        plan.reduced[name] = part.superelement() if twin is None else plan.reduced[twin]
-        plan.parts[name] = plan.reduced[name]
-        plan.sources[name] = part
+        plan.put(name, part, part.superelement() if twin is None else plan.reduced[twin])
+
+    def with_parts(self, parts: Mapping[str, Part]) -> Application:
+        """A copy of the machine in which these parts stand instead of those of the same name.
+
+        Joints, bearings and loads stay as they are; whether the new part's diameters fit its neighbours is
+        not asked again.
+
+        Parameters
+        ----------
+        parts
+            New parts by the names of old ones. None: the copy alone.
+
+        Returns
+        -------
+        Application
+            The other machine; this one stays as it is.
+
+        Raises
+        ------
+        ValueError
+            For a name that is no part's, and a part that lacks an interface or point of the old one.
+
+        Examples
+        --------
+        >>> import bearingdyn as bd
+        >>> app = bd.Application()
+        >>> app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
+        >>> app.ground("mass.centre", stiffness=[1e6] * 6)
+        >>> light = app.with_parts({"mass": bd.RigidBody(mass=1.0, inertia=(1e-3, 1e-3, 1e-3))})
+        >>> app.mass("mass"), light.mass("mass")
+        (2.0, 1.0)
+        """
+        remedy = "it must be parts by the names of those whose place they take"
+        other = Application()
+        other.plan = self.plan.copy()
+        fresh = Application()
+        for name, part in named("parts", parts, remedy).items():
+            self.plan.check_part(name)
+            fresh.add(name, part)
+            old, new = self.plan.parts[name], fresh.plan.parts[name]
+            for kind in ("interfaces", "outputs", "raceways"):
+                lost = [one for one in getattr(old, kind) if one not in getattr(new, kind)]
+                if lost:
+                    raise ValueError(
+                        f"parts[{name!r}] lacks {lost[0]!r}; it must have the places of the part that it "
+                        f"replaces: {', '.join(getattr(old, kind))}"
+                    )
+            other.plan.put(name, fresh.plan.sources[name], new)
+            if name in self.plan.temperatures:
+                other.temperature(name, self.plan.temperatures[name])
+        return other
 
     def connect(self, a: str, b: str, *, fits: bool = True) -> None:
         """Join two interfaces rigidly: they move as one.

@@ -109,7 +109,7 @@ def check_beside(
     others: Sequence[BearingJoint],
     faces: Callable[[Place], Sequence[RoundFace]],
 ) -> None:
-    """Check that a bearing finds room on its shaft beside the others that sit there.
+    """Check that a bearing fits beside its neighbours that sit on the same shaft.
 
     Raises
     ------

@@ -18,7 +18,7 @@ HELD = 1e-9
 
 
 def rigid_shapes(element: Superelement) -> Array | None:
-    """Rigid motions (n, 6) of a part, in its coordinates, from which the free motions are found.
+    """Rigid motions (n, 6) of a part in its coordinates, from which free motions are found.
 
     The columns are unit x, y, z, θx, θy, θz of that interface. The other coordinates, internal ones included,
     follow from the stiffness alone, because a rigid motion strains nothing: K_oo x_o = −K_oi x_i.

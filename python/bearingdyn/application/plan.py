@@ -53,6 +53,18 @@ class Plan:
         self.temperatures: dict[str, float] = {}
         self._rigid: dict[str, Array | None] = {}
 
+    def copy(self) -> Plan:
+        """A plan of the same parts, joints and loads, to which more can be written."""
+        other = Plan()
+        for name, value in vars(self).items():
+            setattr(other, name, value.copy())
+        return other
+
+    def put(self, name: str, source: Part, element: Superelement) -> None:
+        """Write a part, or another in the place of one."""
+        self.sources[name], self.reduced[name], self.parts[name] = source, element, element
+        self._rigid.pop(name, None)
+
     def names(self) -> list[str]:
         """All interfaces and points, "part.name"."""
         return [f"{p}.{n}" for p, e in self.parts.items() for n in (*e.interfaces, *e.outputs)]

@@ -32,7 +32,7 @@ from bearingdyn.bearing.lubricant import Lubricant, Walther
 from bearingdyn.bearing.lubrication import Lubrication, lubricate, lubricated
 from bearingdyn.bearing.mounting import Mounting, Seat
 from bearingdyn.bearing.oil_supply import OilSupply
-from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
+from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, samples_off, shoulder
 from bearingdyn.bearing.pairs import Pair, Triplet
 from bearingdyn.bearing.raceway_series import NET, RIGID, RacewaySeries
 from bearingdyn.bearing.random_surfaces import WavinessSpectrum, diameter_scatter
@@ -144,6 +144,7 @@ __all__ = [
     "resultant_damping",
     "resultant_deflection_coefficient",
     "runs_off",
+    "samples_off",
     "shoulder",
     "spall",
     "waviness_lines",

@@ -19,7 +19,7 @@ from typing import Any, Literal, NamedTuple
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.designation import Designation, clearance_range, read_designation
-from bearingdyn.bearing.rating.standard import Ratings, iso_ratings, static_factor
+from bearingdyn.bearing.rating.iso_ratings import Ratings, iso_ratings, static_factor
 from bearingdyn.checks import number, positive, require
 from bearingdyn.magnitude import plausible
 from bearingdyn.notice import PassedOver, warn
@@ -44,7 +44,7 @@ _ANGULAR_RACES = (0.52, 0.525)
 
 
 class Deviation(NamedTuple):
-    """By how much the ratings of a geometry are off those that a maker prints, relative."""
+    """How far a catalogue's geometry is off the ratings that a maker prints, relative."""
 
     C: float
     """Of C by ISO 281."""
@@ -302,7 +302,7 @@ def series_of(bearing: BallBearing) -> str | None:
 def bearing(
     designation: str | int, *, clearance: float | None = None, balls: int | None = None, **keywords: Any
 ) -> BallBearing:
-    """BallBearing with the internal geometry of a designation.
+    """BallBearing from the catalogue: internal geometry of a designation.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ STATIC_PRESSURE = MAGNITUDES["pressure"].usual[1]
 
 
 class Contacts(Protocol):
-    """What a bearing must tell for its contact pressures to be checked."""
+    """What a bearing must tell for its contact pressure to be checked."""
 
     @property
     def inner_contact(self) -> PointContact:
@@ -32,7 +32,7 @@ class Contacts(Protocol):
 
 
 def check_pressure(race: str, p: Array, who: str = "", rating: float | None = None) -> None:
-    """Check the largest contact pressures (Z,), Pa, of the balls on one race.
+    """Check the contact pressure of the balls on one race, largest (Z,), Pa.
 
     Warns
     -----

@@ -40,7 +40,7 @@ _THIN = {"68": "618", "69": "619"}  # JIS writes 6805 for 61805
 
 @dataclass(frozen=True)
 class Designation:
-    """What a designation says.
+    """What the designation of a bearing says: series, bore, clearance, angle.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Designation:
 
 
 def read_designation(designation: str | int) -> Designation:
-    """A designation as people write it, taken apart.
+    """Read the designation of a bearing as people write it, such as "6203-2RS/C3".
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def read_designation(designation: str | int) -> Designation:
 
 
 def clearance_range(bore: float, group: str = "CN") -> tuple[float, float]:
-    """Least and most radial internal clearance (of the diameter) of a deep groove bearing, m (ISO 5753-1).
+    """Clearance that a designation's class means: least and most radial internal clearance, m (ISO 5753-1).
 
     Before mounting and warming up; `Mounting` says what is left of it.
 

@@ -37,7 +37,7 @@ class NoBalance(ArithmeticError):
 
 
 def minimum(law: Law, load: Array, radius: float, start: Array | None = None) -> Array:
-    """Coefficients z (n,) that minimise the energy less load·z: its gradient balances `load` (n,).
+    """Minimum of the energy less load·z over coefficients z (n,): its gradient balances `load` (n,).
 
     Where the energy is flat (a ring that rests on one or two balls) the coordinate stays where it is.
 

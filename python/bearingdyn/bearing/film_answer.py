@@ -20,7 +20,7 @@ _Pair: TypeAlias = tuple[ehl.LubricatedContact, ehl.LubricatedContact]
 
 @dataclass(frozen=True, eq=False)
 class AnswerUnderLoads:
-    """The dynamic stiffness of balls under given loads.
+    """Answer of films: the dynamic stiffness of lubricated balls under given loads.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class AnswerUnderLoads:
 
 @dataclass(frozen=True)
 class FilmAnswer:
-    """The contacts of a ball and what they run on, from which the table of `ehl` has their answer.
+    """Answer of a ball's two films to motion, from the table of `ehl`: its contacts and their oil.
 
     Contacts that it does not hold answer as the nearest that it holds.
 
@@ -113,6 +113,6 @@ class FilmAnswer:
 
 
 def in_series(inner: ehl.LubricatedContact, outer: ehl.LubricatedContact) -> float:
-    """Damping of one ball by two lubricated contacts, N s/m, at low frequency: k²(c_i/k_i² + c_o/k_o²)."""
+    """Answer of two films in series: damping of one ball at low frequency, k²(c_i/k_i² + c_o/k_o²), N s/m."""
     k = 1 / (1 / inner.k0 + 1 / outer.k0)
     return k**2 * (inner.c0 / inner.k0**2 + outer.c0 / outer.k0**2)

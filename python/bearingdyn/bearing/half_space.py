@@ -19,7 +19,7 @@ _POINTS = 4000
 
 
 def footprint_profile(x: Array) -> Array:
-    """Share of a ball's load across the rolling direction: Hertz's pressure summed along it, ¾(1 − x²).
+    """Load on the half-space across the rolling direction: Hertz's pressure summed along it, ¾(1 − x²).
 
     Parameters
     ----------

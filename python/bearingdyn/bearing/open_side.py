@@ -12,6 +12,7 @@ import math
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bearingdyn.checks import one_of
 from bearingdyn.types import Array
@@ -19,6 +20,7 @@ from bearingdyn.types import Array
 if TYPE_CHECKING:
     from bearingdyn.bearing.kernel import BearingKernel
 
+Flags: TypeAlias = NDArray[np.bool_]
 OpenSide: TypeAlias = Literal["auto", "+z", "-z"] | None
 
 _BOTTOM = math.radians(5)
@@ -58,7 +60,7 @@ def open_sine(alpha0: float) -> float:
 
 
 def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str | None:
-    """Why a bearing does not hold together on its shoulder, in words; None where it does.
+    """Why balls run off on the open side, in words; None where the bearing holds together on its shoulder.
 
     Either a ball that carries is pressed onto the open side, or none leans on the shoulder.
 
@@ -75,14 +77,8 @@ def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str 
     """
     if kernel.shoulder == 0 or not loads.max() > 0.0:
         return None
-    psi = turn + 2 * math.pi * np.arange(kernel.Z) / kernel.Z
-    basis = _basis(kernel, psi)
-    axial = kernel.x0 + (z * (kernel.axial == 1)) @ basis
-    radial = kernel.y0 + (z * (kernel.axial == 0)) @ basis
-    alpha = np.arctan2(axial, radial)
-    sine, carries = kernel.shoulder * np.sin(alpha), loads > _CARRIES * loads.max()
-    astray = carries & (sine < -kernel.open_sine)
-    if not astray.any() and (carries & (sine > _LEANS * kernel.open_sine)).any():
+    alpha, carries, astray = (found[0] for found in _leaning(kernel, z[None], loads[None], np.array([turn])))
+    if not _off(kernel, alpha, carries, astray):
         return None
     side = "−z" if kernel.shoulder > 0 else "+z"
     at_fault = astray if astray.any() else carries
@@ -100,14 +96,45 @@ def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str 
     )
 
 
+def samples_off(kernel: BearingKernel, z: Array, loads: Array, turn: Array) -> Flags:
+    """Which samples (s,) of a motion do not hold a bearing together on its shoulder; see `runs_off`.
+
+    Parameters
+    ----------
+    kernel
+        The bearing.
+    z
+        Its relative raceway coefficients (s, n), m.
+    loads
+        Of the balls (s, Z), N.
+    turn
+        Azimuth of the first ball (s,), rad.
+    """
+    if kernel.shoulder == 0:
+        return np.zeros(len(z), dtype=np.bool_)
+    return np.asarray(_off(kernel, *_leaning(kernel, z, loads, turn)) & (loads.max(axis=1) > 0.0))
+
+
+def _leaning(kernel: BearingKernel, z: Array, loads: Array, turn: Array) -> tuple[Array, Flags, Flags]:
+    """Angles (s, Z) of the balls in their grooves, which carry, and which of those do so on the open side."""
+    psi = turn[:, None] + 2 * math.pi * np.arange(kernel.Z) / kernel.Z
+    argument = kernel.order[:, None, None] * psi
+    basis = np.where(kernel.sine[:, None, None] == 1, np.sin(argument), np.cos(argument))
+    axial = kernel.x0 + np.einsum("sn,nsb->sb", z * (kernel.axial == 1), basis)
+    radial = kernel.y0 + np.einsum("sn,nsb->sb", z * (kernel.axial == 0), basis)
+    alpha = np.arctan2(axial, radial)
+    carries = loads > _CARRIES * loads.max(axis=1, keepdims=True)
+    return alpha, carries, carries & (kernel.shoulder * np.sin(alpha) < -kernel.open_sine)
+
+
+def _off(kernel: BearingKernel, alpha: Array, carries: Flags, astray: Flags) -> Flags:
+    """Whether a ball carries on the open side, or none leans on the shoulder."""
+    leans = carries & (kernel.shoulder * np.sin(alpha) > _LEANS * kernel.open_sine)
+    return np.asarray(astray.any(axis=-1) | ~leans.any(axis=-1))
+
+
 OPEN_SIDE_REMEDY = (
     "load it towards its shoulder, hang it the other way round, bearing.mirrored(), or set it against a "
     "second one that carries this direction (a Pair, or a preload by offset=); one with shoulders on both "
     "sides has open_side=None"
 )
-
-
-def _basis(kernel: BearingKernel, psi: Array) -> Array:
-    """cos or sin of order·ψ, (n, Z)."""
-    argument = kernel.order[:, None] * psi
-    return np.where(kernel.sine[:, None] == 1, np.sin(argument), np.cos(argument))

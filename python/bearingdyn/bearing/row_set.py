@@ -54,7 +54,7 @@ class Row(NamedTuple):
 
 
 def at_distance(place: float) -> Array:
-    """Matrix (6, 6) from the motion of one point on the axis to that of another.
+    """Matrix (6, 6) from the motion of one row of a set to that of another point on the axis.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def at_distance(place: float) -> Array:
 
 @dataclass(frozen=True)
 class RowSet(ABC):
-    """What `Pair` and `Triplet` have in common: their fields, and the law of their rows together.
+    """A set of rows: what `Pair` and `Triplet` have in common, their fields and the law of all rows together.
 
     Parameters
     ----------

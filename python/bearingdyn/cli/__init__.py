@@ -1,4 +1,4 @@
-"""The command line: `bearingdyn fit`, `show`, `bearing`, `run`, `report`, `check`, `demo` and `version`.
+"""The command line: `fit`, `show`, `bearing`, `run`, `report`, `explore`, `check`, `demo`, `version`.
 
 Results go to standard output; progress, and warnings and errors of one line each, to standard error. The exit
 code is 0, 1 where a check does not hold, 2 for a command or input that cannot be used, 130 after Ctrl-C.
@@ -16,6 +16,7 @@ from typing import Literal
 
 from bearingdyn.cli.bearing import run_bearing
 from bearingdyn.cli.check_demo_version import run_check, run_demo, run_version
+from bearingdyn.cli.explore import run_explorer
 from bearingdyn.cli.fit import BULK_MODULUS, DENSITY, LAW, T_REF, run_fit
 from bearingdyn.cli.make_report import make_report
 from bearingdyn.cli.outcome import GOOD, INTERRUPTED, UNUSABLE, Command
@@ -34,18 +35,22 @@ examples:
   bearingdyn check motor.toml
   bearingdyn run motor.toml --out motor.nc --set thickness=0.003
   bearingdyn report motor.toml --results motor.nc --out motor.html
+  bearingdyn explore motor.toml
   bearingdyn demo --out demo
 
 Every command takes --json and --help. Exit codes: 0 good, 1 a check does not hold, 2 a command or input
 that cannot be used. SI units throughout, temperatures in C.
 """
 
+NEGATIVE = re.compile(r"-([0-9]+\.?[0-9]*|\.[0-9]+)e[+-]?[0-9]+|-inf(inity)?|-nan", re.IGNORECASE)
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command, by default that of sys.argv, and return its exit code."""
     parser = _parser()
+    given = sys.argv[1:] if argv is None else argv
     try:
-        arguments = parser.parse_args(argv)
+        arguments = parser.parse_args([_no_option(word) for word in given])
     except SystemExit as stop:  # argparse has said why
         return int(stop.code or 0)
     # a name with θ must not stop a terminal that cannot show it
@@ -74,6 +79,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         print("bearingdyn: interrupted", file=sys.stderr)
         return INTERRUPTED
     return code
+
+
+def _no_option(word: str) -> str:
+    """The word, a negative number set off by a blank: argparse takes -5e2 and -inf for options."""
+    return f" {word}" if NEGATIVE.fullmatch(word) else word
 
 
 def _reason(error: Exception) -> str:
@@ -249,7 +259,20 @@ def _parser() -> argparse.ArgumentParser:
         "--sound", nargs="+", default=[], metavar="LABEL=FILE", help=".wav files to listen to on the page"
     )
     page.add_argument("--title", default="", help="of the page")
-    for command in (check, run, page):
+    explore = add(
+        "explore",
+        run_explorer,
+        "sliders for a machine, in the browser",
+        "Serve a page with sliders for layers, rubber, loads and clearance of a model file; response and sag "
+        "follow them. Ends with Ctrl-C.",
+    )
+    explore.add_argument("model", help="model file (TOML)")
+    explore.add_argument("--port", type=int, default=0, help="of the page (default: one that is free)")
+    explore.add_argument("--host", default="127.0.0.1", help="whom to listen for (default: this machine)")
+    explore.add_argument(
+        "--no-browser", action="store_true", help="do not open the page, only say where it is"
+    )
+    for command in (check, run, page, explore):
         command.add_argument(
             "--set", nargs="+", default=[], metavar="NAME=VALUE", help="values of the model's parameters"
         )

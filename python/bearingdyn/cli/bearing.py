@@ -15,7 +15,7 @@ from bearingdyn.writing import write_whole
 
 
 def run_bearing(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The sheet of a bearing under a load, printed, as JSON, or as a page of HTML."""
+    """The command `bearingdyn bearing`: the sheet of a bearing under a load, as text, JSON or HTML."""
     designation = str(arguments.designation)
     entry, read = catalogue.entry(designation), read_designation(designation)
     name = read.number + read.letter
@@ -47,7 +47,7 @@ def run_bearing(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def oil_of(text: str) -> Lubricant:
-    """A mineral oil by its ISO viscosity grade, such as VG32, "ISO VG 46" or 68.
+    """A mineral oil for the command `bearingdyn bearing` by its ISO grade: VG32, "ISO VG 46" or 68.
 
     Raises
     ------

@@ -48,7 +48,7 @@ _SHIFTING = {"T_ref": "--T-ref", "law": "--law", "no_clean": "--no-clean"}
 
 
 def run_fit(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The command that fits a model, written to --out as well."""
+    """The command `bearingdyn fit`: fits a material model to a measurement, written to --out as well."""
     out, figure = _target("--out", arguments.out), _target("--plot", arguments.plot)
     if figure is not None:
         ending = figure.suffix.lower()

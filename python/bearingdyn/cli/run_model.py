@@ -54,7 +54,7 @@ def check_model(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def parameters_of(given: list[str]) -> dict[str, Any]:
-    """name=value of the command line: numbers where they are."""
+    """Parameters name=value for the command `bearingdyn run`: numbers where they are."""
     found: dict[str, Any] = {}
     for text in given:
         name, sign, value = text.partition("=")

@@ -21,7 +21,7 @@ LONGEST = 120
 
 
 def run_show(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The command that shows every group of a result file."""
+    """The command `bearingdyn show`: every group of a result file."""
     path = existing(arguments.result, "result")
     held = {name: _describe(results.open_result(path, name)) for name in results.groups(path) or [""]}
     if arguments.json:

@@ -15,7 +15,7 @@ from bearingdyn.types import Array
 
 
 class ComplexModulus(Protocol):
-    """A viscoelastic material: its shear modulus depends on the frequency."""
+    """A viscoelastic material as a reduction needs it: its shear modulus depends on the frequency."""
 
     def complex_modulus(self, omega: Any) -> Any:
         """G*(ω) in Pa for ω in rad/s."""

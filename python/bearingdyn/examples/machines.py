@@ -18,7 +18,7 @@ NAMES = ("motor", "fan", "spindle", "pump")
 
 @cache
 def rubber() -> Maxwell:
-    """The rubber of the examples' layers: a Maxwell model of the DMA table that the package ships, at 20 °C.
+    """Rubber of the example machines' layers: a Maxwell model of the shipped DMA table at 20 °C.
 
     The table was made from a stated model and is no measurement. The fit, kept as a file beside this module,
     is `fit_maxwell(curve, n=5, band=(10.0, 5e3), pin=60.0, K=2e9, density=1150.0)`: pinned to the modulus
@@ -29,7 +29,7 @@ def rubber() -> Maxwell:
 
 
 def motor(layers: bool = True, material: Maxwell | None = None) -> Application:
-    """A small electric motor: a shaft in two 6203 bearings, each in a pedestal, with a rubber layer or none.
+    """Example machine, an electric motor: a shaft in two 6203 bearings in pedestals, with a layer or none.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def motor(layers: bool = True, material: Maxwell | None = None) -> Application:
 
 
 def fan() -> Application:
-    """A fan: an overhung wheel on a shaft in two 6205 bearings, whose pedestals stand on rubber feet.
+    """Example machine, a fan: an overhung wheel on two 6205 bearings, whose pedestals stand on rubber feet.
 
     Returns
     -------
@@ -121,7 +121,7 @@ def fan() -> Application:
 
 
 def spindle() -> Application:
-    """A grinding spindle in two angular contact bearings 7206C, back to back and preloaded by a spacer.
+    """Example machine, a grinding spindle: two bearings 7206C, back to back and preloaded by a spacer.
 
     Returns
     -------
@@ -150,7 +150,7 @@ def spindle() -> Application:
 
 
 def pump() -> Application:
-    """A pump: an impeller beyond two 6306 bearings in pedestals, the rear bearing in a layer of rubber.
+    """Example machine, a pump: an impeller beyond two 6306 bearings, the rear bearing in a layer of rubber.
 
     Returns
     -------

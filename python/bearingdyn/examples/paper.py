@@ -108,7 +108,7 @@ def _pedestal(bore_diameter: float) -> Superelement:
 
 
 def fault_bench(layer: Layer | None = None, defects: Sequence[Pit] = ()) -> Application:
-    """A bench for bearing faults: a shaft in two wavy 6205 bearings in pedestals, the left one damaged.
+    """The paper's section 5 as a bench for faults: a shaft in two wavy 6205 bearings, the left one damaged.
 
     The bearing is the drive end bearing of the public Case Western Reserve University measurements.
 

@@ -200,7 +200,7 @@ def _make_deviatoric(B: Array) -> None:
 def deviatoric_strains(
     mesh: RevolutionMesh, order: int, components: tuple[int, ...], u: Array
 ) -> tuple[Array, Array]:
-    """Deviatoric strain of shapes u (n, k) at the 3×3 points of every element, and the points' volumes.
+    """Deviatoric strain of a revolution's shapes u (n, k) at 3×3 points of each element, and their volumes.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def deviatoric_strains(
 
 @dataclass(frozen=True, eq=False)
 class Pattern:
-    """Where element matrices (m, 9c, 9c) add up in a csc matrix.
+    """Pattern of a harmonic's matrix: where element matrices (m, 9c, 9c) add up in csc.
 
     Parameters
     ----------
@@ -250,7 +250,7 @@ class Pattern:
 
 
 def pattern(mesh: RevolutionMesh, c: int) -> Pattern:
-    """The pattern of a mesh's elements with c components at each node."""
+    """The pattern of a harmonic's matrix for a mesh with c components at each node."""
     nodes = mesh.r.size
     key = (
         mesh.elements[:, None, :] * nodes + mesh.elements[:, :, None]

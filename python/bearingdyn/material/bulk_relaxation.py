@@ -69,6 +69,7 @@ class BulkRelaxation:
         )
         for i, (g, tau) in enumerate(zip(self.share, self.tau, strict=True)):
             nonnegative(f"BulkRelaxation.share[{i}]", g, "it must be zero or positive, a share of K at rest")
+            plausible("bulk branch", f"BulkRelaxation.share[{i}]", g)
             positive(f"BulkRelaxation.tau[{i}]", tau, "it must be positive and finite, s")
             plausible("relaxation time", f"BulkRelaxation.tau[{i}]", tau)
 

@@ -77,7 +77,7 @@ def _factor(owner: str, law: Law | None, temperature: float | None, T: float) ->
 
 @dataclass(frozen=True, eq=False)
 class TabulatedModulus(Softening):
-    """Complex modulus in shear as a table, ln G′ and ln tan δ interpolated over ln f, monotonically.
+    """Complex modulus as a table in shear: ln G′ and ln tan δ interpolated over ln f, monotonically.
 
     Parameters
     ----------
@@ -251,6 +251,7 @@ class PowerLaw(Softening):
     def __post_init__(self) -> None:
         values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
         _check("PowerLaw", values)
+        plausible("shear modulus", "PowerLaw.modulus", self.modulus)
         exponent = number("PowerLaw.exponent", self.exponent)
         require(0 < exponent < 1, "PowerLaw.exponent", self.exponent, "it must lie between 0 and 1")
 
@@ -339,6 +340,9 @@ class FractionalZener(Softening):
         remedy = "it must lie above 0 and be at most 1"
         alpha = number("FractionalZener.alpha", self.alpha)
         require(0 < alpha <= 1, "FractionalZener.alpha", self.alpha, remedy)
+        for name, value in (("G0", self.G0), ("G_inf", self.G_inf)):
+            plausible("shear modulus", f"FractionalZener.{name}", value)
+        plausible("relaxation time", "FractionalZener.tau", self.tau)
 
     def complex_modulus(self, omega: ArrayLike) -> Complex:
         """G*(ω), Pa, at ω rad/s, any shape; the conjugate at −ω, G0 at rest."""

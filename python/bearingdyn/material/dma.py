@@ -263,7 +263,7 @@ class DMAData:
 
 
 def check_range(dma: DMAData) -> None:
-    """Warn of a DMA's moduli that gels, elastomers and polymers do not have: the unit is likely wrong."""
+    """Warn of DMA data with moduli that gels, elastomers and polymers do not have: the unit is wrong."""
     middle = float(np.median(np.abs(dma.storage)))
     if middle > _HARD or 0 < middle < _SOFT:
         warn(

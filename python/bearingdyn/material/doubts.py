@@ -30,7 +30,7 @@ _SMALL = 1e-5  # of a logarithm, for a slope
 
 @dataclass(frozen=True)
 class Doubt:
-    """One thing that is not known, and how far it may be off.
+    """One of the doubts about a rubber: a thing that is not known, and how far it may be off.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def doubts(
     relaxed: ArrayLike | None = None,
     after: float = 3600.0,
 ) -> Doubts:
-    """Name what is not known of a rubber: what its data tell of it, and what the user adds.
+    """Name the doubts about a rubber, what is not known of it: what its data tell, and what the user adds.
 
     Parameters
     ----------

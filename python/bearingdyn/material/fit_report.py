@@ -18,7 +18,7 @@ def _none() -> Array:
 
 @dataclass(frozen=True)
 class FitReport:
-    """How well a Maxwell model renders the master curve it was fitted to.
+    """Report of a Maxwell fit: how well the model renders the master curve it was fitted to.
 
     Errors are relative deviations ln(model/measured) of the points inside the band.
 

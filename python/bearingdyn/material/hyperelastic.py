@@ -22,7 +22,7 @@ Derivatives = tuple[Array, Array, Array, Array]
 
 @runtime_checkable
 class Hyperelastic(Protocol):
-    """A strain energy of Ī1 and Ī2 for a shear modulus of one."""
+    """A hyperelastic law: strain energy of Ī1 and Ī2 for a shear modulus of one."""
 
     def derivatives(self, I1: ArrayLike, I2: ArrayLike) -> Derivatives:
         """W, ∂W/∂Ī1, ∂W/∂Ī2 and ∂²W/∂Ī1², of the shape of I1 and I2."""
@@ -34,7 +34,7 @@ def _checked(law: str, leading: float, names: str) -> None:
 
 @dataclass(frozen=True)
 class NeoHooke:
-    """Neo-Hookean rubber, W = ½G(Ī1 − 3): right to some 30 % of strain for soft, little filled rubber."""
+    """Hyperelastic, neo-Hookean rubber, W = ½G(Ī1 − 3): right to some 30 % of strain if little filled."""
 
     def derivatives(self, I1: ArrayLike, I2: ArrayLike) -> Derivatives:
         """W, ∂W/∂Ī1, ∂W/∂Ī2 and ∂²W/∂Ī1² for a shear modulus of one."""
@@ -44,7 +44,7 @@ class NeoHooke:
 
 @dataclass(frozen=True)
 class MooneyRivlin:
-    """Mooney–Rivlin rubber, W = C10(Ī1 − 3) + C01(Ī2 − 3), scaled to the material's shear modulus.
+    """Hyperelastic Mooney–Rivlin rubber, W = C10(Ī1 − 3) + C01(Ī2 − 3), scaled to the shear modulus.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class MooneyRivlin:
 
 @dataclass(frozen=True)
 class Yeoh:
-    """Yeoh rubber, W = C10(Ī1 − 3) + C20(Ī1 − 3)² + C30(Ī1 − 3)³, scaled to the material's shear modulus.
+    """Hyperelastic Yeoh rubber, W = C10(Ī1 − 3) + C20(Ī1 − 3)² + C30(Ī1 − 3)³, scaled to the shear modulus.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from bearingdyn.types import Array
 
 
 class HasParameters(Protocol):
-    """Spring, strengths, times and dashpot, as `Maxwell` has them."""
+    """What has parameters whose logarithms are taken: spring, strengths, times and dashpot of `Maxwell`."""
 
     @property
     def G0(self) -> float: ...
@@ -24,14 +24,14 @@ class HasParameters(Protocol):
 
 
 def place_of(name: str) -> tuple[str, int]:
-    """("G", 2) of "ln G2", ("tau", 1) of "ln tau1", ("G", 0) of "ln G0", ("eta", 0) of "ln eta0"."""
+    """Place of a logarithmic parameter by its name: ("G", 2) of "ln G2", ("tau", 1) of "ln tau1"."""
     plain = name.removeprefix("ln ")
     stem = plain.rstrip("0123456789")
     return stem, int(plain[len(stem) :])
 
 
 def logarithms(model: HasParameters, names: Sequence[str]) -> Array:
-    """Logarithms (len(names),) of these parameters of a model."""
+    """Logarithms (len(names),) of these parameters of a Maxwell model."""
     found = []
     for kind, k in map(place_of, names):
         if kind == "G":
@@ -42,7 +42,7 @@ def logarithms(model: HasParameters, names: Sequence[str]) -> Array:
 
 
 def moved(model: HasParameters, names: Sequence[str], step: Array) -> tuple[float, Array, Array, float]:
-    """Spring, strengths, times and dashpot of a model, the logarithms of these parameters moved by `step`."""
+    """A Maxwell model's parameters, the logarithms of some moved by `step`."""
     G0, G, tau, eta0 = model.G0, model.G.copy(), model.tau.copy(), model.eta0
     for (kind, k), factor in zip(map(place_of, names), np.exp(step), strict=True):
         if kind == "tau":

@@ -18,7 +18,7 @@ from bearingdyn.types import Array
 
 
 def branch_columns(omega: Array, tau: Array) -> tuple[Array, Array]:
-    """Columns of a spectrum: storage and loss modulus at ω (p,) of branches of unit strength, τ (n,): (p, n).
+    """Columns of a relaxation spectrum at ω (p,) of unit branches, τ (n,): storage and loss modulus (p, n).
     (18, 19)."""
     x = omega[:, None] * tau
     loss = x / (1 + x * x)
@@ -26,7 +26,7 @@ def branch_columns(omega: Array, tau: Array) -> tuple[Array, Array]:
 
 
 def unit_columns(omega: Array, tau: Array) -> tuple[Array, Array]:
-    """Storage and loss modulus at ω (p,) of a unit spring, unit branches, τ (n,), and a unit dashpot.
+    """Columns of a relaxation spectrum at ω (p,): a unit spring, unit branches, τ (n,), a unit dashpot.
 
     Two arrays (p, n + 2).
     """

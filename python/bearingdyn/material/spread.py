@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.checks import name_list, nonnegative, one_of, real, require, whole
+from bearingdyn.magnitude import plausible
 from bearingdyn.material.log_parameters import moved, place_of
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -81,6 +82,8 @@ class Spread:
         for name in ("level", "K", "temperature"):
             remedy = "it must be a standard deviation, zero or positive"
             nonnegative(f"Spread.{name}", getattr(self, name), remedy)
+        for name in ("level", "K"):
+            plausible("spread", f"Spread.{name}", getattr(self, name))
 
     @classmethod
     def of(cls, fit: FitReport) -> Spread | None:
@@ -269,7 +272,7 @@ class Drawable:
 
 
 def normals(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
-    """Standard normal numbers (n, size), by a scrambled Sobol sequence or at random.
+    """Standard normal numbers (n, size) for draws from a spread, by a Sobol sequence or at random.
 
     Parameters
     ----------
@@ -286,7 +289,7 @@ def normals(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
 
 
 def uniforms(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
-    """Numbers (n, size) above 0 and below 1, by a scrambled Sobol sequence or at random.
+    """Even numbers (n, size) in (0, 1) for draws from a spread, by a Sobol sequence or at random.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from bearingdyn.material.maxwell import Maxwell
 
 
 class Volume(Maxwell):
-    """K*(ω) in Maxwell's form: G0 is K at rest, the branches are those of its relaxation.
+    """The volumetric term of a part: K*(ω) in Maxwell's form, G0 is K at rest, branches its relaxation.
 
     The volumetric stiffness K ∫(div u)² stands as 2·K*·H with H = ½ ∫(div u)², so that every domain treats it
     as it treats shear.
@@ -50,7 +50,7 @@ def volume_of(material: Any) -> Volume | None:
 
 
 def constant_bulk(material: Any) -> float:
-    """Bulk modulus, Pa, that stands in K of a superelement: 0 where it has a term of its own.
+    """Bulk modulus, Pa, in K of a superelement: 0 where its volume has a term of its own.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ LEFT_OUT = {("Maxwell", "fit"), ("Payne", "fit")}
 
 @lru_cache(maxsize=1)
 def kinds() -> dict[str, type]:
-    """Every noun that may stand in a file, by its name: the dataclasses that the rooms make public."""
+    """All kinds of things that may stand in a model file, by name: the dataclasses made public."""
     found = {}
     for room in ROOMS:
         for name in room.__all__:
@@ -69,7 +69,7 @@ def _classes(hint: Any) -> set[type]:
 
 @dataclasses.dataclass
 class Shelf:
-    """What the tables of a model refer to: its parameters and materials, and where its keys stand."""
+    """What tables of all kinds in a model refer to: its parameters and materials, where its keys stand."""
 
     origin: Origin
     parameters: Mapping[str, Any]
@@ -144,7 +144,7 @@ class Shelf:
 
 
 def dotted_last(key: Key) -> str:
-    """The last word of a key, for a message."""
+    """The last word of a model file's key that names a kind, for a message."""
     return next((str(k) for k in reversed(key) if isinstance(k, str)), "it")
 
 
@@ -153,7 +153,7 @@ def _tupled(value: Any) -> Any:
 
 
 def written(value: Any, name_of: Callable[[Any], str], field: str = "value") -> Any:
-    """An object as TOML's own values; a material becomes its name.
+    """An object of one of the kinds as TOML's own values; a material becomes its name.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def written(value: Any, name_of: Callable[[Any], str], field: str = "value") -> 
 def table_of(
     value: Any, name_of: Callable[[Any], str], field: str, expected: str | None = None
 ) -> dict[str, Any]:
-    """An object as a table: its type, and every field that is not at its default."""
+    """An object as a table of its kind in a model file: its type, and fields not at their default."""
     name = type(value).__name__
     if kinds().get(name) is not type(value):
         raise ValueError(

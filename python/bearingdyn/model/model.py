@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def analyses() -> dict[str, Callable[..., Any]]:
-    """The analyses that a file may ask for, by name: all that start from an equilibrium."""
+    """The analyses that a model may ask for, by name: all that start from an equilibrium."""
     found = {}
     for name in analysis.__all__:
         made = getattr(analysis, name)

@@ -26,7 +26,7 @@ _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s+(\S.*
 
 
 def evaluate(text: str, names: Mapping[str, Any]) -> Any:
-    """The value of an expression of numbers, parameters, units and + - * / **.
+    """Value of a model file's notation: an expression of numbers, parameters, units and + - * / **.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
 
 
 def quantity(text: str, unit: str) -> float | None:
-    """The value in SI of a text such as "30 mm", where one in this unit is wanted; None if it is none.
+    """Value in SI of a model file's notation such as "30 mm", where this unit is wanted; None if it is none.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def quantity(text: str, unit: str) -> float | None:
 
 
 def grid(value: Mapping[str, Any]) -> Array:
-    """Numbers between two ends: {from = 10, to = 3000, count = 600, spacing = "log"}.
+    """Grid in a model file's notation: {from = 10, to = 3000, count = 600, spacing = "log"}.
 
     Raises
     ------

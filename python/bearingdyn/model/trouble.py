@@ -14,7 +14,7 @@ from bearingdyn.model.key_lines import Key
 
 @dataclass
 class Origin:
-    """Where the keys of a model stand: the file and line of each."""
+    """For telling trouble, where the keys of a model stand: the file and line of each."""
 
     file: str
     known: dict[Key, tuple[str, int]] = field(default_factory=dict)
@@ -29,7 +29,7 @@ class Origin:
 
 
 def dotted(key: Key) -> str:
-    """A key as it is read: parts.layer.r_inner, loads[2].vector."""
+    """A model file's key as trouble names it: parts.layer.r_inner, loads[2].vector."""
     text = ""
     for part in key:
         text += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if text else part
@@ -38,7 +38,7 @@ def dotted(key: Key) -> str:
 
 @contextmanager
 def at(origin: Origin, key: Key, fields: Mapping[str, Any] = MappingProxyType({})) -> Iterator[None]:
-    """What goes wrong within is told with its file, line and key.
+    """Trouble within is told with the model's file, line and key.
 
     Parameters
     ----------
@@ -64,4 +64,4 @@ def at(origin: Origin, key: Key, fields: Mapping[str, Any] = MappingProxyType({}
 
 
 class Located(ValueError):
-    """What is wrong, told with file, line and key."""
+    """Trouble with a model, told with file, line and key."""

@@ -83,7 +83,7 @@ def write_model(
 
 
 def model_text(model: Model) -> str:
-    """The text of a model's file."""
+    """The text that is written to a model's file."""
     plan = model.application.plan
     materials = _Materials(model.materials)
     blocks: list[str] = []

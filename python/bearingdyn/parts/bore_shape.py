@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, number, real, require, whole
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 
@@ -40,7 +41,9 @@ class BoreShape:
             whole("waves", n, 2, remedy=remedy)
             for value in pair:
                 number(f"waves[{n}]", value, "it must be (cosine, sine) in m")
+                plausible("bore wave", f"waves[{n}]", value)
         nonnegative("interference", self.interference, "it must be a length in m on the radius, zero or more")
+        plausible("interference", "interference", self.interference)
 
     @classmethod
     def from_points(cls, points: ArrayLike, highest: int = 8, interference: float = 0.0) -> BoreShape:

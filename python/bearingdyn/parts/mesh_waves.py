@@ -22,7 +22,7 @@ FINEST = 8.0  # refinement of revolution_mesh
 def check_waves(
     mesh: RevolutionMesh, regions: Sequence[Region | Patch], f_max: float, refinement: float
 ) -> None:
-    """Raise ValueError where shear waves of a region at f_max, Hz, are shorter than PER_WAVE elements.
+    """Check a mesh against its waves: ValueError where shear waves at f_max are under PER_WAVE elements.
 
     Parameters
     ----------

@@ -56,13 +56,13 @@ def check_law(law: object) -> Hyperelastic:
 
 
 def check_branches(branches: object) -> None:
-    """Raise ValueError unless branches names what the branches see of the static state."""
+    """Check which share of a prestress the Maxwell branches see; ValueError for another word."""
     one_of("branches", branches, (CURRENT, SEPARABLE))
 
 
 @dataclass(frozen=True, eq=False)
 class Prestress:
-    """The static state of a squeezed body of revolution.
+    """The prestress of a squeezed body of revolution: its static state.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def _outward(mesh: RevolutionMesh, sides: Index, along: Array) -> Array:
 
 
 def free_sides(mesh: RevolutionMesh, faces: Mapping[str, MeshFace]) -> Index:
-    """Sides of the surface that lie on no face, nor on the axis."""
+    """Free sides of a prestressed body: those of the surface that lie on no face, nor on the axis."""
     sides = mesh.outline_sides
     taken = np.concatenate([face.sides[:, 1] for face in faces.values()])
     on_axis = (mesh.r[sides] <= SAME * mesh.size).all(axis=1)
@@ -249,7 +249,7 @@ def squeeze(
     bulk: Sequence[float],
     branches: str = CURRENT,
 ) -> Prestress:
-    """The static state after rigid faces have moved.
+    """Squeeze a body of revolution: its prestress after rigid faces have moved.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ RICH = 0.2  # of what is wanted, the error of the rich basis there
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PortShapes:
-    """Shapes of one order.
+    """Shapes of a ring, of one order, as its raceway feels them.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class PortShapes:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Order:
-    """One order of a body of revolution: its matrices, what is held, and its ports.
+    """One order of a body with a raceway: its matrices, what is held, and its ports.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def felt(D: Complex, L: Array, faces: int) -> Complex:
 
 
 def misfit(got: Any, wanted: Any, scale: Array) -> float:
-    """Relative error of what is felt, each entry by the geometric mean of its two ports' own sizes."""
+    """Error of a raceway's shapes in what is felt, each entry over the mean size of its two ports."""
     off, size = (float(np.linalg.norm(a / scale, 2)) for a in (got - wanted, wanted))
     return off / max(size, 1.0)
 
@@ -132,7 +132,7 @@ def port_shapes(
     f_max: float,
     slow: float,
 ) -> PortShapes:
-    """Shapes of one order.
+    """Find the shapes of one order that its raceway and faces feel up to f_max.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def port_shapes(
 
 
 def lossy(shear: Sequence[complex]) -> Complex:
-    """The moduli, with a loss where nothing has one."""
+    """Moduli for a raceway's shapes, with a loss where nothing has one."""
     G = np.asarray(shear, dtype=np.complex128)
     return G if np.abs(G.imag).max() > 0 else G * (1 + 1j * LOSS)
 

@@ -34,7 +34,7 @@ def _check_material(material: object) -> None:
 
 
 def is_rubber(material: Any) -> bool:
-    """Whether a material is nearly incompressible: viscoelastic, or elastic with ν of LOCKING or more."""
+    """Whether a region's material is nearly incompressible: viscoelastic, or elastic with ν of LOCKING up."""
     return not isinstance(material, Elastic) or material.nu >= LOCKING
 
 

@@ -16,7 +16,7 @@ from bearingdyn.parts.revolved_strain import Placed
 
 
 def section_profile(mesh: RevolutionMesh, regions: Sequence[Region | Patch], origin: float) -> list[Profile]:
-    """The section of each region above the axis and below, z from `origin`."""
+    """Drawing of a revolved body: the section of each region above the axis and below, z from `origin`."""
     shown = []
     for k, region in enumerate(regions):
         own = replace(mesh, elements=mesh.elements[mesh.region == k], region=mesh.region[mesh.region == k])
@@ -28,7 +28,7 @@ def section_profile(mesh: RevolutionMesh, regions: Sequence[Region | Patch], ori
 
 
 def surface_outline(mesh: RevolutionMesh, placed: Placed, n: int) -> Outline:
-    """The surface, revolved, and its motion by n coordinates."""
+    """Drawing of a revolved body: its surface, and the motion of it by n coordinates."""
     sides = mesh.outline_sides
     halves = np.vstack([sides[:, :2], sides[:, 1:]])
     points, faces, nodes = revolved(mesh.r, mesh.z, halves)

@@ -79,7 +79,7 @@ Face: TypeAlias = Cylinder | EndFace | Line | Where | MeshNodes
 
 @dataclass(frozen=True)
 class Footprint:
-    """Where the balls touch a raceway: the contact ellipse across the rolling direction.
+    """Footprint of the balls on a grooved face of a revolved body: the ellipse across the rolling direction.
 
     Parameters
     ----------

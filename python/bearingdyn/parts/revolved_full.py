@@ -97,7 +97,7 @@ def full_basis(
     families: Sequence[tuple[Harmonic, Array, int, Copies]],
     level: Sequence[float],
 ) -> Basis:
-    """The shapes of a body of revolution in the coordinates of its `full_model`.
+    """Basis of a body of revolution in the coordinates of its `full_model`.
 
     Parameters
     ----------

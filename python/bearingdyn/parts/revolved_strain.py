@@ -18,7 +18,7 @@ _AZIMUTHS = 16  # of a quarter turn: ln γ averages to 1e-4 over them
 
 
 def concentrations(mesh: RevolutionMesh, elements: Index, placed: Placed, n: int) -> tuple[float, Array]:
-    """Volume of elements, m³, and χ of each of n coordinates: logarithmic over rms strain of its shape."""
+    """Strain of a revolved body's shapes: volume, m³, and χ of each, logarithmic over rms strain."""
     scale, volume = np.ones(n), np.zeros(0)
     for h, Psi, places in placed:
         e, volume = deviatoric_strains(mesh, h.order, h.components, h.complete(Psi.copy()))
@@ -44,7 +44,7 @@ def concentrations(mesh: RevolutionMesh, elements: Index, placed: Placed, n: int
 def strain_of_motion(
     mesh: RevolutionMesh, elements: Index, placed: Placed, motion: Array | Complex
 ) -> tuple[Array, Array]:
-    """γ = √(2 e:e) (azimuths, points) of some elements under a motion, and the points' volumes, m³."""
+    """Strain γ = √(2 e:e) (azimuths, points) of a revolved body under a motion, and points' volumes, m³."""
     phi = np.arange(4 * _AZIMUTHS) * 2 * np.pi / (4 * _AZIMUTHS)
     total: Any = 0.0
     volume = np.zeros(0)

@@ -93,7 +93,7 @@ def ring_compliance(
     depth: float,
     material: Elastic,
 ) -> RingCompliance:
-    """Give and folded orders of a ring.
+    """Compliance of a ring at its balls: its give, and the orders folded into it.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ def upon_supports(
     side: str = "outside",
     seat: str = "outer",
 ) -> Superelement:
-    """A free ring between the supports of one side and the rigid interface on which they stand."""
+    """A ring's superelement upon supports: free, between those of one side and their rigid interface."""
     outside = element.raceways[side]
     K, C = held_by(supports, outside.rows, outside.series, radius, width)
     wide = wider(element, 6, "raceway")
@@ -45,7 +45,7 @@ def with_folded(
     f_max: float,
     damping: float,
 ) -> Superelement:
-    """What the orders beyond do at the balls, in coordinates of its own, and the give of the race.
+    """A ring's superelement with folded orders: what those beyond do at the balls, and the race's give.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def gyroscopic(element: Superelement, seat: str, back: str, polar_inertia: float
 
 
 def wider(element: Superelement, count: int, *raceways: str) -> Superelement:
-    """A part with `count` more coordinates, without mass and force, and those raceways that are named."""
+    """A ring's superelement wider by `count` coordinates, without mass and force, for named raceways."""
     none = np.zeros((count, count))
 
     def grown(A: Array) -> Array:

@@ -10,7 +10,8 @@ from itertools import pairwise
 import numpy as np
 
 from bearingdyn.bearing import RacewaySeries
-from bearingdyn.checks import nonnegative, number, positive
+from bearingdyn.checks import nonnegative, number, positive, two
+from bearingdyn.magnitude import plausible
 from bearingdyn.types import Array
 
 _POINTS = 64  # Gauss points per order and arc of a turn: exact for products of cosines to round-off
@@ -47,8 +48,11 @@ class RingBed:
         if self.axial is not None:
             nonnegative("axial", self.axial, "it must be a stiffness in N/m³, zero or more")
         nonnegative("damping", self.damping, "it must be a time in s, zero or more")
+        plausible("bed stiffness", "stiffness", self.stiffness)
+        plausible("bed stiffness", "axial", self.axial or 0.0)
+        plausible("support damping", "damping", self.damping)
         if self.arc is not None:
-            start, end = self.arc
+            start, end = two("arc", self.arc, "it must be (from, to) in rad, rising by up to a turn")
             if not 0.0 < end - start <= 2.0 * math.pi * (1 + 1e-12):
                 raise ValueError(f"arc is {self.arc}; it must be (from, to) in rad, rising by up to a turn")
 
@@ -104,6 +108,11 @@ class RingPoints:
         if self.axial is not None:
             nonnegative("axial", self.axial, "it must be a stiffness in N/m, zero or more")
         nonnegative("damping", self.damping, "it must be a time in s, zero or more")
+        for angle in angles:
+            plausible("angle", "azimuth", angle)
+        plausible("stiffness", "stiffness", self.stiffness)
+        plausible("stiffness", "axial", self.axial or 0.0)
+        plausible("support damping", "damping", self.damping)
 
     def matrix(self, series: RacewaySeries, radius: float, width: float) -> Array:
         """Stiffness (n, n) on the coefficients of the outside of a ring, N/m."""
@@ -116,7 +125,7 @@ class RingPoints:
 
 
 def waves(series: RacewaySeries, psi: Array, axial: int) -> Array:
-    """Radial (axial 0) or axial (1) motion (p, n) at azimuths ψ (p,), by unit coefficients of a series."""
+    """Waves along a ring's support: radial (axial 0) or axial (1) motion (p, n) at azimuths ψ (p,)."""
     rows = [
         (np.sin(n * psi) if sine else np.cos(n * psi)) * (kind == axial) for kind, n, sine in series.terms
     ]
@@ -126,7 +135,7 @@ def waves(series: RacewaySeries, psi: Array, axial: int) -> Array:
 def held_by(
     supports: Sequence[RingBed | RingPoints], rows: Array, series: RacewaySeries, radius: float, width: float
 ) -> tuple[Array, Array]:
-    """Stiffness and damping (n + 6, n + 6) of supports between a ring, n coordinates, and a rigid bore, six.
+    """Stiffness and damping (n + 6, n + 6) of a ring's supports in a rigid bore, which has six coordinates.
 
     rows (coefficients, n) are the motion of the ring's outside.
     """

@@ -12,6 +12,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse
 
+from bearingdyn.checks import name_list
 from bearingdyn.cms import (
     F_MAX,
     Basis,
@@ -69,6 +70,8 @@ class RigidSurface:
     reference: Point | str = "centroid"
 
     def __post_init__(self) -> None:
+        names = [self.surface] if isinstance(self.surface, str) else self.surface
+        name_list("surface", names, least=1)
         if isinstance(self.reference, str):
             good = self.reference in ("centroid", "axis")
         else:

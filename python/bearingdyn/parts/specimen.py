@@ -9,6 +9,7 @@ import numpy as np
 
 from bearingdyn.checks import nonnegative, one_of, positive, require, vector
 from bearingdyn.fem import box_mesh
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import Maxwell
 from bearingdyn.parts.regions import Region
 from bearingdyn.parts.revolved import Revolved
@@ -67,6 +68,7 @@ def specimen_factor(
     '0.967'
     """
     t = positive("thickness", thickness, "it must be a positive length in m")
+    plausible("specimen", "thickness", t)
     positive("G", G, "it must be positive and finite, Pa")
     positive("K", K, "it must be positive and finite, Pa")
     one_of("mode", mode, ("shear", "tension"))
@@ -76,6 +78,7 @@ def specimen_factor(
     along = 0 if mode == "shear" else 2
     if diameter is not None:
         D = positive("diameter", diameter, "it must be a positive length in m")
+        plausible("specimen", "diameter", D)
         d = nonnegative("bore", bore, "it must be zero or a positive length in m")
         require(d < D, "bore", bore, f"it must be below the diameter, {D:g} m")
         body = Revolved(
@@ -89,6 +92,7 @@ def specimen_factor(
         a, b = vector("section", section, (2,), "two sides in m").tolist()  # type: ignore[arg-type]
         for name, side in (("section[0]", a), ("section[1]", b)):
             positive(name, side, "it must be a positive length in m")
+            plausible("specimen", name, side)
         k, area = _block(a, b, t, rubber, along), a * b
     return k * t / ((G if mode == "shear" else E) * area)
 

@@ -122,7 +122,7 @@ class Squeezed:
 
 
 def compare_meshes(fine: Squeezed, coarser: Callable[[], Squeezed]) -> None:
-    """Warn (MeshDependent) where force or static stiffness differ by more than 1 % on a coarser mesh.
+    """Warn (MeshDependent) where a squeezed part's force or stiffness differ by 1 % on a coarser mesh.
 
     Where the coarser mesh finds no balance there is nothing to compare.
     """

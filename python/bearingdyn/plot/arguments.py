@@ -33,7 +33,7 @@ Check = Callable[[str, object], object]
 
 
 def figure(**given: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a function a figure: what it is given is checked first.
+    """Make a function a figure: its arguments are checked first.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def results(maker: str, *holding: str, alone: bool = False) -> Check:
 
 
 def maybe(check: Check) -> Check:
-    """An argument that may be None."""
+    """An argument of a figure that may be None."""
     return lambda name, value: None if value is None else check(name, value)
 
 
@@ -119,7 +119,7 @@ def names(what: str) -> Check:
 
 
 def text(name: str, value: object) -> None:
-    """An argument that is a name."""
+    """An argument of a figure that is a name."""
     instance(name, value, str, "it must be a name, as a text")
 
 

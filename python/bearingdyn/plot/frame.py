@@ -59,7 +59,7 @@ def style() -> Iterator[None]:
 
 
 def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = None) -> Axes:
-    """Axes in a new figure of their own; width and height in inches."""
+    """Axes in the frame of a new figure; width and height in inches."""
     import matplotlib.pyplot as plt
 
     figure = plt.figure(figsize=(width, height), layout="constrained")
@@ -166,7 +166,7 @@ def written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> N
 
 
 def frame_log(ax: Axes, values: Array) -> None:
-    """A log axis of a figure over the measured values, whatever else is drawn, its numbers written out."""
+    """Frame a log axis of a figure over the measured values, whatever else is drawn, numbers written out."""
     low, high = float(values.min()), float(values.max())
     margin = max((high / low) ** 0.06, 1.05)
     ax.set_ylim(low / margin, high * margin)

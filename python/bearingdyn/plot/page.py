@@ -39,7 +39,7 @@ HEAD = f"{CELL};opacity:.65;font-weight:normal"
 
 
 def svg(figure: Figure, told: str) -> str:
-    """A figure as an SVG element with a text for those who do not see it; the figure is closed."""
+    """A figure for an object's page: an SVG element with a text for those who do not see it."""
     import matplotlib
     import matplotlib.pyplot as plt
 
@@ -60,7 +60,7 @@ def svg(figure: Figure, told: str) -> str:
 
 
 def rows(heads: Sequence[str], cells: Iterable[Sequence[str]]) -> str:
-    """A table; "" where it has no rows."""
+    """A table on the page of an object; "" where it has no rows."""
     body = "".join(
         "<tr>" + "".join(f'<td style="{CELL}">{escape(c)}</td>' for c in row) + "</tr>" for row in cells
     )
@@ -71,12 +71,12 @@ def rows(heads: Sequence[str], cells: Iterable[Sequence[str]]) -> str:
 
 
 def box(title: str, *blocks: str) -> str:
-    """What an object shows: a title and blocks below it."""
+    """The page of an object in a notebook: a title and blocks below it."""
     return f'<div class="bearingdyn"><div><strong>{escape(title)}</strong></div>{"".join(blocks)}</div>'
 
 
 def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
-    """What an object shows in a notebook, as HTML.
+    """The page of any object in a notebook, as HTML.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
 
 
 def application_html(app: Application) -> str:
-    """An application: drawing, parts, joints, loads, and what is to be warned of."""
+    """The page of an application: drawing, parts, joints, loads, and what is to be warned of."""
     plan = app.plan
     if not plan.parts:
         return box("Application without parts")
@@ -168,7 +168,7 @@ def _warned(app: Application, told: list[str]) -> str:
 
 
 def bearing_html(bearing: BallBearing) -> str:
-    """A bearing: its section, and what follows from its geometry."""
+    """The page of a bearing: its section, and what follows from its geometry."""
     figure, ax = _figure(2.6, 2.6)
     ax.set_aspect("equal")
     ax.axis("off")
@@ -190,7 +190,7 @@ def bearing_html(bearing: BallBearing) -> str:
 
 
 def maxwell_html(material: Maxwell) -> str:
-    """A Maxwell model: its modulus over frequency, where it is known, and its branches."""
+    """The page of a Maxwell model: its modulus over frequency, where it is known, and its branches."""
     times = material.tau if material.tau.size else np.array([1.0])
     low, high = 0.01 / (2 * np.pi * times.max()), 100.0 / (2 * np.pi * times.min())
     if material.band is not None:
@@ -244,7 +244,7 @@ def _modulus(material: Any, low: float, high: float, band: tuple[float, float] |
 
 
 def zener_html(material: FractionalZener) -> str:
-    """A fractional Zener model: its modulus over six decades about its transition, and its parameters."""
+    """The page of a fractional Zener model: modulus over six decades about its transition, parameters."""
     middle = 1.0 / (2 * np.pi * material.tau)
     facts = [
         ("relaxed modulus G0", f"{material.G0 / 1e6:.4g} MPa"),
@@ -258,7 +258,7 @@ def zener_html(material: FractionalZener) -> str:
 
 
 def power_law_html(material: PowerLaw) -> str:
-    """A power law: its modulus over four decades about the frequency that it is stated at."""
+    """The page of a power law: modulus over four decades about the frequency it is stated at."""
     facts = [
         (f"|G*| at {material.frequency:g} Hz", f"{material.modulus / 1e6:.4g} MPa"),
         ("exponent", f"{material.exponent:.4g}"),
@@ -269,7 +269,7 @@ def power_law_html(material: PowerLaw) -> str:
 
 
 def tabulated_html(material: TabulatedModulus) -> str:
-    """A modulus as measured: its curve, and where it is known."""
+    """The page of a tabulated modulus: its curve, and where it is known."""
     low, high = float(material.frequency[0]), float(material.frequency[-1])
     facts = [("points", f"{material.frequency.size}, {low:.4g} to {high:.4g} Hz"), *_stated(material)]
     picture = _modulus(material, low, high, (low, high))
@@ -281,7 +281,7 @@ def _at(material: Any) -> str:
 
 
 def elastic_html(material: Elastic) -> str:
-    """A metal: its constants."""
+    """The page of a metal: its constants."""
     facts = [
         ("E", f"{material.E / 1e9:.4g} GPa"),
         ("ν", f"{material.nu:.4g}"),
@@ -293,7 +293,7 @@ def elastic_html(material: Elastic) -> str:
 
 
 def master_html(curve: MasterCurve) -> str:
-    """A master curve: its points, the law of its shifts, and what is doubted of it."""
+    """The page of a master curve: its points, the law of its shifts, and what is doubted of it."""
     with style():
         figure, ax = _figure(5.6, 2.8)
         ax.loglog(curve.frequency, curve.storage / 1e6, ".", markersize=3, label="storage")
@@ -321,7 +321,7 @@ def master_html(curve: MasterCurve) -> str:
 
 
 def equilibrium_html(eq: Equilibrium) -> str:
-    """An equilibrium: how far places move, and what the bearings bear."""
+    """The page of an equilibrium: how far places move, and what the bearings bear."""
     layers: list[tuple[str, ...]] = []
     if eq.system.layers:
         found = static_summary(eq)

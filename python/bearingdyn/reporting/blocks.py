@@ -13,7 +13,7 @@ from bearingdyn.units import suited
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table that scrolls sideways where it is wider than the page; "" without rows."""
+    """A report's block: a table that scrolls sideways where it is too wide; "" without rows."""
     body = "".join("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in row) + "</tr>" for row in rows)
     if not body:
         return ""
@@ -23,19 +23,19 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def paragraph(text: str, kind: str = "") -> str:
-    """A paragraph; "" of nothing."""
+    """A report's block: a paragraph; "" of nothing."""
     return f"<p{f' class={kind}' if kind else ''}>{escape(text)}</p>" if text else ""
 
 
 def scaled(values: Array, unit: str) -> tuple[Array, str]:
-    """Values in the multiple of their unit that suits the largest, and that unit."""
+    """Values for a report's blocks in the multiple of their unit that suits the largest, and that unit."""
     size = np.abs(values[np.isfinite(values)])
     power, text, prefixed = suited(float(size.max()) if size.size else 0.0, unit)
     return (values / 10.0**power, text) if prefixed else (values, unit)
 
 
 def told(x: float, unit: str = "") -> str:
-    """A number and its unit in few digits."""
+    """A number and its unit in few digits, for a report's blocks."""
     if not math.isfinite(x):
         return "–" if math.isnan(x) else "∞" if x > 0 else "−∞"
     power, text, prefixed = suited(abs(x), unit)

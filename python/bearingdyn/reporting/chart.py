@@ -20,16 +20,20 @@ BINS = 2000  # of a thinned curve, two points each
 
 @dataclass(frozen=True)
 class Curve:
-    """One line of a chart: its name, and x (n,) ascending and y (n,), NaN where there is nothing."""
+    """One curve of a report's chart: its name, x (n,) ascending and y (n,), NaN where there is nothing.
+
+    beside: name of a line before it, whose colour it takes, dashed.
+    """
 
     name: str
     x: Array
     y: Array
+    beside: str = ""
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart to zoom and read off: a title, what its axes are, and its curves.
+    """A report's chart to zoom and read off: a title, what its axes are, and its curves.
 
     Parameters
     ----------
@@ -56,8 +60,8 @@ class Chart:
     note: str = ""
     dots: bool = False
 
-    def html(self) -> str:
-        """The chart as the page holds it; for readers who do not see it, its ranges as text."""
+    def held(self) -> dict[str, Any]:
+        """Axes and curves as the page's script takes them."""
         curves = [thinned(c) for c in self.curves]
         shared: list[Array] = []
         rows: list[dict[str, Any]] = []
@@ -65,19 +69,25 @@ class Chart:
             at = next((k for k, x in enumerate(shared) if np.array_equal(x, curve.x)), len(shared))
             if at == len(shared):
                 shared.append(curve.x)
-            rows.append({"name": curve.name, "x": at, "y": floats(curve.y)})
-        held = {
+            row: dict[str, Any] = {"name": curve.name, "x": at, "y": floats(curve.y)}
+            if curve.beside:
+                row["beside"] = [c.name for c in curves].index(curve.beside)
+            rows.append(row)
+        return {
             "x": {"label": self.x, "log": self.log_x},
             "y": {"label": self.y, "log": self.log_y},
             "grids": [floats(x) for x in shared],
             "curves": rows,
             "dots": self.dots,
         }
+
+    def html(self) -> str:
+        """The chart as the page holds it; for readers who do not see it, its ranges as text."""
         note = f"<p class=note>{escape(self.note)}</p>" if self.note else ""
         return (
             f"<figure class=chart><figcaption>{escape(self.title)}</figcaption>"
             f'<div class=plot role=img tabindex=0 aria-label="{escape(self.told(), True)}"></div>'
-            f"<script type=application/json>{json_text(held)}</script>{note}</figure>"
+            f"<script type=application/json>{json_text(self.held())}</script>{note}</figure>"
         )
 
     def told(self) -> str:
@@ -94,7 +104,7 @@ class Chart:
 
 
 def thinned(curve: Curve) -> Curve:
-    """A curve of many points by the lowest and the highest of each of BINS pieces, in their order."""
+    """A chart's curve of many points by the lowest and highest of each of BINS pieces, in order."""
     n = curve.x.size
     if n <= MOST:
         return curve
@@ -108,14 +118,14 @@ def thinned(curve: Curve) -> Curve:
         else:
             kept.append(int(first))
     at = np.unique([0, *kept, n - 1])
-    return Curve(curve.name, curve.x[at], y[at])
+    return Curve(curve.name, curve.x[at], y[at], curve.beside)
 
 
 def floats(values: Array) -> str:
-    """Numbers as little-endian 32-bit floats in base64."""
+    """A chart's numbers as little-endian 32-bit floats in base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
 
 
 def json_text(held: object) -> str:
-    """JSON that may stand inside a script element: no end of it within."""
+    """A chart's JSON, as it may stand inside a script element: no end of it within."""
     return json.dumps(held, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")

@@ -20,14 +20,14 @@ TIMES = 12  # after which the layers' sag is computed
 
 
 def drawing_html(app: Application) -> str:
-    """The report's drawing, parts, joints and loads, as the application shows itself."""
+    """The report's drawing of a machine, parts, joints and loads, as the application shows itself."""
     from bearingdyn.plot import as_html
 
     return as_html(app)
 
 
 def inputs_html(model: Model) -> str:
-    """Parameters, materials with band and doubt of the relaxed modulus, bearings with their sources."""
+    """The report's inputs of a machine: parameters, materials with band and doubt, bearings with sources."""
     from bearingdyn.plot import as_html
 
     blocks = []
@@ -50,7 +50,7 @@ def inputs_html(model: Model) -> str:
 
 
 def materials(model: Model) -> dict[str, Any]:
-    """The materials of a machine by the names that its file has; others by their kind and number."""
+    """The report's materials of a machine by the names its file has; others by kind and number."""
     found: dict[str, Any] = {k: one for k, one in model.materials.items() if _shows(one)}
     for part in model.application.plan.sources.values():
         for field in ("material", "metal"):
@@ -66,7 +66,7 @@ def _shows(one: Any) -> bool:
 
 
 def doubt(material: Any) -> str:
-    """What the data say of a rubber's modulus at rest; "" where nothing is known or doubted."""
+    """The report's doubt of a machine's rubber: what data say of its modulus at rest; "" for nothing."""
     end = getattr(material, "low_end", None)
     if end is None:
         return ""
@@ -81,14 +81,14 @@ def doubt(material: Any) -> str:
 
 
 def state_html(eq: Equilibrium, speed: float) -> str:
-    """The state at rest: displacements, loads, layers; sag over time; and a sheet of the bearings."""
+    """The report's state of a machine at rest: displacements, loads, layers, sag over time, bearings."""
     from bearingdyn.plot import as_html
 
     return as_html(eq) + sag_html(eq) + sheet_html(eq, speed)
 
 
 def sag_html(eq: Equilibrium) -> str:
-    """Deflection of the layers after a load has rested, with what the data leave open."""
+    """The report's sag of a machine's layers after a load has rested, with what the data leave open."""
     if not eq.system.layers:
         return ""
     ends = [
@@ -120,7 +120,7 @@ def sag_html(eq: Equilibrium) -> str:
 
 
 def sheet_html(eq: Equilibrium, speed: float) -> str:
-    """The sheet of the bearings: loads, life, stiffness, and lines where a speed is known."""
+    """The report's sheet of a machine's bearings: loads, life, stiffness, lines where a speed is known."""
     if not any(isinstance(t.bearing, BallBearing) for t in eq.system.bearings):
         return ""
     sheet = bearing_sheet(eq, speed=abs(speed))
@@ -138,7 +138,7 @@ def sheet_html(eq: Equilibrium, speed: float) -> str:
 
 
 def speed_of(results: Mapping[str, Any]) -> float:
-    """The one speed at which results were computed, rad/s; 0 where there is none, or several."""
+    """The one speed of a report's machine at which results were computed, rad/s; 0 for none, or several."""
     speeds = set()
     for data in results.values():
         speed = data.attrs.get("speed")

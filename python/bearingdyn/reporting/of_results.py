@@ -24,7 +24,7 @@ WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
 
 
 def together(results: Results) -> list[tuple[str, Results]]:
-    """Results in sections: those of one analysis under one name before the last "/" stand together."""
+    """A report's results by sections: those under one name before the last "/" stand together."""
     found: dict[tuple[str, str], dict[str, xarray.Dataset]] = {}
     for name, data in results.items():
         above, _, last = name.rpartition("/")
@@ -35,12 +35,12 @@ def together(results: Results) -> list[tuple[str, Results]]:
 
 
 def kind_of(data: xarray.Dataset) -> str:
-    """The analysis that a result says it is of."""
+    """The analysis that a report's result says it is of."""
     return str(data.attrs.get("analysis", ""))
 
 
 def results_html(members: Results) -> str:
-    """A section's charts and tables."""
+    """Charts and tables of a section of a report's results."""
     kind = kind_of(next(iter(members.values())))
     make = BESIDE.get(kind)
     if make is not None:
@@ -306,7 +306,7 @@ def _heat(members: Results) -> str:
 
 
 def everything(data: xarray.Dataset) -> str:
-    """A result without a picture of its own: what it holds, and single numbers as they are."""
+    """A report's result without a picture of its own: what it holds, and single numbers as they are."""
     rows = []
     for name, one in data.data_vars.items():
         unit = str(one.attrs.get("units", ""))

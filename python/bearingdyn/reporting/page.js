@@ -36,8 +36,11 @@
 
   const chart = figure => {
     const given = JSON.parse(figure.querySelector("script").textContent);
-    const box = figure.querySelector(".plot"), grids = given.grids.map(floats);
-    const curves = given.curves.map((c, k) => ({name: c.name, x: grids[c.x], y: floats(c.y), on: true, colour: `var(--c${k % 7})`}));
+    const box = figure.querySelector(".plot");
+    const read_curves = (held, grids = held.grids.map(floats)) =>
+      held.curves.map((c, k) => ({name: c.name, x: grids[c.x], y: floats(c.y), on: true,
+        beside: c.beside !== undefined, colour: `var(--c${(c.beside ?? k) % 7})`}));
+    const curves = read_curves(given);
     const usable = (axis, v) => Number.isFinite(v) && (!axis.log || v > 0);
     const whole = () => {
       let [x0, x1, y0, y1] = [Infinity, -Infinity, Infinity, -Infinity];
@@ -120,7 +123,7 @@
           pen = true; at = column; low = high = last = q; x = p.toFixed(1);
         }
         d += rest();
-        make("path", {d, class: given.dots || c.x.length === 1 ? "dots" : "curve", style: `stroke:${c.colour}`}, clip);
+        make("path", {d, class: given.dots || c.x.length === 1 ? "dots" : c.beside ? "curve beside" : "curve", style: `stroke:${c.colour}`}, clip);
       }
       make("text", {x: left + w / 2, y: height - 6, "text-anchor": "middle", class: "label"}, svg).textContent = given.x.label;
       make("text", {x: left, y: 13, class: "label"}, svg).textContent = given.y.label;
@@ -178,6 +181,13 @@
       read(here); mark();
     });
     draw();
+    // other numbers of the same curves: what was zoomed stays so, and what was put out
+    figure.redraw = held => {
+      const zoomed = !reset.hidden;
+      read_curves(held).forEach((c, k) => Object.assign(curves[k], {x: c.x, y: c.y}));
+      if (!zoomed) view = whole();
+      draw();
+    };
     let width = box.clientWidth;
     new ResizeObserver(() => { if (box.clientWidth !== width) { width = box.clientWidth; draw(); } }).observe(box);
     window.addEventListener("beforeprint", draw);

@@ -246,6 +246,13 @@ def _players(sounds: Mapping[str, str | os.PathLike[str]] | None) -> str:
     return "".join(blocks)
 
 
+def page_files() -> tuple[str, str]:
+    """Style and script of a page with charts."""
+    folder = files("bearingdyn.reporting")
+    style, script = (folder.joinpath(name).read_text(encoding="utf-8") for name in ("page.css", "page.js"))
+    return style, script
+
+
 def _whole(page: _Page) -> str:
     title = escape(page.title or "Report")
     doubts = "".join(
@@ -263,10 +270,7 @@ def _whole(page: _Page) -> str:
     )
     made = ", ".join(f"{name} {number}" for name, number in versions().items())
     lines = "".join(paragraph(line, "made") for line in [*page.lines, f"Made by {made}, {stamp()} (UTC)."])
-    style, script = (
-        files("bearingdyn.reporting").joinpath(name).read_text(encoding="utf-8")
-        for name in ("page.css", "page.js")
-    )
+    style, script = page_files()
     return (
         f'<!DOCTYPE html><html lang=en><head><meta charset=utf-8><meta http-equiv="Content-Security-Policy" '
         f'content="{POLICY}"><meta name=viewport content="width=device-width, initial-scale=1">'

@@ -19,7 +19,7 @@ SHOWN = 12  # modes
 
 
 def shapes_html(eq: Equilibrium, found: xarray.Dataset) -> str:
-    """The first modes on the surfaces of the parts; "" where no part has one.
+    """A report's mode shapes on the surfaces of the parts; "" where no part has one.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def shapes_html(eq: Equilibrium, found: xarray.Dataset) -> str:
 
 
 def mode_title(found: xarray.Dataset, k: int) -> str:
-    """Number and frequency of a mode, and its damping where it has any."""
+    """Title of a report's mode shape: number and frequency, and damping where it has any."""
     damped = bool(found.attrs.get("damped"))
     zeta = f", ζ {100 * float(found['damping_ratio'].values[k]):.2g} %" if damped else ""
     return f"{k + 1}: {float(found['frequency'].values[k]):.4g} Hz{zeta}"

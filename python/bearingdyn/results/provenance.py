@@ -23,7 +23,7 @@ VERSION = _own_version()
 
 
 def versions() -> dict[str, str]:
-    """Versions of the package and of what results are computed with, by name; "not installed" for none."""
+    """Provenance: versions of the package and of what it computes with; "not installed" for none."""
     return {
         "bearingdyn": VERSION,
         "Python": platform.python_version(),
@@ -33,7 +33,7 @@ def versions() -> dict[str, str]:
 
 
 def stamp(time: datetime | None = None) -> str:
-    """When a result was made, in UTC as ISO 8601 writes it.
+    """Provenance: when a result was made, in UTC as ISO 8601 writes it.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ SLOWEST = 20.0  # a filter is run at a rate of no more than this many times its 
 
 
 def bands(low: float, high: float, fraction: Fraction = 3) -> tuple[Array, Array, Array]:
-    """The bands that reach from `low` to `high`.
+    """Octave or third-octave bands from `low` to `high`.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def band_powers(frequency: ArrayLike, power: ArrayLike, fraction: Fraction = 3) 
 
 
 def band_filter(middle: float, rate: float, fraction: Fraction = 3) -> Any:
-    """A band's filter as second-order sections: Butterworth's, with 3 dB at the band's edges.
+    """Filter of an octave or third-octave band as second-order sections: Butterworth's, 3 dB at its edges.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def band_filter(middle: float, rate: float, fraction: Fraction = 3) -> Any:
 def filtered_bands(
     samples: ArrayLike, rate: float, low: float = 25.0, high: float | None = None, fraction: Fraction = 3
 ) -> tuple[Array, Array]:
-    """Mean squares of a signal in bands by filters.
+    """Mean squares of a signal in octave or third-octave bands by filters.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ CHUNK = 2_000_000  # distances at a time: 16 MB
 
 
 def pressure_at(radiation: Radiation, points: ArrayLike) -> Complex:
-    """Sound pressure at points outside, of a unit of each shape.
+    """Sound field outside a surface: pressure at points, of a unit of each shape.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def _sources(radiation: Radiation) -> tuple[Array, Array, Complex, Complex]:
 
 
 def far_field(radiation: Radiation, directions: ArrayLike) -> Complex:
-    """Amplitude of the far field: p = far_field · exp(−ikr)/r at a large distance r from the origin.
+    """Amplitude of the far sound field: p = far_field · exp(−ikr)/r at a large distance r.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def far_field(radiation: Radiation, directions: ArrayLike) -> Complex:
 
 
 def far_power(radiation: Radiation, amplitudes: ArrayLike = (1.0,), order: int = 24) -> float:
-    """Sound power through a sphere, or above a floor half a sphere, far away, W.
+    """Power of the sound field through a sphere, or above a floor half a sphere, far away, W.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ HEMISPHERE = (
 
 
 def hemisphere_positions(radius: float, centre: ArrayLike = (0.0, 0.0, 0.0)) -> tuple[Array, float]:
-    """The ten microphone positions of ISO 3744 on a hemisphere above a floor, and its area.
+    """Sound field on a hemisphere: the ten microphone positions of ISO 3744 above a floor, and its area.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def hemisphere_positions(radius: float, centre: ArrayLike = (0.0, 0.0, 0.0)) -> 
 
 
 def box_positions(low: ArrayLike, high: ArrayLike, distance: float = 1.0) -> tuple[Array, float]:
-    """The nine microphone positions of ISO 3744 on a box around a machine on a floor, and its area.
+    """Sound field on a box: the nine microphone positions of ISO 3744 around a machine, and its area.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ SETTLED = 0.2  # s, in which the filters of the bands start
 
 
 def weighted_signal(samples: ArrayLike, rate: float, kind: Weighting = "A") -> Array:
-    """A signal by the A, C or Z weighting, its whole taken as one period.
+    """Signal as it is heard: by the A, C or Z weighting, its whole taken as one period.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def weighted_signal(samples: ArrayLike, rate: float, kind: Weighting = "A") -> A
 
 
 def pressure_signal(force: ArrayLike, rate: float, frequency: ArrayLike, transfer: ArrayLike) -> Array:
-    """Sound pressure of a force signal, by the pressure per unit of force over frequency.
+    """Signal to be heard: sound pressure of a force signal, by pressure per unit of force over frequency.
 
     The signal is taken as one period of a steady state; its mean and what lies outside the
     transfer's frequencies are silent.
@@ -99,7 +99,7 @@ def _between(f: Array, H: Complex, at: Array) -> Complex:
 
 
 def loudness(pressure: ArrayLike, rate: float, field: str = "free") -> float:
-    """Loudness of a steady sound, sone, by the package mosqito (extra "sound").
+    """Loudness of a steady sound as one hears it, sone, by the package mosqito (extra "sound").
 
     The bands are those of the standard's own filters, over the time in which they have settled; mosqito's
     `loudness_zwst` takes other filters, and their start with them: 4.14 sone of half a second of the tone of

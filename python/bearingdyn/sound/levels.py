@@ -132,7 +132,7 @@ def band_levels(
 
 
 def mean_squares(samples: ArrayLike, rate: float) -> tuple[Array, Array]:
-    """Mean square of each line of a signal's spectrum: they add up to the mean square of the signal.
+    """Mean squares for levels: of each line of a signal's spectrum, adding up to the signal's.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def mean_squares(samples: ArrayLike, rate: float) -> tuple[Array, Array]:
 
 
 def vibration_severity(velocity: ArrayLike, rate: float) -> float:
-    """Rms of a velocity from 10 to 1000 Hz, m/s: what ISO 20816 (formerly 10816) judges machines by.
+    """Level of vibration by ISO 20816 (formerly 10816): rms of a velocity from 10 to 1000 Hz, m/s.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def vibration_severity(velocity: ArrayLike, rate: float) -> float:
 
 
 def crest_factor(samples: ArrayLike) -> float:
-    """Peak over rms of a signal, its mean taken off.
+    """Crest factor beside the levels of a signal: peak over rms, its mean taken off.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def crest_factor(samples: ArrayLike) -> float:
 
 
 def kurtosis(samples: ArrayLike) -> float:
-    """Fourth moment over the square of the second, about the mean: 3 of Gaussian noise, 1.5 of a tone.
+    """Kurtosis beside the levels of a signal: 3 of Gaussian noise, 1.5 of a tone.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ def sound_power(
     cache: str | os.PathLike[str] | None = None,
     progress: Progress | bool | None = None,
 ) -> xarray.Dataset:
-    """Sound power of parts under unit harmonic forces at `inputs`, and the sound at microphones.
+    """Sound power of an application's parts under unit harmonic forces, and sound at microphones.
 
     The parts that own the `surfaces` radiate together, each with its whole boundary: a body that moves as one
     must not pulsate. Their radiation is solved at a few frequencies of each octave and interpolated; `cache`

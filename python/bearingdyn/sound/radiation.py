@@ -47,7 +47,7 @@ PANELS = 6.0  # in a wavelength, along the longest side of a triangle
 
 @dataclass(frozen=True, eq=False)
 class Radiation:
-    """What a surface radiates at one frequency when it moves in given shapes.
+    """Radiation of a surface at one frequency when it moves in given shapes.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def solve(
     sound_speed: float = SOUND_SPEED,
     coarse: bool = False,
 ) -> Radiation:
-    """Solve the sound field outside a surface that moves in given shapes, at one frequency.
+    """Solve the radiation of a surface that moves in given shapes, at one frequency.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def solve(
 
 
 def warn_of_coarse_panels(surface: TriangleSurface, frequency: float, sound_speed: float) -> None:
-    """Warn where a triangle is longer than a sixth of the wavelength at `frequency`, Hz."""
+    """Warn where a triangle is too coarse for the radiation: longer than a sixth of the wavelength."""
     wavelength = sound_speed / frequency
     if not surface.size <= wavelength / PANELS * (1.0 + 1e-9):
         warn(
@@ -204,7 +204,7 @@ def radiated_power(
     sound_speed: float = SOUND_SPEED,
     floor: float | None = None,
 ) -> float:
-    """Sound power of a closed surface of triangles that vibrates at one frequency.
+    """Power of the radiation of a closed surface of triangles that vibrates at one frequency.
 
     Parameters
     ----------
@@ -247,7 +247,7 @@ def radiated_power(
 def closed_surface(
     points: ArrayLike, faces: ArrayLike, floor: float | None = None
 ) -> tuple[TriangleSurface, Array]:
-    """A checked surface, and which of the faces it has kept: those on the floor radiate nothing."""
+    """Surface for a radiation, checked, and which faces it has kept: those on the floor radiate nothing."""
     surface = TriangleSurface(np.asarray(points), np.asarray(faces), floor)
     if surface.floor is None:
         return surface, np.ones(len(np.asarray(faces)), dtype=bool)

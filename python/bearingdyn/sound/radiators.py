@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -22,7 +22,7 @@ PER_BODY = 10.0  # sides along the longest extent of a body, at least
 
 @dataclass(frozen=True, eq=False)
 class Radiators:
-    """Bodies that radiate together.
+    """Radiators: bodies that radiate together.
 
     Parameters
     ----------
@@ -37,6 +37,7 @@ class Radiators:
     skins: Sequence[Skin]
     places: Array
     floor: float | None = None
+    _made: dict[float, tuple[TriangleSurface, Array]] = field(default_factory=dict, init=False, repr=False)
 
     __repr__ = short
 
@@ -57,7 +58,12 @@ class Radiators:
         return min(wavelength / PER_WAVELENGTH, least / PER_BODY)
 
     def surface(self, size: float) -> tuple[TriangleSurface, Array]:
-        """One surface of all bodies, and how their coordinates move its triangles, (m, n)."""
+        """One surface of all bodies, and how their coordinates move its triangles, (m, n); kept."""
+        if size not in self._made:
+            self._made[size] = self._surface(size)
+        return self._made[size]
+
+    def _surface(self, size: float) -> tuple[TriangleSurface, Array]:
         made: dict[str, SkinPanels] = {}
         points, faces, rows, count = [], [], [], 0
         for skin, place in zip(self.skins, self.places, strict=True):
@@ -86,7 +92,7 @@ class Radiators:
 
 
 def digest(*arrays: Array | Index) -> str:
-    """Hash of arrays, their shapes with them."""
+    """Hash of arrays by which radiators are known, their shapes with them."""
     found = hashlib.sha256()
     for a in arrays:
         found.update(f"{a.dtype.kind}{a.shape}".encode())

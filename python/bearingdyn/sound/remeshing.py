@@ -207,7 +207,7 @@ class _Mesh:
 
 
 def remeshed(points: Array, faces: Index, size: float) -> tuple[Array, Index]:
-    """A closed surface of triangles anew, with sides near `size`.
+    """Remesh a closed surface of triangles, with sides near `size`.
 
     Parameters
     ----------

@@ -32,8 +32,7 @@ from bearingdyn.writing import write_whole
 log = logging.getLogger(__name__)
 
 LEVELS = (5, 9, 17, 33, 65)
-TOLERANCE = 0.02  # dB, at which no further frequencies are solved
-SURE = 0.05  # dB
+TOLERANCE = 0.05  # dB of the estimate, at which no further frequencies are solved; above, a word of warning
 THREADS = 2
 VERSION = 2  # of what a stored octave holds, and of the numbers in it
 NEGATIVE = 1e-4  # of the largest eigenvalue: less is the discretisation's own error
@@ -41,7 +40,7 @@ NEGATIVE = 1e-4  # of the largest eigenvalue: less is the discretisation's own e
 
 @dataclass(frozen=True, eq=False)
 class Octave:
-    """Radiation solved in one octave.
+    """Radiation resistance solved in one octave.
 
     Parameters
     ----------
@@ -116,7 +115,7 @@ def _difference(best: Array, rough: Array) -> Array:
 
 
 def octaves(low: float, high: float) -> list[tuple[float, float]]:
-    """Octaves, Hz, that reach from below `low` to `high`, the highest first."""
+    """Octaves of a radiation resistance, Hz, from below `low` to `high`, the highest first."""
     found = [(0.5 * high, high)]
     while found[-1][0] > low:
         found.append((0.5 * found[-1][0], found[-1][0]))
@@ -135,7 +134,7 @@ def solved_octave(
     cache: Path | None = None,
     tell: Progress | None = None,
 ) -> Octave:
-    """The radiation of bodies in one octave, from the folder `cache` where it is known.
+    """Radiation resistance of bodies in one octave, from the folder `cache` where it is known.
 
     Parameters
     ----------
@@ -231,7 +230,7 @@ def _ways(radiators: Radiators, microphones: Array, k: float) -> Complex:
 
 
 def heard(octave: Octave, radiators: Radiators, f: Array, microphones: Array, sound_speed: float) -> Complex:
-    """Pressure at the microphones per unit of velocity of each coordinate, (f, p, n), Pa s/m.
+    """Pressure at microphones beside the radiation resistance: per unit of velocity, (f, p, n), Pa s/m.
 
     Parameters
     ----------
@@ -268,7 +267,7 @@ def _repaired(octave: Octave) -> Octave:
 def _warn(octave: Octave) -> None:
     """A word on what an octave holds, whether solved now or before."""
     at = f"between {octave.low:.4g} and {octave.high:.4g} Hz the radiation"
-    if not _unsure(octave) <= SURE:
+    if not _unsure(octave) <= TOLERANCE:
         warn(
             f"{at} solved at {len(octave.nodes)} frequencies is known to {_unsure(octave):.2g} dB between "
             f"them; the result's interpolation_error says where",

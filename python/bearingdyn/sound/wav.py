@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import existing, items, number, one_of, positive, require
+from bearingdyn.magnitude import plausible
 from bearingdyn.notice import ClippedSound, warn
 from bearingdyn.sound.signals import signal
 from bearingdyn.types import Array
@@ -70,6 +71,7 @@ def write_wav(
     one_of("bits", bits, (16, 32))
     rate = positive("rate", rate, "it must be samples a second, a whole number")
     require(rate % 1 == 0 and rate < 2**31, "rate", rate, "it must be samples a second, a whole number")
+    plausible("sample rate", "rate", rate)
     pause = number("pause", pause, "it must be seconds of zero or more")
     require(pause >= 0, "pause", pause, "it must be seconds of zero or more")
     given = items("pressure", pressure, "it must be samples (n,), Pa, or a list of such signals")

@@ -69,7 +69,7 @@ def band(
 
 @dataclass(frozen=True)
 class Robust:
-    """An objective that holds over draws: mean ± k standard deviations of each value, or a quantile.
+    """An objective over a band of draws: mean ± k standard deviations of each value, or a quantile.
 
     Called with a design, it returns what each value of `function` is at worst: high, unless `worst` says
     "low" of it. The draws are the same for every design, so that the result is as smooth as the function.

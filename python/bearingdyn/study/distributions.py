@@ -116,7 +116,7 @@ class Uniform:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A material drawn from what is not known of it, all its parameters together.
+    """Distribution of a material by what is not known of it, all its parameters together.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ class Box:
 def draw(
     n: int, parameters: Mapping[str, Any], *, seed: int = 0, method: str = "sobol"
 ) -> list[dict[str, Any]]:
-    """n draws of parameters that are not exactly known, as the cases of a study; the same for one seed.
+    """Draw n times from distributions of parameters, as the cases of a study; the same for one seed.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def possible(cases: Sequence[Case]) -> None:
-    """Refuse a study in which a draw was impossible or gave no number: ValueError, naming draw and cause."""
+    """Check that Sobol' indices are possible: ValueError, naming a draw that gave no number and its cause."""
     for k, case in enumerate(cases):
         said = ", ".join(f"{name} = {label(value)}" for name, value in case.parameters.items())
         remedy = "the draw is impossible: narrow the distribution, or cut it with low= and high="

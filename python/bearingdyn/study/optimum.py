@@ -30,7 +30,7 @@ DIFFERENCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """The best design that was found, and how it is known to be one.
+    """An optimum: the best design that was found, and how it is known to be one.
 
     Attributes
     ----------
@@ -185,7 +185,7 @@ def optimise(
     seed: int = 0,
     tolerance: float = 1e-6,
 ) -> Optimum:
-    """Find the best design within limits, by sequential quadratic programming from several starts.
+    """Find the optimum within limits, by sequential quadratic programming from several starts.
 
     Parameters
     ----------
@@ -433,7 +433,7 @@ def front(
     seed: int = 0,
     tolerance: float = 1e-6,
 ) -> list[Optimum]:
-    """The Pareto front of two values that should both be small, by the ε-constraint method.
+    """A front of optima: two values that should both be small, by the ε-constraint method.
 
     The two ends are the optima of each value; between them the first is minimised while the second keeps
     limits that are evenly spaced. Each point starts from its neighbour too.

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def pareto(
     study: xarray.Dataset, minimise: Sequence[str] = (), maximise: Sequence[str] = ()
 ) -> xarray.Dataset:
-    """The Pareto front of a study: its table with "front", true for the cases that no other one beats.
+    """Pareto front of a finished study: its table with "front", true for cases that no other one beats.
 
     A case is beaten by one that is as good in every aim and better in one. Cases with NaN in an aim are not
     on the front. Aims may be values or numeric parameters.

@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 
 
 def name_of(function: Callable[..., Any]) -> str:
-    """Name by which a study is stored: module and name of a function or class; a script goes by its file."""
+    """Name under which the store keeps a study: module and name of its function, or a script's file."""
     inner = function.func if isinstance(function, functools.partial) else function
     named = inner if hasattr(inner, "__qualname__") else type(inner)
     module = str(getattr(named, "__module__", ""))

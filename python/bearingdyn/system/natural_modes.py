@@ -14,7 +14,7 @@ ROUND_OFF, SLOW_ROUND_OFF = 1e-12, 1e-13
 
 
 def natural(K: Array, M: Array) -> tuple[Array, Array]:
-    """Natural modes of a whole, dense (K, M).
+    """Natural modes of a system's dense matrices (K, M).
 
     The ω² of a suspension at 1 Hz is 1e-12 of that of a layer's inner mode at 1 MHz. The slow modes are
     therefore solved for once more, among themselves.

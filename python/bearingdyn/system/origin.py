@@ -10,7 +10,7 @@ from bearingdyn.system.system import System
 
 
 def noted(system: System, app: Application) -> System:
-    """The system with a note of its origin: the application's parts, joints, bearings and loads as a text."""
+    """Note in a system its origin: the application's parts, joints, bearings and loads as a text."""
     # the reduced parts, and what is kept of them, follow from their sources
     held = {
         name: value

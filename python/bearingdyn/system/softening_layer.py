@@ -13,7 +13,7 @@ from bearingdyn.types import Array
 
 
 def softening_factor(term: Viscoelastic, part: str) -> tuple[Array, Array | None]:
-    """L (n, rank) of a part's rubber, and the weights (rank,) of its coordinates Lᵀx in γ²; None without law.
+    """Of a layer that softens L (n, rank), weights (rank,) of its coordinates Lᵀx in γ²; None without law.
 
     The strain that counts has the squares Σ (χ_i x_i …): with the concentration χ of each coordinate,
     γ² = 2 (χx)ᵀ H (χx)/V. L is turned so that both forms are diagonal.

@@ -128,7 +128,7 @@ class SpringTerm:
 
 @dataclass(frozen=True, eq=False)
 class LoadTerm:
-    """A load's term: kind one of bearingdyn.core.LOAD_KINDS, columns (n,), table for a sampled one.
+    """A term of the system: one load, kind one of bearingdyn.core.LOAD_KINDS, columns (n,), table if sampled.
 
     part: the part it acts on, if one; own_cos, own_sin: the columns in the part's coordinates.
     """

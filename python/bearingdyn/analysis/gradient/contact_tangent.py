@@ -33,7 +33,7 @@ def tangent(
     change: Mapping[str, complex] | None = None,
     carrying: Any = None,
 ) -> Tangent:
-    """Force and tangents of a bearing at rest at coefficients z (n,), real or complex.
+    """Contact force and tangents of a bearing at rest at coefficients z (n,), real or complex.
 
     Parameters
     ----------
@@ -80,6 +80,6 @@ def tangent(
 
 
 def grazing(kernel: BearingKernel, z: Array) -> Index:
-    """Balls (k,) that just touch their races: their stiffness has two slopes, one of them infinite."""
+    """Balls (k,) in grazing contact: the tangent stiffness has two slopes there, one of them infinite."""
     u = tangent(kernel, z).approach.real
     return np.asarray(np.flatnonzero(np.abs(u) <= GRAZING * np.abs(u).max(initial=0.0)), dtype=np.intp)

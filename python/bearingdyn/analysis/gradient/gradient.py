@@ -45,7 +45,7 @@ SIDES = (None, "parted", "up", "down")
 
 @dataclass(frozen=True, eq=False)
 class Gradient:
-    """The derivatives of a machine's answers about a state, with respect to named parameters.
+    """The gradient of a machine's answers about a state, with respect to named parameters.
 
     They are exact: bearings and layers are differentiated as they are computed, and a parameter that moves
     the equilibrium moves the tangents of the bearings with it. The shapes by which a layer is reduced are
@@ -485,7 +485,7 @@ def gradient(
     *,
     side: str | None = None,
 ) -> Gradient:
-    """Derivatives of a machine's responses, modes, sag and strain with respect to what it is made of.
+    """Gradient of a machine's responses, modes, sag and strain with respect to what it is made of.
 
     Parameters
     ----------

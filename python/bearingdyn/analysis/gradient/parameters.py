@@ -25,7 +25,7 @@ _OFFERED = (
 
 @dataclass(eq=False)
 class Change:
-    """Derivative of a system's arrays with respect to a parameter; what is missing does not change.
+    """Derivative of a system's arrays with respect to one of the parameters; what is missing is constant.
 
     Attributes
     ----------
@@ -190,7 +190,7 @@ def _spring(system: System, path: str, place: str, word: str, component: str) ->
 
 
 def shear_names(material: Maxwell) -> list[str]:
-    """Names of a Maxwell model's parameters."""
+    """Names of a Maxwell model's parameters for a gradient."""
     n = material.G.size
     return ["G0", *(f"G{k + 1}" for k in range(n)), *(f"tau{k + 1}" for k in range(n)), "eta0"]
 
@@ -227,7 +227,7 @@ def relaxation_slope(material: Maxwell, name: str, state: str | float) -> float:
 
 
 def arm_slope(bearing: BallBearing) -> float:
-    """Derivative of ln R_i with respect to the clearance, 1/m: R_i is the arm of the tilts unless given."""
+    """The parameter clearance: derivative of ln R_i, 1/m; R_i is the arm of the tilts unless given."""
     geometry = bearing.geometry
     if bearing.overrides.arm is not None:
         return 0.0
@@ -236,7 +236,7 @@ def arm_slope(bearing: BallBearing) -> float:
 
 
 def kernel_slope(bearing: BallBearing) -> dict[str, float]:
-    """Derivative of the kernel's fields with respect to the clearance, 1 and m."""
+    """The parameter clearance: derivative of the kernel's fields, 1 and m."""
     P, A = float(bearing.clearance or 0.0), bearing.geometry.A
     # y0 = A − P/2 and e0 = −(P/2)(2A − P/2); an axial offset adds to e0 what does not depend on P
     return {"y0": -0.5, "e0": -A + 0.5 * P}

@@ -50,7 +50,7 @@ class Pressed:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """The equations of one system at one speed on chosen lines.
+    """Harmonic balance: the equations of a steady motion of one system at one speed on chosen lines.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ class _Packed:
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Derivative of the residual at a motion, times vectors: P⁻¹ J, P the same with the mean tangent alone.
+    """Harmonic balance linearised: P⁻¹ J at a motion, times vectors; P has the mean tangent alone.
 
     Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's
     imaginary part is kept at zero.
@@ -252,20 +252,20 @@ class Linearised:
 
 
 def flat(z: Complex) -> Array:
-    """Amplitudes (L, m) as real numbers."""
+    """Amplitudes (L, m) of a harmonic balance as real numbers."""
     z = np.ascontiguousarray(z)
     z[0].imag = 0.0
     return z.view(np.float64).reshape(-1)
 
 
 def unflat(vector: Array, balance: Balance) -> Complex:
-    """Real numbers as amplitudes (L, m)."""
+    """Real numbers as amplitudes (L, m) of a harmonic balance."""
     return np.ascontiguousarray(vector).view(np.complex128).reshape(balance.lines.count, -1)
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A motion and how well it balances.
+    """A motion found by harmonic balance, and how well it balances.
 
     Parameters
     ----------
@@ -290,7 +290,7 @@ class Found:
 
 
 def measure(residual: Complex, z: Complex) -> tuple[float, int]:
-    """The largest residual over the largest amplitude, and its line."""
+    """How well a motion balances: the largest residual over the largest amplitude, and its line."""
     sizes = np.abs(residual).max(axis=1, initial=0.0)
     if not sizes.any():
         return float(sizes.sum()), 0
@@ -305,7 +305,7 @@ def newton(
     most: int = 40,
     tell: Callable[[int, float], object] | None = None,
 ) -> Found:
-    """Newton's iteration from amplitudes z, its steps halved while they do not help."""
+    """Newton's iteration of a harmonic balance from amplitudes z, steps halved while they do not help."""
     pressed = balance.press(z)
     r = balance.residual(z, pressed)
     size, line = measure(r, z)

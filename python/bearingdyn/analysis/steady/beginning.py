@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def beginning(source: Equilibrium | System, result: xarray.Dataset, speed: object) -> Beginning:
-    """Of a march from a result of `steady_state` on the same source.
+    """The beginning of a march in a steady motion, from a result of `steady_state` on the same source.
 
     Raises
     ------

@@ -21,7 +21,7 @@ from bearingdyn.writing import write_whole
 
 @dataclass(frozen=True)
 class BranchFiles:
-    """A folder of finished searches, and what told their maps apart."""
+    """Files of the branches of a speed map: a folder of finished searches, and what tells maps apart."""
 
     folder: Path
     told: str

@@ -47,7 +47,7 @@ Tell: TypeAlias = Callable[[float], object] | None
 
 
 class Family(Protocol):
-    """Systems over a parameter: of each value its problem and the speed of its shaft."""
+    """What branches of steady motions run over: of each value of a parameter its problem and shaft speed."""
 
     def at(self, parameter: float) -> tuple[Problem, float]:
         """The problem, and the speed, rad/s."""
@@ -55,7 +55,7 @@ class Family(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Speeds:
-    """One system over its speed."""
+    """Branches of steady motions over speed: one system, its speed the parameter."""
 
     problem: Problem
 
@@ -66,7 +66,7 @@ class Speeds:
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """Applications made from a parameter, at one speed; the last few are kept."""
+    """Branches of steady motions over another number: applications made from it; the last few are kept."""
 
     make: Callable[[float], Application]
     speed: float
@@ -83,7 +83,7 @@ class Made:
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What is followed, and where.
+    """A task for following branches of steady motions: what, and where.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ class Mark:
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """Points of one branch in their order along it; passages after which its motions repeat."""
+    """One of the branches of steady motions: its points in order, passages after which motions repeat."""
 
     passages: int
     marks: tuple[Mark, ...]
@@ -182,7 +182,7 @@ class Branch:
 
 
 def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
-    """A curve in the measure of what moves: a motion's size, and a tenth of the range."""
+    """The curve of a branch, in the measure of what moves: a motion's size, and a tenth of the range."""
 
     recent: dict[float, Balance] = {}
 
@@ -190,10 +190,7 @@ def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
         if parameter not in recent:
             while len(recent) >= RECENT:
                 del recent[next(iter(recent))]
-            balance = task.at(parameter, lines)
-            if passages > 1:
-                balance = replace(balance, bases=_divided(balance.bases, passages))
-            recent[parameter] = balance
+            recent[parameter] = divided(task.at(parameter, lines), passages)
         return recent[parameter]
 
     moving = float(np.linalg.norm(found.z[1:]))
@@ -202,7 +199,7 @@ def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
 
 
 class Tracer:
-    """Follows one branch and marks what happens on it."""
+    """Follows one branch of steady motions and marks what happens on it."""
 
     def __init__(
         self,
@@ -318,13 +315,17 @@ class Tracer:
         return Branch(twice, marks, f"flip at {flip.point.parameter:.6g}")
 
 
-def _divided(bases: Bases, passages: int) -> Bases:
-    """The bases of motions that repeat after so many passages only."""
+def divided(balance: Balance, passages: int) -> Balance:
+    """The balance of motions that repeat after so many passages only."""
+    if passages == 1:
+        return balance
+    bases = balance.bases
     base = bases.bases[0]
-    return Bases(
+    repeated = Bases(
         (replace(base, ratio=base.ratio / passages, omega=base.omega / passages),),
         tuple(replace(t, multiple=tuple(passages * k for k in t.multiple)) for t in bases.bearings),
     )
+    return replace(balance, bases=repeated)
 
 
 def _found(point: Point) -> Found:
@@ -366,7 +367,7 @@ def known(branches: Sequence[Branch], passages: int, parameter: float, z: Comple
 
 @dataclass(frozen=True)
 class Job:
-    """One search: "sweep" from a place towards a direction, "state" begun with a push there, or "flip"."""
+    """One search for branches: "sweep" from a place in a direction, "state" begun by a push, or "flip"."""
 
     kind: str
     place: float
@@ -376,7 +377,7 @@ class Job:
 
 
 def sweeps(task: Task) -> list[Job]:
-    """The two that begin at the ends of the range."""
+    """The two searches for branches that begin at the ends of the range."""
     return [
         Job("sweep", task.high, -1.0, origin="coasting down"),
         Job("sweep", task.low, 1.0, origin="running up"),
@@ -384,7 +385,7 @@ def sweeps(task: Task) -> list[Job]:
 
 
 def states(task: Task) -> list[Job]:
-    """Those that begin between, from several states."""
+    """Searches for branches that begin within the range, from several states."""
     places = np.linspace(task.low, task.high, PLACES + 2)[1:-1].tolist()
     return [Job("state", p, push=push, origin="another state") for p in places for push in (0.0, *PUSHES)]
 

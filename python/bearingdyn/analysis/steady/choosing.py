@@ -28,7 +28,7 @@ ASKED = 160
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """All lines that may be taken: (c, d), the mean left out, with their frequencies, rad/s, rising."""
+    """For choosing lines, all candidates (c, d), the mean left out, with their frequencies, rad/s, rising."""
 
     index: Index
     omega: Array
@@ -36,7 +36,7 @@ class Candidates:
 
 
 def candidates(problem: Problem, speed: float, harmonics: int) -> Candidates:
-    """Combinations of the bases below the highest harmonic of the fastest passage."""
+    """Lines to choose from: combinations of the bases below the highest harmonic of the fastest passage."""
     bases = problem.bases
     omega = bases.frequencies(speed)
     kernels = [t.kernel() for t in problem.system.bearings]
@@ -74,7 +74,7 @@ def candidates(problem: Problem, speed: float, harmonics: int) -> Candidates:
 
 @dataclass(frozen=True, eq=False)
 class Weigher:
-    """How far a force on a line would move the bearings: the structure's answer between asked frequencies."""
+    """Weighs lines for choosing: how far a force on each would move the bearings, interpolated."""
 
     omega: Array
     answer: Array
@@ -94,7 +94,7 @@ class Weigher:
 
 
 def lattice(index: Index, offered: Candidates) -> Lines:
-    """The lines on a lattice that tells all candidates apart as far as samples allow."""
+    """Choosing lines, a lattice for them that tells all candidates apart as far as samples allow."""
     whole = 1.0
     for cap in offered.caps:
         whole *= 4 * cap
@@ -110,7 +110,7 @@ def balanced(
     start: tuple[Index, Complex] | None = None,
     tell: Callable[[int, int], object] | None = None,
 ) -> tuple[Balance, Found, float]:
-    """A motion of several bases on the lines that matter, and the share of the largest line left out."""
+    """Balance a motion of several bases, choosing the lines that matter; and the largest share left out."""
     offered = candidates(problem, speed, harmonics)
     zero = np.zeros((1, len(problem.bases.bases)), dtype=np.intp)
     begun = problem.balance(lattice(np.vstack([zero, *_loaded(problem, speed)]), offered), speed)

@@ -29,7 +29,7 @@ SHORTEST = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A converged motion z (L, m) at a parameter, and the tangent there: flat parts and the parameter's."""
+    """A point of a continuation: a converged motion z (L, m) at a parameter, and the tangent there."""
 
     z: Complex
     parameter: float
@@ -42,7 +42,7 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """What is followed.
+    """The curve that a continuation follows.
 
     Parameters
     ----------
@@ -155,12 +155,12 @@ class Curve:
 
 
 def unflat_like(vector: Array, z: Complex) -> Complex:
-    """Real numbers as amplitudes of the shape of z."""
+    """Real numbers of a continuation as amplitudes of the shape of z."""
     return np.ascontiguousarray(vector).view(np.complex128).reshape(z.shape)
 
 
 def follow(curve: Curve, start: Point, low: float, high: float, longest: float, most: int) -> Iterator[Point]:
-    """Points of a branch from one of its own until it leaves low … high, or can be followed no further.
+    """Continuation by arc length: points from one of its own until the curve leaves low … high, or ends.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def locate(
     tolerance: float,
     most: int = 30,
 ) -> Point | None:
-    """The point between two where a test is zero, by secants on the arc (Illinois)."""
+    """The point of a continuation between two where a test is zero, by secants on the arc (Illinois)."""
     a, b = 0.0, _distance(curve, before, after)
     fa, fb = test(before), test(after)
     if not fa * fb < 0.0:

@@ -15,7 +15,7 @@ LARGEST_SPACE = 150
 def gmres(
     product: Callable[[Array], Array], right: Array, tolerance: float, most: int = LARGEST_SPACE
 ) -> tuple[Array, float]:
-    """x with A x ≈ right, from zero, and what is left of `right`, relative.
+    """GMRES in a Krylov space: x with A x ≈ right, from zero, and what is left of `right`, relative.
 
     Parameters
     ----------

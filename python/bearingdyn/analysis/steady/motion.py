@@ -27,7 +27,7 @@ MOTIONS = tuple(core.CHANNEL_KINDS[q] for q in ("displacement", "velocity", "acc
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A balanced motion in all coordinates of its system."""
+    """A steady motion in all coordinates of its system."""
 
     balance: Balance
     found: Found

@@ -32,7 +32,7 @@ IDLE = 1e6
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A system ready to be balanced.
+    """The problem of a steady state: a system ready to be balanced.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class Problem:
 
 
 def motion_of(field: str, problem: Problem, result: xarray.Dataset) -> tuple[Index, Complex]:
-    """Index and amplitudes of an earlier result; ValueError for one of another application."""
+    """An earlier steady motion as the start of a problem: index and amplitudes; ValueError for another's."""
     require("motion" in result, field, sorted(map(str, result)), "give a result of steady_state")
     index, z = np.asarray(result["index"].values, dtype=np.intp), np.asarray(result["motion"].values)
     names = [b.name for b in problem.bases.bases]
@@ -121,12 +121,12 @@ def _plain(system: System) -> bool:
 
 
 def rest_modulus(layer: LayerTerm) -> float:
-    """G*(0) of a layer's law, Pa."""
+    """G*(0) of a layer's law, Pa, for the mean of a steady state's problem."""
     return float(layer.material.complex_modulus(0.0).real)
 
 
 def check_linear(layer: LayerTerm) -> None:
-    """Refuse a law that softens with its own amplitude: ValueError."""
+    """Refuse in a steady state's problem a law that softens with its own amplitude: ValueError."""
     if layer.strain is not None:
         raise ValueError(
             f"layer {layer.part!r} softens with its amplitude (payne), and a steady motion is balanced with "
@@ -135,7 +135,7 @@ def check_linear(layer: LayerTerm) -> None:
 
 
 def check_rest(layer: LayerTerm, system: System) -> None:
-    """Refuse a law without a modulus at rest under a dead load: ValueError."""
+    """Refuse in a steady state's problem a law without a modulus at rest under a dead load: ValueError."""
     G = rest_modulus(layer)
     if not G > 0.0 and system.static_load().any():
         raise ValueError(

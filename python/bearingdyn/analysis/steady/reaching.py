@@ -16,7 +16,7 @@ STEPS = 60
 
 
 def reached(problem: Problem, lines: Lines, speed: float, tolerance: float) -> Found | None:
-    """The motion at a speed by way of others; None where no branch leads there."""
+    """Reach the steady motion at a speed by way of other speeds; None where no branch leads there."""
 
     def at(own: float) -> Balance:
         return problem.balance(lines, own)
@@ -39,7 +39,7 @@ def reached(problem: Problem, lines: Lines, speed: float, tolerance: float) -> F
 
 
 def curve_of(at: object, found: Found, scale: float) -> Curve:
-    """A curve in its own measure: a motion's size is that of what moves, or a hundredth of its mean."""
+    """The curve by which a steady motion is reached, in its own measure of a motion's size."""
     moving = float(np.linalg.norm(found.z[1:]))
     size = max(5.0 * moving, 0.05 * float(np.linalg.norm(found.z[0])))
     return Curve(at, scale=0.2 * scale, size=size)  # type: ignore[arg-type]

@@ -29,7 +29,7 @@ POLES_AGREE = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Poles:
-    """Of one block λ (p,), and its D⁻¹ = right (n, p) · 1/(iω − λ) · left (p, n)."""
+    """Poles λ (p,) of one block's receptances, D⁻¹ = right (n, p) · 1/(iω − λ) · left (p, n)."""
 
     values: Complex
     right: Complex
@@ -84,7 +84,7 @@ class Poles:
 
 
 def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
-    """D (f, n, n) of a system without its bearings; η0 sits in G*(ω)."""
+    """Dynamic stiffness D (f, n, n), inverse of the receptances, of a system without its bearings."""
     D = (
         (block.K + speed * block.N)
         + 1j * omega[:, None, None] * (block.C + speed * block.G)
@@ -97,7 +97,7 @@ def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
 
 
 def part_of(system: System, block: Index) -> System:
-    """The coordinates of one block as a system by itself: its matrices and layers alone."""
+    """One block of a system by itself, for its receptances: its matrices and layers alone."""
     inside = np.ix_(block, block)
     return System(
         M=system.M[inside],
@@ -111,7 +111,7 @@ def part_of(system: System, block: Index) -> System:
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """One block of the structure: its coordinates, itself, and its poles if they do not move with speed."""
+    """A block of receptances: its coordinates, itself, and its poles if they do not move with speed."""
 
     index: Index
     system: System
@@ -136,7 +136,7 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class Receptances:
-    """What a system answers without its balls' forces but with a reference of them.
+    """Receptances of a system without its balls' forces but with a reference of them.
 
     Parameters
     ----------

@@ -15,6 +15,8 @@ import numpy as np
 from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.march_state import system_hash
+from bearingdyn.analysis.steady.balance import Balance
+from bearingdyn.analysis.steady.borne import PUSH, pushed, warn_of_motions
 from bearingdyn.analysis.steady.branch_files import BranchFiles
 from bearingdyn.analysis.steady.branches import (
     Branch,
@@ -24,6 +26,7 @@ from bearingdyn.analysis.steady.branches import (
     Mark,
     Speeds,
     Task,
+    divided,
     done,
     states,
     sweeps,
@@ -35,7 +38,7 @@ from bearingdyn.checks import name_list, number, one_speed, require, vector, who
 from bearingdyn.notice import OutsideBand
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System
-from bearingdyn.types import Array
+from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
@@ -109,7 +112,15 @@ def speed_map(
     Raises
     ------
     ValueError
-        For a range that is none, a channel that is no motion, and a motion of several base frequencies.
+        For a range that is none, a channel that is no motion, a motion of several base frequencies, and where
+        nothing pushes at an end of the range.
+
+    Warns
+    -----
+    BearingWarning
+        Where the contact pressure of a ball exceeds 4.2 GPa (ISO 76) in a motion; the worst of each bearing.
+    OpenSideWarning
+        Where balls of an angular contact bearing are pressed where it has no shoulder, or none onto it.
 
     References
     ----------
@@ -124,6 +135,7 @@ def speed_map(
     task = _task(family, record, low, high, harmonics, points, 1e-6)
     with _band_told_once(task):
         branches = _branches(task, doublings, several, store, executor, progress)
+    warn_of_motions(_motions(task, branches, "at {:.6g} rad/s"))
     return _dataset(task, branches, "speed", "rad/s", {**state_of(problem.source)})
 
 
@@ -167,6 +179,11 @@ def parameter_map(
     ------
     ValueError
         As `speed_map`, and for a speed of zero.
+
+    Warns
+    -----
+    BearingWarning, OpenSideWarning
+        As `speed_map`.
     """
     require(callable(make), "make", make, "it must be a function of one number that returns an Application")
     low, high = _range("values", values, "two values, the lower one first")
@@ -176,6 +193,7 @@ def parameter_map(
     task = _task(family, record, low, high, harmonics, points, MADE_SLOPE)
     with _band_told_once(task):
         branches = _branches(task, doublings, several, store, executor, progress)
+    warn_of_motions(_motions(task, branches, "at the value {:.6g}"))
     return _dataset(task, branches, "parameter", "", {"speed": speed})
 
 
@@ -203,7 +221,7 @@ def _task(
         f"its motion has the base frequencies {bases}, and a map follows motions of one; leave unbalance, "
         f"waviness and harmonic loads out, or call steady_state speed by speed",
     )
-    return Task(
+    task = Task(
         family,
         tuple(record),
         low,
@@ -215,6 +233,15 @@ def _task(
         LOCATED * (high - low),
         slope,
     )
+    for end in (low, high):
+        lines = task.lines(1)
+        balance = task.at(end, lines)
+        if not pushed(balance, balance.press(task.standing(end, lines), tangents=False)):
+            raise ValueError(
+                f"nothing pushes at {end:g}, an end of the range: no ball is pressed at rest, and no load "
+                f"acts, so that there is no motion to follow. {PUSH}"
+            )
+    return task
 
 
 @contextmanager
@@ -318,6 +345,16 @@ def _known(branch: Branch, others: Sequence[Branch]) -> bool:
     points = [m.point for m in branch.marks if m.event != "failed"]
     hits = sum(known(others, branch.passages, p.parameter, p.z) for p in points)
     return bool(points) and hits > 0.9 * len(points)
+
+
+def _motions(task: Task, branches: Sequence[Branch], where: str) -> Iterator[tuple[Balance, Complex, str]]:
+    """Every motion found, with its balance and the words for its place."""
+    for branch in branches:
+        lines = task.lines(branch.passages)
+        for mark in branch.marks:
+            if mark.event != "failed":
+                balance = divided(task.at(mark.point.parameter, lines), branch.passages)
+                yield balance, mark.point.z, where.format(mark.point.parameter)
 
 
 def _about(task: Task) -> dict[str, object]:

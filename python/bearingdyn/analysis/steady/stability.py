@@ -40,7 +40,7 @@ REAL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """One block of the structure in first order, u = (q, q̇, branches): its parts of A, and rows of z.
+    """For stability, one block of the structure in first order, u = (q, q̇, branches): parts of A, rows of z.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Chunk:
 
 @dataclass(frozen=True, eq=False)
 class FirstOrder:
-    """The structure in first order, block by block, and the flexibility (m, m) of what follows at once."""
+    """For stability, the structure in first order by blocks, and flexibility (m, m) of its fast modes."""
 
     chunks: tuple[Chunk, ...]
     flexibility: Array
@@ -114,7 +114,7 @@ class FirstOrder:
 
 
 def maxwell_system(system: System, band: tuple[float, float]) -> System:
-    """The system with every law that has no branches replaced by its Maxwell approximation."""
+    """For stability, the system with every law without branches replaced by its Maxwell approximation."""
     from dataclasses import replace
 
     if all(isinstance(t.material, Maxwell) for t in system.layers):
@@ -330,7 +330,7 @@ def _advance(half: Array, weights: Array) -> Array:
 
 @dataclass(frozen=True)
 class Stability:
-    """Multipliers (k,) of a period, s, the largest first."""
+    """Stability: multipliers (k,) of a period, s, the largest first."""
 
     multipliers: Complex
     period: float
@@ -357,7 +357,7 @@ class Stability:
 
 
 def kind(multiplier: complex) -> str:
-    """What a multiplier of this phase brings where it leaves the unit circle."""
+    """Kind of a loss of stability: what a multiplier of this phase brings where it leaves the unit circle."""
     if abs(multiplier.imag) <= REAL * abs(multiplier):
         return "fold" if multiplier.real > 0 else "flip"
     return "neimark-sacker"
@@ -392,7 +392,7 @@ class Floquet:
 
 
 def band_of(highest: float) -> int:
-    """Number of the half octave, of rad/s, up to which modes are kept for lines up to `highest`."""
+    """Half octave, of rad/s, up to which stability keeps modes, for lines up to `highest`."""
     return math.ceil(2.0 * math.log2(FOLLOWS * highest))
 
 
@@ -404,7 +404,7 @@ def floquet(
     C: Array,
     kept: int = 6,
 ) -> Floquet:
-    """Multipliers of a period from tangents (2·steps, m, m) at equal distances along it.
+    """Stability by Floquet: multipliers of a period from tangents (2·steps, m, m) evenly along it.
 
     Parameters
     ----------
@@ -431,7 +431,7 @@ def floquet(
 
 
 def pooled(blocks: Sequence[Array], m: int) -> Array:
-    """Tangents (N, n, n) of every bearing as one (N, m, m)."""
+    """Tangents (N, n, n) of every bearing as one (N, m, m), for stability."""
     out = np.zeros((len(blocks[0]), m, m))
     at = 0
     for b in blocks:

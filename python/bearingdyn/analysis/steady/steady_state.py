@@ -13,6 +13,7 @@ from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
+from bearingdyn.analysis.steady.borne import warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced
 from bearingdyn.analysis.steady.motion import Motion
 from bearingdyn.analysis.steady.problem import Problem, motion_of
@@ -107,6 +108,15 @@ def steady_state(
         Where the balance is not found: names the speed, the line and its residual; `partial` is the nearest
         state that was.
 
+    Warns
+    -----
+    BearingWarning
+        Where the contact pressure of a ball exceeds 4.2 GPa (ISO 76) in the motion.
+    OpenSideWarning
+        Where balls of an angular contact bearing are pressed where it has no shoulder, or none onto it.
+    NothingPushes
+        Where no ball is pressed, and no load acts.
+
     References
     ----------
     T. M. Cameron and J. H. Griffin, J. Appl. Mech. 56 (1989) 149.
@@ -150,6 +160,7 @@ def steady_state(
     result = _dataset(problem, balance, found, record, channels, state, {**asked, "lines_left": left})
     if not found.converged:
         raise _failed(problem, balance, found, result)
+    warn_of_motions([(balance, found.z, f"in the steady motion at {speed:g} rad/s")])
     return result
 
 
@@ -182,7 +193,7 @@ def _found(
 def stability_of(
     problem: Problem, balance: Balance, found: Found, model: FirstOrder | None = None, samples: int = SAMPLES
 ) -> Stability | None:
-    """Multipliers of a motion with one base; None for several."""
+    """Multipliers of a steady state with one base; None for several."""
     if len(problem.bases.bases) != 1 or not problem.system.bearings:
         return None
     model = model or first_order(problem, balance)
@@ -197,7 +208,7 @@ def stability_of(
 
 
 def first_order(problem: Problem, balance: Balance) -> FirstOrder:
-    """The structure as its stability needs it, for speeds up to the balance's."""
+    """The structure as a steady state's stability needs it, for speeds up to the balance's."""
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))

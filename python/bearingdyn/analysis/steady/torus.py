@@ -37,7 +37,7 @@ SAME = 1e-12
 
 @dataclass(frozen=True)
 class Base:
-    """One base frequency: `ratio` times the speed of the shaft, or `omega` of a load, rad/s."""
+    """One base of a torus, a frequency: `ratio` times the shaft's speed, or `omega` of a load, rad/s."""
 
     name: str
     ratio: float = 0.0
@@ -50,7 +50,7 @@ class Base:
 
 @dataclass(frozen=True)
 class Turning:
-    """How one bearing's bodies turn: of cage, inner ring, outer ring and spin, the base and its multiple."""
+    """How a bearing's bodies turn on the torus: of cage, rings and spin, the base and its multiple."""
 
     base: tuple[int | None, ...]
     multiple: tuple[float, ...]
@@ -60,7 +60,7 @@ class Turning:
 
 @dataclass(frozen=True)
 class Bases:
-    """The base frequencies of a system, and what turns with them."""
+    """The bases of a system's torus, its frequencies, and what turns with them."""
 
     bases: tuple[Base, ...]
     bearings: tuple[Turning, ...]
@@ -196,7 +196,7 @@ def _whole_balls(ratio: float, base: float, Z: int) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Lines (L) of a motion, the first of them its mean, and the lattice that it is sampled on.
+    """Lines (L) of a motion on a torus, the first its mean, and the lattice that it is sampled on.
 
     Parameters
     ----------
@@ -313,7 +313,7 @@ class Lines:
 
 
 def body_angles(turning: Turning, angles: Array) -> Array:
-    """(N, 4) angles of a bearing's bodies at base angles (N, d), rad."""
+    """Angles (N, 4) of a bearing's bodies at angles (N, d) on the torus, rad."""
     out = np.zeros((len(angles), 4))
     for k, (base, multiple) in enumerate(zip(turning.base, turning.multiple, strict=True)):
         if base is not None:
@@ -323,7 +323,7 @@ def body_angles(turning: Turning, angles: Array) -> Array:
 
 
 def load_lines(system: System, bases: Bases, speed: float) -> Mapping[tuple[int, ...], Complex]:
-    """Of every line that loads drive, its force (n,): Re f e^{i n·θ}, N."""
+    """Force (n,) of every line that loads drive on the torus: Re f e^{i n·θ}, N."""
     d = len(bases.bases)
     found: dict[tuple[int, ...], Complex] = {}
 

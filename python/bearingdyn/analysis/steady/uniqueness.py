@@ -27,7 +27,7 @@ DIFFERENT = 1e-3
 
 
 class Approaches:
-    """The stable steady motions of a source at one speed, rad/s, as far as run-up and coast-down meet them.
+    """Whether a steady motion is unique: the stable ones at one speed that run-up and coast-down meet.
 
     Raises
     ------

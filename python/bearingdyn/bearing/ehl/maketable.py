@@ -34,7 +34,7 @@ COLUMNS = (
 
 
 def point(M: float, L: float, D: float) -> list[float]:
-    """One line of the table after its place; NaN where no grid of a bearable size resolves the film."""
+    """Make one line of the table of contacts; NaN where no grid of a bearable size resolves the film."""
     began = time.process_time()
     found: list[Steady] = []
     for accuracy, nodes in zip(ACCURACY, _NODES, strict=True):
@@ -67,7 +67,7 @@ def point(M: float, L: float, D: float) -> list[float]:
 
 
 def main(arguments: list[str]) -> int:
-    """Solve the points that are missing."""
+    """Make the table of contacts: solve the points that are missing."""
     part, parts = (int(x) for x in arguments[0].split("/")) if len(arguments) == 2 else (1, 1)
     path = Path(arguments[-1])
     if not path.exists():

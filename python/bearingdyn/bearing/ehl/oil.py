@@ -57,5 +57,5 @@ class Oil:
 
 
 def relative_density(p: float) -> float:
-    """ρ/ρ0 at the pressure p, Pa (D. Dowson, G. R. Higginson 1966)."""
+    """Density ρ/ρ0 of oil at the pressure p, Pa (D. Dowson, G. R. Higginson 1966)."""
     return 1 + 0.34 * p / (_DOWSON_HIGGINSON_PRESSURE + p)

@@ -124,18 +124,18 @@ def lookup(M: float, L: float, D: float) -> Lookup:
 
 
 def nearest_in_table(L: float, D: float) -> tuple[float, float]:
-    """The L and D of the table that are nearest to those given."""
+    """The L and D of the table that are nearest to those looked up."""
     _, (L_low, L_high), (D_low, D_high) = _pieces().ends
     return min(max(L, L_low), L_high), min(max(D, math.exp(D_low)), math.exp(D_high))
 
 
 def table_ends(D: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Least and largest M that the table holds for D, and least and largest L."""
+    """Ends of what can be looked up in the table for D: least and largest M, least and largest L."""
     return loads_between(D), _pieces().ends[1]
 
 
 def loads_between(D: float) -> tuple[float, float]:
-    """Least and largest M that the table holds for D."""
+    """Least and largest M that can be looked up in the table for D."""
     log_D = math.log(D)
     low, high = _pieces().ends[0]
     # x is linear in ln M
@@ -165,7 +165,7 @@ def _pieces() -> _Pieces:
 
 
 def joined(rows: list[dict[str, float]]) -> _Pieces:
-    """The splines through the rows of a table: along the load for each L and D, then over L and ln D."""
+    """Splines for looking up in a table: along the load for each L and D, then over L and ln D."""
     lines = defaultdict(list)
     for row in sorted(rows, key=lambda row: row["M"]):
         lines[row["L"], row["D"]].append((place(math.log(row["M"]), math.log(row["D"])), _smooth(row)))

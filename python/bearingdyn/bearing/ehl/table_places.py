@@ -21,23 +21,23 @@ _LOADED = (52.0, 100.0, 192.0, 370.0, 709.0, 1360.0, HIGHEST)
 
 
 def loads(ratio: float) -> tuple[float, ...]:
-    """Where the table has its solutions for one D: M, increasing."""
+    """Places of the table for one D: the loads M at which it has solutions, increasing."""
     low = lowest(math.log(ratio))
     turn = [float(f"{math.exp(low + x * (math.log(HIGHEST) - low)):.4g}") for x in _TURN]
     return (*turn, *(M for M in _LOADED if M > 1.2 * turn[-1]))
 
 
 def turning_load(ratio: float) -> float:
-    """M at which a contact of the ratio D turns from rigid bodies on a film to a Hertz contact."""
+    """Place of the table's turn: M where a contact of the ratio D turns from rigid bodies to Hertz."""
     return float(3.5 * ratio**-0.59)
 
 
 def lowest(log_D: float) -> float:
-    """ln M at x = 0."""
+    """Lowest place of the table: ln M at x = 0."""
     return _LOWEST + _SLOPE * log_D
 
 
 def place(log_M: float, log_D: float) -> float:
-    """x of the load axis."""
+    """Place x of a load in the table."""
     low = lowest(log_D)
     return (log_M - low) / (math.log(HIGHEST) - low)

@@ -41,7 +41,7 @@ def _spline() -> Any:
 
 
 def stiffness(K0: float, C0: float, Omega: Array) -> Complex:
-    """F̂/δ̂ over the stiffness of the dry contact at ωa/um, any shape; K0 and C0 as in `ehl.Steady`."""
+    """Stiffness by a travelling film: F̂/δ̂ over the dry contact's at ωa/um; K0 and C0 as in `ehl.Steady`."""
     asked = np.asarray(Omega, dtype=float)
     S = _spline()(np.minimum(asked, _LAST)).view(np.complex128)[..., 0]
     if (asked > _LAST).any():

@@ -1,7 +1,15 @@
 """What a bearing is rated for: ratings, equivalent loads, life in a given oil."""
 
-from bearingdyn.bearing.rating.cases import LoadCases, lives, load_cases
 from bearingdyn.bearing.rating.friction import Friction, FrictionModel, Supply, friction
+from bearingdyn.bearing.rating.iso_ratings import (
+    Ratings,
+    dynamic_factor,
+    dynamic_factors,
+    equivalent_load,
+    equivalent_static_load,
+    iso_ratings,
+    static_factor,
+)
 from bearingdyn.bearing.rating.life import (
     Races,
     equivalent_ball_loads,
@@ -12,7 +20,8 @@ from bearingdyn.bearing.rating.life import (
     ratings_of,
     with_arm,
 )
-from bearingdyn.bearing.rating.modified import (
+from bearingdyn.bearing.rating.load_cases import LoadCases, lives, load_cases
+from bearingdyn.bearing.rating.modified_life import (
     CONTAMINATION,
     LEAST_KAPPA,
     ModifiedLife,
@@ -25,15 +34,6 @@ from bearingdyn.bearing.rating.modified import (
     modified_life,
     reference_viscosity,
     reliability_factor,
-)
-from bearingdyn.bearing.rating.standard import (
-    Ratings,
-    dynamic_factor,
-    dynamic_factors,
-    equivalent_load,
-    equivalent_static_load,
-    iso_ratings,
-    static_factor,
 )
 
 __all__ = [

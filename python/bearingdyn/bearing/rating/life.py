@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.rating.standard import Ratings, iso_ratings
+from bearingdyn.bearing.rating.iso_ratings import Ratings, iso_ratings
 from bearingdyn.checks import instance, one_of, positive, require, vector
 from bearingdyn.types import Array
 
@@ -22,14 +22,14 @@ Arm = Literal["mean", "groove"]
 
 
 class Races(NamedTuple):
-    """A number for each race."""
+    """A number for each race, as the rating life needs it."""
 
     inner: float
     outer: float
 
 
 def ratings_of(bearing: BallBearing) -> Ratings:
-    """C by ISO 281 and C0 by ISO 76 of a bearing, N.
+    """Ratings of a bearing for its life: C by ISO 281 and C0 by ISO 76, N.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def ratings_of(bearing: BallBearing) -> Ratings:
 
 
 def race_capacities(bearing: BallBearing, C: float) -> Races:
-    """Ball load, N, that each race bears for a million revolutions: Qci and Qce of ISO/TS 16281.
+    """Ball load, N, with which each race has a life of a million revolutions: Qci, Qce of ISO/TS 16281.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def race_capacities(bearing: BallBearing, C: float) -> Races:
 
 
 def equivalent_ball_loads(bearing: BallBearing, inner: ArrayLike, outer: ArrayLike) -> Races:
-    """Dynamic equivalent ball load of each race, N, from the loads of the balls.
+    """Dynamic equivalent ball load of each race for its rating life, N, from the loads of the balls.
 
     (Σ Q³/Z)^{1/3} of a race that turns against the load, (Σ Q^{10/3}/Z)^{3/10} of one that stands; the load
     is taken to stand in space, and which ring turns is said by the bearing's `turning`.
@@ -170,7 +170,7 @@ def rating_life(
 
 
 def with_arm(bearing: BallBearing, arm: Arm) -> BallBearing:
-    """The bearing with the arm of its tilts and moments as the standard has it, or as it is.
+    """The bearing for its rating life: with the arm of tilts and moments that the standard has, or its own.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def with_arm(bearing: BallBearing, arm: Arm) -> BallBearing:
 
 
 def loads_under(bearing: BallBearing, load: ArrayLike, *, arm: Arm = "mean", angle: float = 0.0) -> Array:
-    """Loads of the balls (Z,), N, in the equilibrium under a load (6,), N and N m.
+    """For the life of one load, ball loads (Z,), N, in the equilibrium under it, (6,), N and N m.
 
     Parameters
     ----------

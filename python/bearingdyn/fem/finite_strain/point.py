@@ -38,7 +38,7 @@ DEVIATORIC = SYMMETRIC - np.outer(ONE, ONE) / 3.0
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """Points of a deformed material.
+    """Points of a material at finite strain: deformation, stress, tangent.
 
     Parameters
     ----------

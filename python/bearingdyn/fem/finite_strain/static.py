@@ -22,7 +22,7 @@ LEAST_VOLUME = 0.05  # ratio of areas or volumes at a point below which a trial 
 
 
 class State(Protocol):
-    """A deformed body."""
+    """A static state at finite strain: a deformed body."""
 
     @property
     def volume_ratio(self) -> float:
@@ -45,7 +45,7 @@ class State(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """A rigid surface without friction that coordinates cannot pass: sign·u <= gap + sign·travel·s.
+    """A wall for a static state: frictionless, coordinates cannot pass: sign·u <= gap + sign·travel·s.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Wall:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """A static state.
+    """The balance of a static state at finite strain.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Balance:
 
 
 class NoBalance(ArithmeticError):
-    """No static state was found beyond a share of the squeeze.
+    """No static balance at finite strain was found beyond a share of the squeeze.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def balance(
     walls: Sequence[Wall] = (),
     check: Callable[[Any], str | None] = lambda state: None,
 ) -> Balance:
-    """The state after the held coordinates and the walls have travelled.
+    """Static balance at finite strain: the state after held coordinates and walls have travelled.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ OLD = {15: 2411, 781: 2411, 71: 2412, 780: 2412, 2429: 2477, 2430: 2477, 2432: 2
 
 
 def read_unv(path: Path) -> RawMesh:
-    """The mesh of a universal file of I-deas; groups of elements are regions and surfaces, else properties.
+    """The mesh of a universal file of I-DEAS (.unv); groups or properties are regions and surfaces.
 
     Raises
     ------

@@ -11,7 +11,7 @@ from bearingdyn.types import Array, Index
 
 
 def disc_section(radius: float, half: float, share: Array, layers: int) -> tuple[Array, Index]:
-    """Points (k, 2) and quadrilaterals (m, 4), clockwise, of a disc: a rectangle and four patches about it.
+    """Section of a disc: points (k, 2), quadrilaterals (m, 4), clockwise, a rectangle and four patches.
 
     Parameters
     ----------

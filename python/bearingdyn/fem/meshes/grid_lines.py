@@ -49,7 +49,7 @@ def lines_through(stops: list[float], size: float, least: int = 1) -> Array:
 
 
 def graded_line(a: float, b: float, first: float, cap: float, growth: float) -> Array:
-    """Graded grid lines from a to b, symmetric: steps near `first` at the ends, growing up to `cap`."""
+    """Grid lines from a to b, graded and symmetric: steps near `first` at the ends, growing up to `cap`."""
     steps: list[float] = []
     step, reach, half = min(first, cap), 0.0, 0.5 * (b - a)
     while reach < half:

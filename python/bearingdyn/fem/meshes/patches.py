@@ -38,7 +38,7 @@ def revolved(flat: SolidMesh, closed: bool) -> SolidMesh:
 
 
 def angles_of(angle: tuple[float, float] | None, around: int) -> tuple[float, float]:
-    """Where patches that are revolved begin and end, rad; ValueError for an empty or too wide angle."""
+    """Angles at which revolved patches begin and end, rad; ValueError for an empty or too wide one."""
     start, end = (0.0, 2.0 * math.pi) if angle is None else angle
     if not (start < end and (angle is None or end - start < 2.0 * math.pi - 1e-6)):
         raise ValueError(f"angle is {angle}; it must be (from, to) in rad, less than a turn; None: the whole")

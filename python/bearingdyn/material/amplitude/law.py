@@ -33,7 +33,7 @@ _BEYOND = 3.0  # times the larger of γc and γl: how far E is asked to stay pos
 
 @dataclass(frozen=True)
 class Payne:
-    """Loss of stiffness of a filled rubber with the amplitude of strain, and the damping that comes of it.
+    """Law of softening of a filled rubber: loss of stiffness with amplitude, and damping that comes of it.
 
     Parameters
     ----------
@@ -162,6 +162,13 @@ class Payne:
         w = np.asarray(omega, dtype=np.float64)
         there = self.storage(self.gamma_r) + 1j * np.sign(w) * self.loss(self.gamma_r)
         return np.asarray(self.dynamic(w, gamma, mean) - there)
+
+    def slope(self, gamma: ArrayLike) -> Complex:
+        """dF/d ln γ + i dL/d ln γ, Pa, at strain amplitudes γ ≥ 0, for a vibration at one frequency."""
+        strain = _strain(gamma)
+        u, v = (strain / self.gamma_c) ** self.p, (strain / self.gamma_l) ** self.p
+        storage = -self.m * self.D * u * (1.0 + u) ** (-self.m / self.p - 1.0)
+        return np.asarray(storage + 1j * self.p * self.Lm * v / (1.0 + v) ** 2)
 
     def scaled(self, factor: float) -> Self:
         """The law of a rubber harder by this factor: D and Lm times it."""

@@ -10,7 +10,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True)
 class PayneFit:
-    """How well a law renders the strain sweep it was fitted to.
+    """Report of a fitted law of softening: how well it renders the sweep over amplitude.
 
     Attributes
     ----------

@@ -28,7 +28,7 @@ _DECADE = 10.0  # of a model without a band: so far beyond its times
 
 @dataclass(frozen=True)
 class Rest:
-    """A Maxwell model of G_lin − F(γr) − i L(γr), and what it misses.
+    """The rest of a law of softening: a Maxwell model of G_lin − F(γr) − i L(γr), and what it misses.
 
     Attributes
     ----------

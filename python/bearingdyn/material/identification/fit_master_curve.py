@@ -21,7 +21,7 @@ from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification.bounds import Limits
-from bearingdyn.material.identification.fit_relaxation import fit_relaxation
+from bearingdyn.material.identification.fit_relaxation import fit_relaxation, warn_of_fewer
 from bearingdyn.material.identification.low_end_of_fit import low_end
 from bearingdyn.material.identification.points_in_band import Points
 from bearingdyn.material.identification.polish import Polished, polish
@@ -69,7 +69,8 @@ def fit_maxwell(
         only fixed={"G0": ...} is offered. A curve measured in tension is turned into shear by G* = 3KE*/(9K
         − E*) with the K below, and a warning says so; :meth:`MasterCurve.to_shear` beforehand is silent.
     n
-        Number of branches; those to which the data give no strength are left out of the result.
+        Number of branches; those to which the data give no strength are left out of the result, with a
+        warning.
         "auto": the smallest number whose rms deviations of G′ and of tan δ are within `tolerance`, or
         within 1.2 times what the best dense spectrum leaves.
     band
@@ -107,6 +108,15 @@ def fit_maxwell(
     ValueError
         If the band is empty or holds too few points, a value is out of range, or a pin lies at a time that
         the master curve does not reach and has no modulus.
+
+    Warns
+    -----
+    FewerBranches
+        Where the data hold fewer branches than n.
+    CoarseModel
+        Where n="auto" finds no number that is within the tolerance.
+    TensionAsShear
+        Where a curve was measured in tension.
 
     References
     ----------
@@ -149,6 +159,7 @@ def fit_maxwell(
     else:
         bound = Limits.of(n, points.limits, limits, held)
         best = _best(points, bound)
+    warn_of_fewer(n, best.tau.size)
     return Maxwell(
         float(best.strengths[0]),
         best.strengths[1:-1],

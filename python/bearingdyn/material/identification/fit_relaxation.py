@@ -14,6 +14,7 @@ from bearingdyn.material.fit_report import FitReport
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.relaxation_spectrum import Strengths, dense_times, solve_strengths
+from bearingdyn.notice import FewerBranches, warn
 from bearingdyn.types import Array
 
 _MOST = 20  # branches tried by n = "auto"
@@ -70,9 +71,27 @@ def fit_relaxation(
     used = G > 0
     order = np.argsort(tau[used])
     tau, G = tau[used][order], G[used][order]
+    warn_of_fewer(n, G.size)
     T = float(data.isotherm_temperatures[0])
     report = _report(t, g, G0, G, tau, floor, spring is None)
     return Maxwell(G0, G, tau, 0.0, K=K, density=density, temperature=T, fit=report)
+
+
+def warn_of_fewer(n: int | Literal["auto"], found: int) -> None:
+    """Warn that a fit has fewer branches than the n asked for.
+
+    Warns
+    -----
+    FewerBranches
+        With the number that the data hold.
+    """
+    if n != "auto" and found < n:
+        hold = "1 branch" if found == 1 else f"{found or 'no'} branches"
+        warn(
+            f"n is {n}, and the data hold {hold}: more would have no strength, or change nothing, and are "
+            f'left out; ask for n={max(found, 1)}, or n="auto"',
+            FewerBranches,
+        )
 
 
 def _in_shear(data: RelaxationData, band: tuple[float, float] | None, K: float) -> tuple[Array, Array]:

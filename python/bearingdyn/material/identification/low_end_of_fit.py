@@ -18,7 +18,7 @@ _HALVINGS = 10  # of the search for an end of the interval
 
 
 def low_end(points: Points, G0: float, deviation: Array, measured: float) -> LowEnd:
-    """What a fit's points say of its low end: G0, Pa, deviation of ln G′ (p,), the lowest frequency, Hz."""
+    """Low end of a fit from its points: G0, Pa, deviation of ln G′ (p,), the lowest frequency, Hz."""
     scatter = float(np.sqrt(np.mean(deviation**2)))
     lowest = float(points.omega.min())
     near = points.omega <= 10 * lowest

@@ -12,7 +12,7 @@ from bearingdyn.types import Array
 
 
 class Projection:
-    """Relaxation times by variable projection; strengths in the order spring, branches, dashpot."""
+    """Variable projection: relaxation times; strengths in the order spring, branches, dashpot."""
 
     def __init__(self, points: Points, limits: Limits) -> None:
         self.points, self.limits = points, limits

@@ -28,7 +28,7 @@ _NEW_SHARE = 1e-3
 
 
 def merged_spectrum(points: Points, limits: Limits) -> tuple[Array, Array]:
-    """Times and strengths (spring, branches, dashpot) of the dense spectrum, merged to n branches."""
+    """Start of a fit from the dense spectrum merged to n branches: times and strengths."""
     n = limits.log_lower.size
 
     def solve(log_tau: Array, within: Limits) -> tuple[float, Array]:
@@ -60,7 +60,7 @@ def merged_spectrum(points: Points, limits: Limits) -> tuple[Array, Array]:
 
 
 def most_useful(points: Points, fit: Polished, limits: Limits) -> tuple[float, Array, Array]:
-    """What a polished fit would gain by one more branch, spring or dashpot, and times and strengths with it.
+    """Start with one more term: what a polished fit would gain by a branch, spring or dashpot more.
 
     The gain is a share of the sum of squares, to first order, the fit's own parameters following; zero
     where no addition lowers it.

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import positive, require
+from bearingdyn.magnitude import plausible
 from bearingdyn.material.dma import Mode
 from bearingdyn.material.reading.block import Block, cell_at
 from bearingdyn.material.reading.columns import is_number, number_of, title_of
@@ -34,7 +35,7 @@ _FORCE_UNITS = {"n": 1.0, "": 1.0, "mn": 1e-3, "kn": 1e3}
 
 @dataclass(frozen=True, eq=False)
 class StrainSweep:
-    """Moduli over the amplitude of strain, at one frequency and one temperature.
+    """A strain sweep: moduli over the amplitude of strain, at one frequency and one temperature.
 
     Parameters
     ----------
@@ -101,6 +102,8 @@ class StrainSweep:
             f"a strain is a fraction of at most {_LARGEST:g}; was it in percent? Then divide by 100",
         )
         positive(f"{self.source}: frequency", self.frequency, "it must be positive and finite, Hz")
+        for limit in (self.storage.min(), self.storage.max()):
+            plausible("shear modulus", f"{self.source}: storage", float(limit))
         require(self.mode in ("shear", "tension"), "mode", self.mode, "it must be 'shear' or 'tension'")
 
     def to_shear(self) -> StrainSweep:
@@ -268,7 +271,7 @@ def _column(
 
 
 def in_shear(sweep: StrainSweep) -> StrainSweep:
-    """The sweep in shear; a warning says so where it was in tension."""
+    """The strain sweep in shear; a warning says so where it was in tension."""
     if sweep.mode == "tension":
         warn(
             f"{sweep.source}: a strain sweep in tension is turned into shear by G* = E*/3 and γ = √3 ε: "

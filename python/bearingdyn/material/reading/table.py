@@ -44,7 +44,7 @@ NO_LETTER = "the header does not tell G (shear) from E (tension): give mode='she
 
 @dataclass(frozen=True)
 class Table:
-    """A table: what stands in a source, by column, Hz, °C and Pa, (n,) each.
+    """A table as read: what stands in a source, by column, Hz, °C and Pa, (n,) each.
 
     Attributes
     ----------

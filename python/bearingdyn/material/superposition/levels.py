@@ -28,14 +28,14 @@ _TOLD, _ERRORS = 0.02, 3.0  # of ln level, and of its standard errors, from whic
 
 @dataclass(frozen=True)
 class Levels:
-    """Factor of each run, in the order of their appearance, and its standard error; the first is 1."""
+    """Levels of a measurement's runs: factor of each and its standard error; the first is 1."""
 
     factors: dict[str, float]
     errors: dict[str, float]
 
 
 def find_levels(dma: DMAData, T_ref: float, law: LawName, smoothness: float | None) -> Levels | None:
-    """The factors that make one material of the runs of a measurement; None where there is one run.
+    """Find the levels that make one material of the runs of a measurement; None where there is one run.
 
     Parameters
     ----------
@@ -128,6 +128,6 @@ def find_levels(dma: DMAData, T_ref: float, law: LawName, smoothness: float | No
 
 
 def levelled(dma: DMAData, which: NDArray[np.int64], logs: Array) -> DMAData:
-    """A measurement with the moduli of its runs, numbers `which` (n,), times exp(logs) of their number."""
+    """A measurement levelled: the moduli of its runs, `which` (n,), times exp(logs) of their number."""
     factor = np.exp(logs[which])
     return replace(dma, storage=dma.storage * factor, loss=dma.loss * factor)

@@ -93,7 +93,7 @@ def draw_bearing(
 
 
 def fine(shape: Any) -> None:
-    """Thin hatching, where this matplotlib can have it for one shape."""
+    """Thin hatching of a bearing's section, where this matplotlib can have it for one shape."""
     if hasattr(shape, "set_hatch_linewidth"):
         shape.set_hatch_linewidth(0.35)
 

@@ -19,7 +19,7 @@ TEXT = 8.0  # points
 
 
 def spread(wanted: Array, least: float) -> Array:
-    """Places (n,) nearest the wanted, in their order, at least `least` apart."""
+    """Spread labels of a drawing: places (n,) nearest the wanted, in order, at least `least` apart."""
     order = np.argsort(wanted, kind="stable")
     # isotonic regression of what is wanted less the steps: pools of neighbours that press on each other
     pools: list[list[float]] = []
@@ -39,7 +39,7 @@ def spread(wanted: Array, least: float) -> Array:
 
 
 def balloons(ax: Axes, shown: Machine, names: list[str], top: float, scale: float) -> None:
-    """A number in a circle for each part and bearing, with a line to a dot in it."""
+    """Labels of a drawing: a number in a circle for each part and bearing, with a line to a dot in it."""
     targets: dict[str, tuple[float, float]] = {}
     for part in shown.parts:
         targets[part.name] = _inside(part.profiles)
@@ -85,7 +85,7 @@ def _inside(profiles: Any) -> tuple[float, float]:
 
 
 def place_names(ax: Axes, shown: Machine, top: float, scale: float) -> float:
-    """Names of seats and points below the section, with lines up to them; returns how far down, mm."""
+    """Label seats and points by name below the section, lines up to them; returns how far down, mm."""
     named: dict[tuple[float, float], list[str]] = {}
     for name, at in shown.places.items():
         key = (round(float(at[2]), 3), round(float(at[1]), 3))
@@ -117,7 +117,7 @@ def place_names(ax: Axes, shown: Machine, top: float, scale: float) -> float:
 
 
 def dimensions(ax: Axes, shown: Machine, top: float, scale: float) -> float:
-    """Distances of the bearings and the length of the shaft, mm; returns how far down they reach."""
+    """Label distances of bearings and the length of the shaft, mm; returns how far down they reach."""
     balls = [shown.balls(joint) for joint in shown.plan.bearings.values()]
     at = {round(float(each[2]), 3) for each in balls if each is not None}
     y = top - 12 * scale
@@ -146,7 +146,7 @@ def _dimension(ax: Axes, a: float, b: float, y: float, scale: float) -> None:
 
 
 def axes_glyph(ax: Axes, z: float, y: float, scale: float) -> None:
-    """Which way z and y point; x points away from the reader."""
+    """Label a drawing's axes: which way z and y point; x points away from the reader."""
     look = {"arrowstyle": "-|>", "color": "0.3", "linewidth": 0.8, "mutation_scale": 7}
     for name, way in (("z", (22, 0)), ("y", (0, 22))):
         end = (z + way[0] * scale, y + way[1] * scale)

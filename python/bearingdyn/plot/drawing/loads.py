@@ -34,7 +34,7 @@ HALO: dict[str, Any] = {
 
 
 def value(x: float, unit: str) -> str:
-    """A size in the multiple of its unit that suits it: "−1.5 kN"."""
+    """Value of a drawn load in the multiple of its unit that suits it: "−1.5 kN"."""
     if x == 0:
         return f"0 {unit}"
     power = 3 * math.floor(math.log10(abs(x)) / 3 + 1e-9)

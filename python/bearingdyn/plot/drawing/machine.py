@@ -14,7 +14,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True)
 class Shown:
-    """What is shown of one part: its outlines in mm, z and y from the first interface of the first part."""
+    """What is drawn of one part of a machine: outlines in mm from the first interface of the first part."""
 
     name: str
     profiles: tuple[Profile, ...]
@@ -86,7 +86,7 @@ def _shown(plan: Plan, places: dict[str, Array]) -> Iterator[Shown]:
 
 
 def placed(plan: Plan, name: str, outline: Outline) -> Array:
-    """Points (p, 3) of a part's outline from its first interface, m."""
+    """Points (p, 3) of the outline of a part of a drawn machine from its first interface, m."""
     rigid = plan.rigid_shapes(name)
     assert rigid is not None  # the part has a known place
     mean = outline.rows.reshape(-1, 3, outline.rows.shape[1]).mean(axis=0)
@@ -94,7 +94,7 @@ def placed(plan: Plan, name: str, outline: Outline) -> Array:
 
 
 def surface(machine: Machine, place: Place) -> tuple[float, float, float, float] | None:
-    """Kind's sign, radius and reach along z, mm, of the cylinder by which a part is held at a place."""
+    """For a drawn machine, sign, radius and reach along z, mm, of the cylinder by which a part is held."""
     faces, at = machine.plan.faces(place), machine.places.get(str(place))
     if not faces or at is None:
         return None

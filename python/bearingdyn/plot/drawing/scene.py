@@ -16,7 +16,7 @@ from bearingdyn.types import Array
 
 @figure(app=one(Application, maker="an Application (bd.Application())"))
 def scene(app: Application) -> Any:
-    """A machine as a pyvista.MultiBlock, a block for each part and each bearing's balls; `.plot()` shows it.
+    """A machine as a scene in 3-D, a pyvista.MultiBlock, a block for each part and each bearing's balls.
 
     Parameters
     ----------

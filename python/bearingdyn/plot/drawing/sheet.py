@@ -34,7 +34,7 @@ LINE = 0.17  # inches from one line of the parts list to the next
 
 @figure(app=one(Application, maker="an Application (bd.Application())"), table=truth)
 def draw(app: Application, ax: Axes | None = None, *, table: bool = True) -> Axes:
-    """Draw a machine before anything is solved: the section along its shaft, to scale, in mm.
+    """Draw a machine on one sheet before anything is solved: the section along its shaft, to scale, in mm.
 
     Shafts are drawn whole, all else is cut by the plane x = 0: metal hatched, rubber crossed and yellow. The
     bearings have their rings, balls and line of contact. Red arrows are loads, with their values, hatched

@@ -15,7 +15,7 @@ LINE: dict[str, Any] = {"color": "0.15", "linewidth": 1.0, "solid_capstyle": "bu
 
 
 def ground(ax: Axes, start: Array, end: Array, size: float) -> None:
-    """Draw the ground along a line from start to end (2,), mm: hatched on its right hand, `size` deep."""
+    """Draw a support's ground from start to end (2,), mm: hatched on its right hand, `size` deep."""
     along = end - start
     length = float(np.hypot(*along))
     if length <= 0:
@@ -31,7 +31,7 @@ def ground(ax: Axes, start: Array, end: Array, size: float) -> None:
 
 
 def spring(ax: Axes, top: Array, bottom: Array, size: float) -> None:
-    """Draw a spring between two points (2,), mm, `size` wide."""
+    """Draw a support's spring between two points (2,), mm, `size` wide."""
     along = bottom - top
     across = np.array([-along[1], along[0]]) / max(float(np.hypot(*along)), 1e-12)
     t = np.array([0.0, 0.2, *np.linspace(0.24, 0.76, 9), 0.8, 1.0])
@@ -41,7 +41,7 @@ def spring(ax: Axes, top: Array, bottom: Array, size: float) -> None:
 
 
 def damper(ax: Axes, top: Array, bottom: Array, size: float) -> None:
-    """Draw a dashpot between two points (2,), mm, `size` wide."""
+    """Draw a support's dashpot between two points (2,), mm, `size` wide."""
     along = bottom - top
     across = np.array([-along[1], along[0]]) / max(float(np.hypot(*along)), 1e-12)
     half = 0.5 * size * across

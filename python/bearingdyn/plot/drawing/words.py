@@ -29,7 +29,7 @@ def designation(bearing: BallBearing) -> tuple[str, bool]:
 
 
 def material_words(material: Any) -> str:
-    """A material in a few words."""
+    """A drawing's words for a material."""
     if isinstance(material, Elastic):
         if (material.E, material.density) == (210e9, 7850.0):
             return "steel"
@@ -40,7 +40,7 @@ def material_words(material: Any) -> str:
 
 
 def part_words(source: Any) -> str:
-    """What a part is: its kind and measures, in mm."""
+    """A drawing's words for a part: its kind and measures, in mm."""
     mm = 1e3
     if isinstance(source, Shaft):
         widest = max(s.d_outer for s in source.sections)
@@ -67,7 +67,7 @@ def part_words(source: Any) -> str:
 
 
 def bearing_words(bearing: BallBearing) -> str:
-    """What a bearing is: balls, and clearance or contact angle."""
+    """A drawing's words for a bearing: balls, and clearance or contact angle."""
     play = (
         f"clearance {1e6 * bearing.clearance:.3g} µm"
         if bearing.clearance is not None
@@ -80,7 +80,7 @@ def bearing_words(bearing: BallBearing) -> str:
 
 
 def parts_list(plan: Plan) -> Mapping[str, Row]:
-    """Of every part, bearing and fit by name: what it is, and its mass."""
+    """A drawing's list in words: every part, bearing and fit by name, what it is, and its mass."""
     rows: dict[str, Row] = {}
     for name, source in plan.sources.items():
         mass, T = plan.mass(name), plan.temperatures.get(name)

@@ -17,7 +17,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class LoadCases:
-    """Equilibria of one bearing under many loads.
+    """Load cases: equilibria of one bearing under many loads.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def load_cases(
     arm: Arm = "mean",
     angle: float = 0.0,
 ) -> LoadCases:
-    """Equilibrium, ball loads and basic reference rating life under each of many loads.
+    """Load cases of a bearing: equilibrium, ball loads and basic reference rating life under each of many.
 
     The same as `rating_life` case by case, solved in C; tens of thousands of cases a second.
 
@@ -119,7 +119,7 @@ def load_cases(
 
 
 def lives(bearing: BallBearing, inner: Array, outer: Array, C: float) -> Array:
-    """Basic reference rating lives (m,), million revolutions, from the loads of the balls (m, Z), N.
+    """Lives (m,) of many load cases, million revolutions, from the loads of the balls (m, Z), N.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ _RELIABILITY = {90: 1.0, 95: 0.64, 96: 0.55, 97: 0.47, 98: 0.37, 99: 0.25}
 
 
 def reference_viscosity(speed: float, Dpw: float) -> float:
-    """Kinematic viscosity ν1, m²/s, that separates the surfaces at a speed (ISO 281).
+    """Reference viscosity ν1 for the modified life, m²/s: separates the surfaces at a speed (ISO 281).
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def reference_viscosity(speed: float, Dpw: float) -> float:
 
 
 def fatigue_limit(C0: float, Dpw: float) -> float:
-    """Fatigue load limit C_u of a ball bearing, N: C0/22, less above Dpw = 100 mm (ISO 281, simple).
+    """Fatigue load limit C_u for the modified life, N: C0/22, less above Dpw = 100 mm (ISO 281, simple).
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def fatigue_limit(C0: float, Dpw: float) -> float:
 
 
 def contamination_factor(contamination: float | str, Dpw: float) -> float:
-    """e_C of a word of CONTAMINATION, or the number itself, 0 to 1.
+    """Contamination factor e_C for the modified life, of a word of CONTAMINATION, or the number itself.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def contamination_factor(contamination: float | str, Dpw: float) -> float:
 
 
 def life_factor(kappa: float, contamination: float, Cu: float, P: float) -> float:
-    """a_ISO of a radial ball bearing, at most 50 (ISO 281:2007, eqs 31 to 33).
+    """Factor a_ISO of the modified life of a radial ball bearing, at most 50 (ISO 281:2007, eqs 31 to 33).
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def life_factor(kappa: float, contamination: float, Cu: float, P: float) -> floa
 
 
 def reliability_factor(reliability: float) -> float:
-    """a1 of ISO 281:2007 for a reliability of 90 to 99 %; between the tabled ones by its logarithm.
+    """Factor a1 of the modified life for a reliability of 90 to 99 % (ISO 281:2007), between by logarithms.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def reliability_factor(reliability: float) -> float:
 
 @dataclass(frozen=True)
 class ModifiedLife:
-    """What ISO 281 makes of a rating life in a given oil."""
+    """Modified life: what ISO 281 makes of a rating life in a given oil."""
 
     kappa: float
     """Viscosity ratio ν/ν1."""
@@ -173,7 +173,7 @@ def modified_life(
     contamination: float | str = "normal cleanliness",
     reliability: float = 90.0,
 ) -> ModifiedLife:
-    """Life in a given oil from the basic one: a1 a_ISO L10.
+    """Modified life in a given oil from the basic one: a1 a_ISO L10.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def modified_life(
 
 
 def in_hours(revolutions: float, speed: float) -> float:
-    """Hours of a number of million revolutions at a speed in rad/s; inf at rest.
+    """Modified or basic life in hours, from million revolutions and a speed in rad/s; inf at rest.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def in_hours(revolutions: float, speed: float) -> float:
 
 
 class Phase(NamedTuple):
-    """One part of a duty cycle."""
+    """One phase of a duty cycle, for its equivalent modified life."""
 
     share: float
     """Of the time, 0 to 1."""
@@ -235,7 +235,7 @@ class Phase(NamedTuple):
 
 
 def equivalent_life(phases: Iterable[Phase]) -> tuple[float, float]:
-    """Life of a duty cycle by the rule of Palmgren and Miner, in million revolutions and in hours.
+    """Modified life of a duty cycle by the rule of Palmgren and Miner, in million revolutions and hours.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ _FC = 0.41 * 98.0665 * 0.95
 
 
 class Thrust(NamedTuple):
-    """Radial and axial factor of an equivalent load, and the ratio Fa/Fr from which they hold."""
+    """Factors X and Y by the standard of an equivalent load, and the ratio Fa/Fr from which they hold."""
 
     X: float
     Y: float
@@ -57,7 +57,7 @@ _Y0 = (0.46, 0.42, 0.38, 0.33, 0.29, 0.26, 0.22)
 
 @lru_cache(maxsize=1024)
 def static_factor(gamma: float, inner_only: bool = False) -> float:
-    """f0 of ISO 76, N/mm², of Dw cosα/Dpw = γ: the ball load over 5 Dw² at 4.2 GPa.
+    """Factor f0 by the standard ISO 76, N/mm², of Dw cosα/Dpw = γ: the ball load over 5 Dw² at 4.2 GPa.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def static_factor(gamma: float, inner_only: bool = False) -> float:
 
 
 def dynamic_factor(gamma: float) -> float:
-    """fc of ISO 281 of single-row radial and angular contact ball bearings, of Dw cosα/Dpw = γ.
+    """Factor fc by the standard ISO 281 of single-row ball bearings, of Dw cosα/Dpw = γ.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def dynamic_factor(gamma: float) -> float:
 
 
 class Ratings(NamedTuple):
-    """Basic ratings of a bearing, N."""
+    """Basic ratings C and C0 of a bearing by the standards, N."""
 
     C: float
     """Basic dynamic radial rating (ISO 281): 1 million revolutions at 90 %."""
@@ -106,7 +106,7 @@ class Ratings(NamedTuple):
 
 
 def iso_ratings(Z: int, Dw: float, Dpw: float, contact_angle: float = 0.0) -> Ratings:
-    """C by ISO 281 and C0 by ISO 76 of a single row of balls.
+    """Ratings by the standards of a single row of balls: C by ISO 281 and C0 by ISO 76.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def iso_ratings(Z: int, Dw: float, Dpw: float, contact_angle: float = 0.0) -> Ra
 
 
 def dynamic_factors(ratio: float, contact_angle: float = 0.0) -> Thrust:
-    """X, Y and e of P = X Fr + Y Fa (ISO 281), for Fa/Fr above e; linear between the values of the tables.
+    """Factors X, Y and e by the standard ISO 281, P = X Fr + Y Fa; linear between the tables' values.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def dynamic_factors(ratio: float, contact_angle: float = 0.0) -> Thrust:
 def equivalent_load(
     radial: float, axial: float, C0: float, *, contact_angle: float = 0.0, f0: float
 ) -> float:
-    """Dynamic equivalent radial load P of a single bearing, N (ISO 281).
+    """Dynamic equivalent radial load P of a single bearing by the standard ISO 281, N.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def equivalent_load(
 
 
 def equivalent_static_load(radial: float, axial: float, contact_angle: float = 0.0) -> float:
-    """Static equivalent radial load P0 of a single bearing, N (ISO 76): .6 Fr + .5 Fa, at least Fr.
+    """Static equivalent radial load P0 by the standard ISO 76, N: .6 Fr + .5 Fa, at least Fr.
 
     Parameters
     ----------

@@ -1,0 +1,83 @@
+"""What the bearings bore along steady motions: loads over their rating, an open side, or nothing at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearingdyn.analysis.equilibrium import PARTED
+from bearingdyn.analysis.overload import warn_of_peak
+from bearingdyn.analysis.steady.balance import Balance, Pressed
+from bearingdyn.bearing import OPEN_SIDE_REMEDY, samples_off
+from bearingdyn.notice import NothingPushes, OpenSideWarning, warn
+from bearingdyn.system import BearingTerm
+from bearingdyn.types import Complex
+
+PUSH = "Add what pushes (app.gravity, app.load, app.unbalance)"
+
+
+@dataclass
+class _Worst:
+    """Of one bearing: the largest load of a ball, N, and the first motion that pressed its open side."""
+
+    term: BearingTerm
+    peak: float = 0.0
+    where: str = ""
+    open_where: str = ""
+    share: float = 0.0
+
+
+def pushed(balance: Balance, pressed: Pressed) -> bool:
+    """Whether a load acts, or a ball is pressed along a motion."""
+    loaded = any((along.loads > PARTED).any() for along in pressed.bearings)
+    return loaded or any(force.any() for _, force in balance.loads)
+
+
+def warn_of_motions(motions: Iterable[tuple[Balance, Complex, str]]) -> None:
+    """Warn of what the bearings bore along steady motions, once for each bearing.
+
+    Parameters
+    ----------
+    motions
+        Balance, amplitudes (L, m), m, and which motion it is, such as "at 100 rad/s".
+
+    Warns
+    -----
+    BearingWarning
+        Where the contact pressure of a ball exceeds 4.2 GPa (ISO 76); the heaviest ball of all motions.
+    OpenSideWarning
+        Where balls of an angular contact bearing are pressed where it has no shoulder, or none onto it.
+    NothingPushes
+        Where no ball is pressed along a motion, and no load acts.
+    """
+    worst: dict[str, _Worst] = {}
+    for balance, z, where in motions:
+        pressed = balance.press(z, tangents=False)
+        if not pushed(balance, pressed):
+            warn(
+                f"nothing pushes {where}: no ball is pressed along the motion, and no load acts; every "
+                f"amplitude is zero. {PUSH}",
+                NothingPushes,
+            )
+        moved = balance.lines.signals(z)
+        for term, own, along, (angles, _) in zip(
+            balance.system.bearings, balance.slots, pressed.bearings, balance.bodies, strict=True
+        ):
+            held = worst.setdefault(term.name, _Worst(term))
+            peak = float(along.loads.max(initial=0.0))
+            if peak > held.peak:
+                held.term, held.peak, held.where = term, peak, where
+            off = samples_off(term.kernel(), moved[:, own], along.loads, angles[:, 0])
+            if off.any() and not held.open_where:
+                held.open_where, held.share = where, float(np.mean(off))
+    for name, held in worst.items():
+        warn_of_peak(held.term, held.peak, held.where)
+        if held.open_where:
+            warn(
+                f"bearing {name!r}: {held.open_where}, for {held.share:.2g} of the time, balls are pressed "
+                f"onto its open side, where no shoulder holds them, or none of them onto its shoulder; "
+                f"{OPEN_SIDE_REMEDY}",
+                OpenSideWarning,
+            )
