@@ -1,4 +1,4 @@
-"""What the film of a point contact costs, on one core: steady, eight frequencies, a step, a look-up.
+"""What the film of a point contact costs, on one core: steady state, harmonic answer, step in time, look-up.
 
 OPENBLAS_NUM_THREADS=1 python benchmarks/ehl.py [--json]
 

@@ -214,7 +214,7 @@ def test_both_rings_bend() -> None:
     ("changes", "message"),
     [
         ({"race": "both"}, r"^race is 'both'; "),
-        ({"outside": "flexible"}, r"^outside is 'flexible'; "),
+        ({"outside": "loose"}, r"^outside is 'loose'; "),
         ({"arm": 0.012, "bearing": None}, r"^arm is 0\.012 m; it must lie outside the bore"),
         ({"r_inner": 14.5 * MM}, r"^r_inner is 0\.0145; the ring is .* make r_inner at most 0\.0141"),
         (

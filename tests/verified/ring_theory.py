@@ -82,3 +82,20 @@ def annulus_on_bed(n: int, E: float, nu: float, a: float, b: float, bed: float) 
     outer_stress, outer_shear, outer_move = rows(1.0)
     c = np.linalg.solve([held, shear, outer_stress, outer_shear], [0.0, 0.0, 1.0, 0.0])
     return float(np.dot(outer_move, c)) * b / (2 * mu)
+
+
+def annulus_hoop(n: int, a: float, b: float) -> float:
+    """σ_φ at r = b over the pressure cos nφ at r = a, outside free, n ≥ 2; Michell's solution as above."""
+    ratio = b / a
+
+    def rows(r: float) -> tuple[list[float], list[float], list[float]]:
+        up, down = r**n, r**-n
+        radial = [-(n + 1) * (n - 2) * up, -(n + 2) * (n - 1) * down]
+        radial += [-n * (n - 1) * up / r**2, -n * (n + 1) * down / r**2]
+        shear = [n * (n + 1) * up, -n * (n - 1) * down, n * (n - 1) * up / r**2, -n * (n + 1) * down / r**2]
+        hoop = [(n + 1) * (n + 2) * up, (n - 1) * (n - 2) * down]
+        hoop += [n * (n - 1) * up / r**2, n * (n + 1) * down / r**2]
+        return radial, shear, hoop
+
+    (inner, slip, _), (outer, outer_slip, hoop) = rows(1.0), rows(ratio)
+    return float(np.dot(hoop, np.linalg.solve([inner, slip, outer, outer_slip], [-1.0, 0.0, 0.0, 0.0])))

@@ -89,6 +89,9 @@ def state_space(
 ) -> StateSpace:
     """Linear model in state space about an equilibrium, whose transfer function is the frequency response.
 
+    Lubricated contacts are the springs and dampers that they are at low frequency, as with
+    contacts="viscous" of `frequency_response`: c(ω), which delays, would need states of its own.
+
     Parameters
     ----------
     source

@@ -385,7 +385,7 @@ class Application:
         self.plan.bearings |= {joint.name: joint for joint in joints}
 
     def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
-        """Set a flexible ring loosely in a bore.
+        """Set a flexible ring loosely in a bore, or on a shaft.
 
         Parameters
         ----------
@@ -394,25 +394,26 @@ class Application:
         fit
             Clearance and contact.
         ring
-            Outside of the ring, "ring.outside".
+            Outside of the ring, "ring.outside", or of one around a shaft its bore, "ring.inside".
         bore
-            An interface or "ground".
+            What it sits in or on: an interface or "ground", which stay round, or a raceway of another body,
+            such as a `Groove` that is the bore of a `Revolved` housing, which bends with it order by order.
 
         Raises
         ------
         ValueError
-            If this is no loose fit, a name is unknown or taken, or the ring's outside is no raceway.
+            If this is no loose fit, a name is unknown or taken, the ring's outside is no raceway, or the bore
+            moves by other orders or lies at another radius.
         """
         self.plan.check_new("fit", name)
-        joint = LooseJoint(name, fit, self.plan.place(ring), self.plan.interface_or_ground(bore))
+        joint = LooseJoint(name, fit, self.plan.place(ring), self.plan.raceway_or_interface(bore))
         if self.plan.raceway(joint.ring) is None:
             raise ValueError(
                 f'fit {name!r}: {ring!r} is no flexible face; make the ring with outside="flexible" and '
                 f'name its "outside"'
             )
         check_connection((joint.ring, joint.bore), (self.plan.faces(joint.ring), self.plan.faces(joint.bore)))
-        if joint.ring in self.plan.raceways_used():
-            raise ValueError(f"fit {name!r}: {ring} is in use already; give each its own")
+        self.plan.check_fit(joint)
         self.plan.fits[name] = joint
 
     @takes(vector=LOAD, frequency="Hz", phase="rad", time="s")

@@ -186,10 +186,38 @@ class Plan:
                 f"with the same order="
             )
 
+    def check_fit(self, joint: LooseJoint) -> None:
+        """Check a new loose fit against the raceways it joins.
+
+        Raises
+        ------
+        ValueError
+            If one is in use already, or a flexible bore does not fit the ring: by its orders, or its radius.
+        """
+        name = joint.name
+        for place in (joint.ring, joint.bore):
+            if place in self.raceways_used():
+                raise ValueError(f"fit {name!r}: {place} is in use already; give each its own")
+        ring, bore = self.raceway(joint.ring), self.raceway(joint.bore)
+        if ring is None or bore is None:
+            return
+        if ring.series != bore.series:
+            orders = [max(n for _, n, _ in race.series.terms) for race in (ring, bore)]
+            raise ValueError(
+                f"fit {name!r}: {joint.ring} moves by orders to {orders[0]} and {joint.bore} to {orders[1]}; "
+                f"make the bore with Groove(…, order={orders[0]})"
+            )
+        if not math.isclose(ring.arm, bore.arm, rel_tol=0.01):
+            raise ValueError(
+                f"fit {name!r}: {joint.ring} has a radius of {ring.arm:.6g} m and {joint.bore} of "
+                f"{bore.arm:.6g} m; make the bore with Groove(…, arm={ring.arm:.6g})"
+            )
+
     def raceways_used(self) -> set[Place]:
-        """Raceways that carry balls or sit in a bore, among the other ends of bearings."""
+        """Raceways that carry balls, or that a loose fit joins, among the other ends of bearings."""
         ends = {place for b in self.bearings.values() for place in (b.inner, b.outer)}
-        return {place for place in ends if self.raceway(place)} | {f.ring for f in self.fits.values()}
+        ends |= {place for f in self.fits.values() for place in (f.ring, f.bore)}
+        return {place for place in ends if self.raceway(place)}
 
     def partners(self) -> dict[Place, Place]:
         """Which interface each connected one moves with."""

@@ -17,7 +17,7 @@ from bearingdyn.cms import Superelement
 from bearingdyn.material import warn_beyond
 from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.ring_support import waves
-from bearingdyn.types import Array
+from bearingdyn.types import Array, Index
 
 
 class _State(NamedTuple):
@@ -146,11 +146,54 @@ class FlexibleBearing:
             )
         return self._around(self.ring.back, self._sign * self._settle(q, angle).g, azimuth)
 
+    def hoop_stress(self, q: ArrayLike, azimuth: ArrayLike, angle: float = 0.0) -> Array:
+        """Stress along the ring's outside at mid-width, an inner one's bore, (p,), Pa, by its orders.
+
+        It is that of the bending between the balls, without fit and spin. The pressure p of what holds the
+        ring is left out, which adds −ν/(1 − ν) p.
+
+        Parameters
+        ----------
+        q
+            Of the inner ring, as in `force`.
+        azimuth
+            (p,), rad.
+        angle
+            Of the cage.
+
+        Raises
+        ------
+        ValueError
+            For a ring whose outside is kept round.
+        """
+        ring = self.ring
+        if ring.layer is None and ring.back not in ring.body.grooves:
+            raise ValueError(
+                f"ring.outside is {ring.outside!r}; an outside that is kept round has no hoop strain: give "
+                f"the ring a RingBed, RingPoints or rubber"
+            )
+        psi = numbers("azimuth", azimuth, "it must hold angles in rad")
+        # a gauge of a tenth of the width along the axis
+        z = (-0.05 * ring.width, 0.05 * ring.width)
+        rows = ring.body.hoop_stress(ring.seat, z, psi, ring.material)
+        x = np.zeros(self._element.n)
+        x[self._rest] = self._deformed(self._sign * self._settle(q, angle).g)
+        return rows @ x[: rows.shape[1]]
+
+    @property
+    def _rest(self) -> Index:
+        """Coordinates but those of the seat, which is held."""
+        return np.setdiff1d(np.arange(self._element.n), self._element.interfaces[self.ring.held])
+
+    def _deformed(self, g: Array) -> Array:
+        """The ring's coordinates but those of its seat, under loads g on the raceway."""
+        element, rest = self._element, self._rest
+        K = element.stiffness().real[np.ix_(rest, rest)]
+        return np.asarray(np.linalg.solve(K, element.raceways["raceway"].rows[:, rest].T @ g))
+
     def _around(self, name: str, g: Array, azimuth: ArrayLike) -> Array:
         element, psi = self._element, numbers("azimuth", azimuth, "it must hold angles in rad")
-        rest = np.setdiff1d(np.arange(element.n), element.interfaces[self.ring.held])
-        K = element.stiffness().real[np.ix_(rest, rest)]
-        x = np.linalg.solve(K, element.raceways["raceway"].rows[:, rest].T @ g)
+        rest, x = self._rest, self._deformed(g)
         # the ring's own coordinates come first; what stands around it moves its outside only through them
         found = self.ring.body.superelement().raceways[name]
         z = (

@@ -49,9 +49,9 @@ class FlexibleRing:
 
     With race="inner" all this is turned over: the groove is in the outside, the rubber lies within, its
     r_outer equal to r_inner here, the rigid interface is "inner", that sits on a shaft and turns with it, and
-    `outside` says what its bore stands on. Coordinates do not turn, and the ring's patterns of force pass
-    through it: their inertia as they turn is left out, which is (nΩ/ω)² of order n, ω the ring's lowest free
-    elastic frequency; `turning_error` tells it.
+    `outside` says what its bore stands on; flexible, the bore is the raceway "inside". Coordinates do not
+    turn, and the ring's patterns of force pass through it: their inertia as they turn is left out, which is
+    (nΩ/ω)² of order n, ω the ring's lowest free elastic frequency; `turning_error` tells it.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ class FlexibleRing:
             if not self.depth < self.r_outer - self.r_inner:
                 raise ValueError(f"the groove is {self.depth:g} m deep and cuts the ring; make it narrower")
         if not self._supports:
-            one_of("outside", self.outside, ("rigid",) if self.inner else ("rigid", "flexible"))
+            one_of("outside", self.outside, ("rigid", "flexible"))
         if self.layer is not None:
             instance("layer", self.layer, Layer, "it must be a bd.Layer(…), or None")
             meets, seat = ("r_outer", "r_inner") if self.inner else ("r_inner", "r_outer")
@@ -462,7 +462,7 @@ class FlexibleRing:
         known = {k: tuple(replace(f, bonded=bonded) for f in v) for k, v in self.body.round_faces().items()}
         half = (-0.5 * self.width, 0.5 * self.width)
         if self.layer is None and self.outside == "flexible":
-            known["outside"] = (RoundFace("shaft", self.r_outer, half),)
+            known[self.back] = (RoundFace("bore" if self.inner else "shaft", self.seat, half),)
         elif self._supports:
             known[self.held] = (RoundFace("bore" if self.inner else "shaft", self.seat, half),)
         return known
@@ -500,7 +500,7 @@ class FlexibleRing:
                 element, self.compliance, self._folded, self.footprint.normal, self.f_max, self.damping
             )
         if self.inner:
-            element = replace(element, G=gyroscopic(element, self.held, self.body.polar_inertia))
+            element = replace(element, G=gyroscopic(element, self.held, self.back, self.body.polar_inertia))
         return replace(element, faces=self.round_faces())
 
     def turning_error(self, speed: float) -> float:
@@ -514,18 +514,19 @@ class FlexibleRing:
         Returns
         -------
         float
-            For the highest order n and the lowest frequency ω of the ring on its held seat, the rubber at its
-            relaxed modulus: an upper bound.
+            For the highest order n and the lowest elastic frequency ω of the ring, on its held seat unless it
+            is loose, the rubber at its relaxed modulus: an upper bound.
         """
         omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
         element = self.body.superelement()
         if self._supports:
             element = upon_supports(element, self._supports, self.seat, self.width, self.back, self.held)
-        rest = np.setdiff1d(np.arange(element.n), element.interfaces[self.held])
+        held = element.interfaces.get(self.held, np.zeros(0, dtype=np.intp))
+        rest = np.setdiff1d(np.arange(element.n), held)
         at = np.ix_(rest, rest)
-        lowest = scipy.linalg.eigh(
-            element.stiffness().real[at], element.M[at], eigvals_only=True, subset_by_index=(0, 0)
-        )[0]
+        squares = scipy.linalg.eigh(element.stiffness().real[at], element.M[at], eigvals_only=True)
+        # a ring that nothing holds has rigid motions too, at zero but for round-off
+        lowest = squares[squares > 1e-10 * squares[-1]][0]
         assert self.order is not None
         return float((self.order * omega) ** 2 / lowest)
 

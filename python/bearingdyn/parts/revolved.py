@@ -41,6 +41,7 @@ from bearingdyn.fem import (
 )
 from bearingdyn.magnitude import plausible
 from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic, constant_bulk, volume_of
+from bearingdyn.parts.hoop_stress import hoop_stress_rows
 from bearingdyn.parts.mesh_waves import check_waves
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
@@ -669,6 +670,10 @@ class Revolved:
                 yield h, u, [rigid.place(h, copy) for copy in range(copies)]
 
         return strain_of_motion(self.mesh, self._soft(), placed(), q)
+
+    def hoop_stress(self, r: float, z: tuple[float, float], azimuth: Array, material: Elastic) -> Array:
+        """Stress along a circle on the surface, (azimuths, coordinates); see `hoop_stress_rows`."""
+        return hoop_stress_rows(self._placed(), self._size, material, r, z, azimuth)
 
     def strain(self, motion: ArrayLike, modulus: float | None = None) -> Strain:
         """The rubber's strain in one number, under motions as in `strain_field`."""

@@ -72,12 +72,17 @@ def with_folded(
     return replace(wide, M=M, C=C, K=K, raceways={**wide.raceways, "raceway": carries})
 
 
-def gyroscopic(element: Superelement, seat: str, polar_inertia: float) -> Array:
-    """Gyroscopic matrix (n, n) of a ring that turns with its seat, as a rigid body that follows its tilts."""
-    G = element.G.copy()
-    x, y = element.interfaces[seat][3:5]
-    G[x, y], G[y, x] = polar_inertia, -polar_inertia
-    return G
+def gyroscopic(element: Superelement, seat: str, back: str, polar_inertia: float) -> Array:
+    """Gyroscopic matrix (n, n) of a ring that turns as a rigid body with the tilts of its seat, or of `back`.
+
+    `back` is the raceway that tells them where nothing seats the ring.
+    """
+    if seat in element.interfaces:
+        x, y = np.eye(element.n)[element.interfaces[seat][3:5]]
+    else:
+        raceway = element.raceways[back]
+        x, y = (np.linalg.pinv(raceway.series.rigid(raceway.arm)) @ raceway.rows)[3:5]
+    return np.asarray(element.G + polar_inertia * (np.outer(x, y) - np.outer(y, x)))
 
 
 def wider(element: Superelement, count: int, *raceways: str) -> Superelement:

@@ -144,12 +144,21 @@ def _between(ends: Mapping[str, Array], outputs: Mapping[str, Array]) -> Array:
 def _loose(
     plan: Plan, seat: LooseJoint, select: Mapping[str, Array], outputs: Mapping[str, Array]
 ) -> tuple[BearingTerm, SpringTerm]:
-    """A loose fit as contacts on the radial coefficients, ring less bore, and the springs of its hold."""
-    raceway = plan.raceway(seat.ring)
+    """A loose fit as contacts on the radial coefficients, and the springs of its hold.
+
+    Motions are those of what lies within less those of what lies around.
+    """
+    raceway, around = plan.raceway(seat.ring), plan.raceway(seat.bore)
     assert raceway is not None  # the application checked
-    relative = raceway.rows @ select[seat.ring.part]
-    bore = {} if seat.bore == GROUND else {str(seat.bore): -raceway.series.rigid(raceway.arm)}
-    relative = relative + _between(bore, outputs)
+    # the ring lies in the bore, or with a bore of its own around a shaft
+    sign = -1.0 if any(face.kind == "bore" for face in plan.faces(seat.ring)) else 1.0
+    relative = sign * raceway.rows @ select[seat.ring.part]
+    ends = {}
+    if around is not None:
+        relative = relative - sign * around.rows @ select[seat.bore.part]
+    elif seat.bore != GROUND:
+        ends = {str(seat.bore): -sign * raceway.series.rigid(raceway.arm)}
+        relative = relative + _between(ends, outputs)
     radial, series, held = seat.fit.split(raceway.series)
     seat.fit.kernel(series)  # too few stations are refused here
     hold = SpringTerm(
@@ -157,9 +166,9 @@ def _loose(
         relative[held],
         np.full(len(held), seat.fit.hold),
         np.zeros(len(held)),
-        {name: rows[held] for name, rows in bore.items()},
+        {name: rows[held] for name, rows in ends.items()},
     )
-    ends = {name: rows[radial] for name, rows in bore.items()}
+    ends = {name: rows[radial] for name, rows in ends.items()}
     return BearingTerm(seat.name, seat.fit, relative[radial], series, ends=ends), hold
 
 
