@@ -87,7 +87,7 @@ for label in H:
 #
 # Nothing is linearised here: balls pass, some lose contact, and the layers remember by their Maxwell
 # branches. At rest under this load the layers are displaced by 6 and 9 % of their thickness, so that their
-# linear stiffness is 2 to 5 % low for a small motion about that state (the warning StrainedLayer says so): two
+# linear stiffness is 2 to 5 % low for a small motion about it (the warning StrainedLayer says so): two
 # designs are compared, and that is enough for it.
 
 # %%
