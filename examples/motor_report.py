@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import time
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ import numpy as np
 import xarray
 
 import bearingdyn as bd
+from bearingdyn.notice import StrainedLayer
 
 IN_MOTION = ("no layer", "layer, high loss")
 SIDES = ("left", "right")
@@ -68,7 +70,10 @@ class State:
         app = motor.motor(design)
         rest = bd.equilibrium(app)
         app.load("shaft.middle", (0.0, -motor.RADIAL, 0.0, 0.0, 0.0, 0.0))
-        return cls(design, rest, bd.equilibrium(app))
+        with warnings.catch_warnings():
+            # describe_layer says how far each layer strains, and from where on it is too far
+            warnings.simplefilter("ignore", StrainedLayer)
+            return cls(design, rest, bd.equilibrium(app))
 
 
 @dataclass(frozen=True)

@@ -86,9 +86,12 @@ for label in H:
 # ## At 5000 rpm under 10 kN
 #
 # Nothing is linearised here: balls pass, some lose contact, and the layers remember by their Maxwell
-# branches.
+# branches. At rest under this load the layers are displaced by 6 and 9 % of their thickness, so that their
+# linear stiffness is 2 to 5 % low for a small motion about it (the warning StrainedLayer says so): two
+# designs are compared, and that is enough for it.
 
 # %%
+warnings.simplefilter("ignore", bd.notice.StrainedLayer)
 dt, runs = 2.5e-6, {}
 record = ["shaft.middle.x", "shaft.middle.y", "left_housing.top.y.velocity", "left.loaded"]
 for label in ("no layer", "layer, high loss"):
