@@ -15,6 +15,7 @@ from verified import (
     arrangements,
     bearings,
     contacts,
+    design,
     ehl,
     materials,
     motion,
@@ -24,6 +25,7 @@ from verified import (
     ring_loads,
     rings,
     shaker,
+    softening,
     solids,
     sound,
     squeezed,
@@ -53,6 +55,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Varying compliance": motion.varying_compliance,
     "Steady motions": motion.steady_motions,
     "Bonded rings": structures.bonded_rings,
+    "Rubber that softens": softening.amplitude,
     "Squeezed rings": squeezed.squeezed_rings,
     "Squeezed pads and O-rings": squeezed.squeezed_pads,
     "Damping-layer sample": structures.sample,
@@ -74,6 +77,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Whirl over speed": application.whirl,
     "Two domains": application.two_domains,
     "Ring-down": application.ring_down,
+    "Designs": design.designs,
 }
 
 
