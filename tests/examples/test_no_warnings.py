@@ -26,7 +26,7 @@ def run(script: Path, folder: Path) -> subprocess.CompletedProcess[str]:
     at = ROOT / "notebooks" if script.parent.name == "notebooks" else folder
     path = os.pathsep.join([str(ROOT / "examples"), os.environ.get("PYTHONPATH", "")])
     return subprocess.run(
-        [sys.executable, "-W", "always::bearingdyn.notice.Notice", str(script)],
+        [sys.executable, "-W", "always::UserWarning", str(script)],
         cwd=at,
         env={**os.environ, "PYTHONPATH": path, "MPLBACKEND": "Agg"},
         capture_output=True,
