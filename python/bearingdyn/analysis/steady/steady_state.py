@@ -207,7 +207,7 @@ def stability_of(
         return None
     model = model or first_order(problem, balance)
     lines = balance.lines
-    count = max(samples, 4 * lines.count)
+    count = max(samples, 2 * (lines.samples // 2))
     pressed = balance.press(found.z, lines=Lines(lines.index, lines.steps, count))
     m = found.z.shape[1]
     period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
