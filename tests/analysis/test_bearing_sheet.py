@@ -112,7 +112,7 @@ def test_too_much_load_and_too_thin_a_film_are_named():
 
 
 def test_a_bearing_that_carries_nothing_is_named():
-    with pytest.warns(BearingWarning, match="'6205': it carries no load"):
+    with pytest.warns(BearingWarning, match="'b': it carries no load"):
         sheet = bd.bearing_sheet(one())
     assert "no load" in str(sheet["warnings"].values[0])
 

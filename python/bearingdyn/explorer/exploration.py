@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.analysis import Equilibrium, equilibrium, frequencies, frequency_response, static_summary
-from bearingdyn.application import Application
+from bearingdyn.application import Application, Channel
 from bearingdyn.checks import instance, meant, name_list, number, require
 from bearingdyn.explorer.sliders import Slider, place_of_load, sliders_of, turned
 from bearingdyn.model import Model, read_model
@@ -181,7 +181,7 @@ class Exploration:
         said = []
         for name, level in levels.items():
             k = int(np.argmax(level))
-            unit = "rad/N" if "θ" in name.rpartition(".")[2] else "m/N"
+            unit = "rad/N" if Channel.parse(name).is_rotation else "m/N"
             said.append((f"{name}, highest", f"{told(level[k], unit)} at {self.frequency[k]:.0f} Hz"))
         return said
 

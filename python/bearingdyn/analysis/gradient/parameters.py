@@ -120,10 +120,10 @@ class _Layers:
         sources = {t.name: t.source for t in system.parts if isinstance(t.source, Layer)}
         self.asked: dict[int, list[str]] = {}
         for path in paths:
-            part, _, tail = path.partition(".")
-            if part in sources and tail in (*DIMENSIONS, "K", "density"):
-                names = self.asked.setdefault(id(sources[part]), [])
-                names += [tail] if tail not in names else []
+            named = _named(path)
+            if named.part in sources and named.name in (*DIMENSIONS, "K", "density"):
+                names = self.asked.setdefault(id(sources[named.part]), [])
+                names += [named.name] if named.name not in names else []
         self.found: dict[int, dict[str, LayerSlopes]] = {}
 
     def __call__(self, layer: Layer, name: str) -> LayerSlopes:
@@ -132,10 +132,15 @@ class _Layers:
         return self.found[id(layer)][name]
 
 
+def _named(path: str) -> Place:
+    """What a parameter belongs to, and its name there."""
+    return Place.parse(path) if "." in path else Place(path, "")
+
+
 def _change(system: System, path: str, layers: _Layers) -> Change:
     """The change by one named parameter."""
-    named_place = Place.parse(path) if "." in path else Place(path, "")
-    head, tail = named_place.part, named_place.name
+    named = _named(path)
+    head, tail = named.part, named.name
     if head == "load" and tail:
         return Change(load=np.array(system.row(tail)))
     for i, hung in enumerate(system.bearings):
