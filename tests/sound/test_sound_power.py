@@ -165,7 +165,7 @@ def test_what_is_repaired_or_unsure_is_told(monkeypatch: pytest.MonkeyPatch) -> 
 
     class Bodies:
         def surface(self, size: float):
-            return type("S", (), {"faces": np.zeros((4, 3)), "floor": None})(), None
+            return type("S", (), {"faces": np.zeros((4, 3)), "floor": None, "extent": 1.0})(), None
 
         def fingerprint(self) -> str:
             return "0"
