@@ -306,7 +306,8 @@ class Tracer:
         grown = curve_of(task, tracer.lines, replace(_found(flip.point), z=z), twice)
         border = flat(direction / grown.size)
         border /= np.linalg.norm(border)
-        point = grown.correct(z + size * direction, flip.point.parameter, (border, 0.0))
+        # near the flip the derivative is nearly singular: the tangent needs the point's own
+        point = grown.correct(z + size * direction, flip.point.parameter, (border, 0.0), exact=True)
         if point is None:
             return None
         if float(point.tangent @ border) < 0.0:  # away from the flip
