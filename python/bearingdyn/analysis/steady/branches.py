@@ -40,6 +40,8 @@ LEAP, LEAPS = 0.01, 40
 ON_CIRCLE = 2e-3
 # times as many samples for the multipliers of a located point
 FINER = 12
+# what crosses the circle beside a fold, which the arc tells
+CROSSINGS = ("flip", "neimark-sacker")
 
 
 Tell: TypeAlias = Callable[[float], object] | None
@@ -231,8 +233,7 @@ class Tracer:
 
     def _marks(self, curve: Curve, begin: Point) -> Iterator[Mark]:
         task = self.task
-        last = self.mark(curve, begin)
-        yield last
+        prior, last = None, self.mark(curve, begin)
         met, ended, over = 0, begin, False
         for point in follow(curve, begin, task.low, task.high, task.longest, task.most):
             if self.passages > 1 and _mirrored(ended.z, point.z):
@@ -241,17 +242,27 @@ class Tracer:
                 )
                 break
             new = self._cut(curve, last, self.mark(curve, point))
+            if _crosses(last, new):
+                # of a few samples a multiplier may cross a point too late, or too early
+                last, new = self._finer(curve, last), self._finer(curve, new)
+                if prior is not None:
+                    yield from self._events(curve, prior, last, folds=False)
+            yield last
             yield from self._events(curve, last, new)
-            yield new
             if self.tell is not None:
                 self.tell(new.point.parameter)
-            last, ended = new, point
+            prior, last, ended = last, new, point
             met = met + 1 if known(self.others, self.passages, point.parameter, point.z) else 0
             over = met > 1 or not task.low < point.parameter < task.high
             if over:
                 break
+        yield last
         if not over:
             yield Mark(ended, None, np.full_like(last.moved, np.nan), "failed")
+
+    def _finer(self, curve: Curve, mark: Mark) -> Mark:
+        """A mark with its multipliers as an event is located with."""
+        return replace(mark, stability=self.stability(curve.at(mark.point.parameter), mark.point.z, FINER))
 
     def _cut(self, curve: Curve, last: Mark, new: Mark) -> Mark:
         """The point itself, or of one beyond the range the motion at its end."""
@@ -267,13 +278,13 @@ class Tracer:
         point = replace(b, z=found.z, parameter=end, pressed=found.pressed, residual=found.residual)
         return self.mark(curve, point)
 
-    def _events(self, curve: Curve, before: Mark, after: Mark) -> list[Mark]:
+    def _events(self, curve: Curve, before: Mark, after: Mark, folds: bool = True) -> list[Mark]:
         found = []
-        if before.point.slope * after.point.slope < 0.0:
+        if folds and before.point.slope * after.point.slope < 0.0:
             found.append(self._at(curve, before, after, "fold", lambda p: p.slope))
         a, b = before.stability, after.stability
         if a is not None and b is not None:
-            for name in ("flip", "neimark-sacker"):
+            for name in CROSSINGS:
                 if (_beyond(a, name) > 0.0) != (_beyond(b, name) > 0.0):
 
                     def test(p: Point, name: str = name) -> float:
@@ -341,6 +352,14 @@ def _crossing(mark: Mark) -> float:
 def _mirrored(before: Complex, after: Complex) -> bool:
     """Whether the lines of half the frequency have gone through zero."""
     return float(np.real(np.vdot(before[1::2], after[1::2]))) < 0.0
+
+
+def _crosses(before: Mark, after: Mark) -> bool:
+    """Whether a multiplier crosses the circle between two marks, as far as their own samples tell."""
+    a, b = before.stability, after.stability
+    if a is None or b is None:
+        return False
+    return any((_beyond(a, name) > 0.0) != (_beyond(b, name) > 0.0) for name in CROSSINGS)
 
 
 def _beyond(state: Stability, name: str) -> float:

@@ -24,13 +24,13 @@ SLOPE = 1e-6
 # corrections of a point, and how many are wanted: more shorten the next step, fewer lengthen it
 CORRECTIONS, WANTED = 16, 9
 # largest turn of the tangent in a step, rad: beyond it the step is taken anew at half the length
-LARGEST_TURN = 0.8
+LARGEST_TURN = 0.5
 # of a motion's size, by which a step may change it where the parameter hardly moves
-LONGEST_MOVE = 1.0
+LONGEST_MOVE = 0.2
 # of a step, by which the corrector may move its point: beyond it another branch was met
-LARGEST_CORRECTION = 0.5
+LARGEST_CORRECTION = 0.3
 # turns below which the next step may be longer, and above which it is shorter
-EASY_TURN, HARD_TURN = 0.3, 0.55
+EASY_TURN, HARD_TURN = 0.15, 0.3
 # of the speed, within which receptances go straight on from one to the next correction
 NEAR = 1e-4
 # of the residual that a correction with an earlier derivative may leave, before the derivative is made anew
