@@ -34,7 +34,7 @@ NO_CONVERGENCE = _core.STATUSES["NO_CONVERGENCE"]
 
 
 class Packable(Protocol):
-    """Packable for the core: what is passed to it as a dict of named fields, such as a bearing."""
+    """Packable for a call of the core: a dict of named fields, such as a bearing."""
 
     def packed(self) -> dict[str, object]:
         """The fields by name."""
@@ -247,7 +247,7 @@ def bearing_force(
     shaft_angle: float = 0.0,
     shaft_speed: float = 0.0,
 ) -> tuple[Array, Array, Array, Array]:
-    """Force of a bearing by the core: on its raceways' coefficients, tangents, and the load of each ball.
+    """Call of the core: force of a bearing on its raceways' coefficients, tangents, load of each ball.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ def bearing_force(
 def bearing_settle(
     kernel: Packable, loads: Array, radius: Array, angle: float, shaft_angle: float = 0.0
 ) -> tuple[Array, Array, Array]:
-    """Where the core finds a bearing at rest under each of many loads, its outer ring held.
+    """Call of the core: where a bearing comes to rest under each of many loads, its outer ring held.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def bearing_settle(
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """What the core says of one bearing along the samples (s) of a motion.
+    """Answer of the core for one bearing along the samples (s) of a motion.
 
     Parameters
     ----------
@@ -332,7 +332,7 @@ def bearing_along(
     window: float = 0.0,
     tangents: bool = True,
 ) -> Along:
-    """Forces of a bearing by the core, sample by sample, along a motion that is given.
+    """Call of the core: forces of a bearing, sample by sample, along a motion that is given.
 
     Parameters
     ----------
@@ -373,7 +373,7 @@ def march(
     progress: Progress | None = None,
     modes: dict[str, Array] | None = None,
 ) -> tuple[Array, Array, Report]:
-    """March a state in the core, and say how far it came, whatever the status.
+    """Call of the core: march a state, and say how far it came, whatever the status.
 
     Parameters
     ----------
@@ -419,7 +419,7 @@ def harmonic(
     progress: Progress | None = None,
     balls: tuple[Complex, Array] | None = None,
 ) -> Complex:
-    """Complex response (frequencies, outputs, inputs) of the core's model to unit forces.
+    """Call of the core: complex response (frequencies, outputs, inputs) of its model to unit forces.
 
     Parameters
     ----------
@@ -469,7 +469,7 @@ def changed_layers(
     end: ArrayLike,
     isa: str = "best",
 ) -> tuple[Complex, Complex]:
-    """Motions of layers whose moduli have changed, from those of the linear system (csrc/changed_layers.h).
+    """Call of the core: motions of layers whose moduli have changed (csrc/changed_layers.h).
 
     Parameters
     ----------
@@ -505,7 +505,7 @@ def changed_layers(
 def helmholtz(
     points: Array, faces: Index, wave_number: float, floor: float | None = None
 ) -> tuple[Complex, Complex, Complex, Complex, Complex]:
-    """The core's integral operators of sound outside triangles (csrc/radiation.h), time as exp(+iωt).
+    """Call of the core: integral operators of sound outside triangles (csrc/radiation.h), exp(+iωt).
 
     Parameters
     ----------

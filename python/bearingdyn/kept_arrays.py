@@ -19,7 +19,7 @@ START = len(MAGIC) + 32
 
 
 def kept(content: bytes) -> bytes:
-    """A file's bytes: its kind, the SHA-256 of the content, and the content, which is an .npz."""
+    """Bytes of a file of kept arrays: its kind, the SHA-256 of the content, and the content, an .npz."""
     return MAGIC + hashlib.sha256(content).digest() + content
 
 
@@ -45,7 +45,7 @@ def write_arrays(path: Path, arrays: Mapping[str, Any]) -> None:
 
 
 def read_arrays(path: Path, names: Iterable[str] | None = None) -> dict[str, Any] | None:
-    """What a file keeps; None where there is none, and of one that was cut or damaged.
+    """Arrays that a file has kept; None where there is none, and of one that was cut or damaged.
 
     Parameters
     ----------

@@ -238,7 +238,7 @@ def _torn_header(data: bytes) -> bool:
 
 
 class Writer:
-    """Appends to a run file; made anew, or opened behind its last finished chunk.
+    """Writer of a run file: made anew, or opened behind its last finished chunk.
 
     Raises
     ------

@@ -373,5 +373,5 @@ def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, Bear
 
 
 def with_loads(system: System, loads: tuple[LoadTerm, ...]) -> System:
-    """The system of an equilibrium under other loads."""
+    """An equilibrium's system under other loads."""
     return replace(system, loads=loads)

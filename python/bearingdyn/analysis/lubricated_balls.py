@@ -83,7 +83,7 @@ def lubricated_balls(term: BearingTerm, z: Array, loads: Array) -> LubricatedBal
 
 
 def averaged(found: Sequence[LubricatedBalls | None]) -> LubricatedBalls | None:
-    """The balls at several cage angles, each angle with the same weight."""
+    """Lubricated balls at several cage angles, each angle with the same weight."""
     balls = [one for one in found if one is not None]
     if not balls:
         return None

@@ -37,7 +37,7 @@ def warn_of_overload(march: March, report: core.Report) -> None:
 
 
 def warn_of_swings(eq: Equilibrium, swings: Complex, places: Sequence[str]) -> None:
-    """Warn of every bearing whose balls a linear response about an equilibrium overloads.
+    """Warn of an overload: bearings whose balls a linear response about an equilibrium presses too hard.
 
     The rings' motion is the linear one, the balls' loads in it are those of Hertz.
 

@@ -82,7 +82,7 @@ class _Linear:
 
 
 def softening_layers(system: System) -> list[int]:
-    """Which layers soften."""
+    """Which of a response's layers soften."""
     return [k for k, layer in enumerate(system.layers) if layer.strain is not None]
 
 

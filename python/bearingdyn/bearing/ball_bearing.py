@@ -42,7 +42,7 @@ _MOTION = "(x, y, z, θx, θy, θz) of the inner ring relative to the outer ring
 
 
 class Overrides(NamedTuple):
-    """Values given to a BallBearing instead of those its geometry has; None where the geometry decides."""
+    """Overrides of a ball bearing: values given instead of those its geometry has; None for none."""
 
     kappa: float | None = None
     cage_ratio: float | None = None

@@ -23,7 +23,7 @@ _STEEL_EXPANSION = 11.5e-6
 
 @dataclass(frozen=True)
 class Seat:
-    """A seat on which a ring is mounted: the shaft under the inner one, or the housing around the outer one.
+    """A seat of a mounting: the shaft under the inner ring, or the housing around the outer one.
 
     Parameters
     ----------

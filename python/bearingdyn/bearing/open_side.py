@@ -97,7 +97,7 @@ def runs_off(kernel: BearingKernel, z: Array, loads: Array, turn: float) -> str 
 
 
 def samples_off(kernel: BearingKernel, z: Array, loads: Array, turn: Array) -> Flags:
-    """Which samples (s,) of a motion do not hold a bearing together on its shoulder; see `runs_off`.
+    """Which samples (s,) of a motion run off on a bearing's open side; see `runs_off`.
 
     Parameters
     ----------

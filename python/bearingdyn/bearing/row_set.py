@@ -25,7 +25,7 @@ _MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
 
 
 def touching(row: BallBearing) -> float:
-    """Axial position of a row, from its own origin, at which all its balls just touch, m.
+    """Where a row of a set just touches with all its balls: axial position from its own origin, m.
 
     Clamped balls touch everywhere: theirs is the centred position.
     """

@@ -27,7 +27,7 @@ def reduce(
     damping: float = 0.0,
     held: str | None = None,
 ) -> Superelement:
-    """Reduce a full model to a superelement: constraint modes, and shapes that vanish on the interfaces.
+    """Reduction of a full model to a superelement: constraint modes, shapes that vanish on the interfaces.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def reduce(
 
 
 def project(model: FullModel, basis: Basis, *, damping: float = 0.0, held: str | None = None) -> Superelement:
-    """Reduce a full model to a superelement in a given basis, Psiᵀ A Psi for each of its matrices.
+    """Reduction of a full model to a superelement in a given basis, Psiᵀ A Psi for each of its matrices.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def reduce_free_body(
     f_max: float | None = None,
     n_modes: int | None = None,
 ) -> Superelement:
-    """Reduce an elastic body free in space to a superelement, by Craig-Bampton.
+    """Reduction of an elastic body free in space to a superelement, by Craig-Bampton.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ MACHINE = "it must be a bd.Model, an Application, or the path of a model file (.
 
 @dataclass(frozen=True)
 class View:
-    """What a machine answers at some values of its sliders.
+    """One view of an exploration: what a machine answers at some values of its sliders.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from bearingdyn.explorer.widgets import box
 
 
 class Explorer(Exploration):
-    """Sliders for layer, rubber, loads and clearance of a machine, and what it answers.
+    """The explorer of a machine: sliders for layer, rubber, loads and clearance, and what it answers.
 
     In a notebook an explorer shows itself (package ipywidgets, extra "explore"); `serve` makes a web page of
     it, as `bearingdyn explore motor.toml` does; `at` gives the numbers. Parameters of a model file are

@@ -71,13 +71,13 @@ def served(explorer: Exploration, host: str = "127.0.0.1", port: int = 0) -> Thr
 
 
 def address(server: ThreadingHTTPServer) -> str:
-    """Where the page is."""
+    """Address of an explorer's server."""
     host, port = server.server_address[:2]
     return f"http://{host if isinstance(host, str) else host.decode()}:{port}/"
 
 
 def as_json(explorer: Exploration, first: View, view: View) -> dict[str, Any]:
-    """A view as the page's script takes it."""
+    """A view as the page of an explorer's server takes it."""
     return {
         "chart": chart(explorer, first, view).held() if view.levels else None,
         "facts": view.facts,
@@ -88,7 +88,7 @@ def as_json(explorer: Exploration, first: View, view: View) -> dict[str, Any]:
 
 
 def chart(explorer: Exploration, first: View, view: View) -> Chart:
-    """The response now and as given."""
+    """Chart of an explorer's server: the response now and as given."""
     curves = [Curve(name, view.frequency, level) for name, level in view.levels.items()]
     curves += [
         Curve(f"{name}, as given", first.frequency, y, beside=name) for name, y in first.levels.items()
@@ -104,7 +104,7 @@ def chart(explorer: Exploration, first: View, view: View) -> Chart:
 
 
 def page_html(explorer: Exploration, first: View) -> str:
-    """The page, whole."""
+    """The page of an explorer's server, whole."""
     style, script = page_files()
     text = files("bearingdyn.explorer").joinpath("page.html").read_text(encoding="utf-8")
     held = {
@@ -121,7 +121,7 @@ def page_html(explorer: Exploration, first: View) -> str:
 
 
 def slider_html(slider: Slider) -> str:
-    """One slider with its name, value and note."""
+    """One slider on the page of an explorer's server, with its name, value and note."""
     low, value, high = (math.log10(x) if slider.log else x for x in (slider.low, slider.value, slider.high))
     # so that what the machine has lies on a step
     step = (

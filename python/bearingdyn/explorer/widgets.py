@@ -14,7 +14,7 @@ STEPS = 100  # of a slider
 
 
 def box(explorer: Exploration) -> Any:
-    """Sliders and picture of an explorer.
+    """Widgets of an explorer in a notebook: sliders and picture.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ def modes_of_order(
     moduli: tuple[Sequence[float], Sequence[float], Sequence[float]],
     rate: float,
 ) -> RevolvedModes:
-    """Lowest modes of a Fourier order, rigid motions (0 Hz) included.
+    """Lowest modes of a revolved body of one Fourier order, rigid motions (0 Hz) included.
 
     Parameters
     ----------

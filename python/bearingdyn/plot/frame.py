@@ -122,7 +122,7 @@ def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
 
 
 def engineering(axis: Axis, values: Array, unit: str) -> str:
-    """Ticks of a figure's axis in the multiple of its unit that suits the values; returns that multiple.
+    """Ticks of a frame's axis in the multiple of its unit that suits the values; returns that multiple.
 
     What is drawn stays in the unit given. A unit without prefix gets a power of ten: "10⁶", "10⁻⁸ kg". No
     factor is printed elsewhere. To be called once the scale of the axis, linear or log, is set.
@@ -155,7 +155,7 @@ def _power_of_ten(power: int) -> str:
 
 
 def written_out(axis: Axis, decades: float, plain: Formatter | None = None) -> None:
-    """A log axis of a figure with its numbers written out, as many as these decades need."""
+    """A log axis of a figure's frame with its numbers written out, as many as these decades need."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
     plain = plain or StrMethodFormatter("{x:g}")
@@ -174,17 +174,17 @@ def frame_log(ax: Axes, values: Array) -> None:
 
 
 def colour(k: int) -> str:
-    """Colour of the k-th curve of a figure."""
+    """Colour of the k-th curve in a figure's frame."""
     return COLOURS[k % len(COLOURS)]
 
 
 def is_result(datasets: object) -> bool:
-    """Whether a figure is asked for one result and no mapping of several: a Dataset is a Mapping too."""
+    """For a figure's frame, whether one result is asked for, no mapping: a Dataset is a Mapping too."""
     return hasattr(datasets, "data_vars")
 
 
 def some(datasets: Mapping[str, Any], name: str = "datasets") -> Mapping[str, Any]:
-    """The results a figure shows, by label; ValueError if there are none, or one without a label."""
+    """For a figure's frame, the results it shows, by label; ValueError if there are none, or one without."""
     if is_result(datasets):
         raise ValueError(
             f'{name} is a result without a label; give results by label, such as {{"run": result}}'
@@ -197,7 +197,7 @@ def some(datasets: Mapping[str, Any], name: str = "datasets") -> Mapping[str, An
 
 
 def kind_of(data: xarray.Dataset) -> str:
-    """What a result that a figure is to show is, with the band of an envelope."""
+    """For a figure's frame, what a result is, with the band of an envelope."""
     kind = str(data.attrs.get("analysis", "spectrum"))
     if "band" in data.attrs:
         low, high = (float(f) for f in data.attrs["band"])

@@ -63,7 +63,7 @@ def _nominal(third: int) -> float:
 
 
 def band_powers(frequency: ArrayLike, power: ArrayLike, fraction: Fraction = 3) -> tuple[Array, Array]:
-    """Sums of a spectrum of lines over bands: what the bands hold adds up to what the lines hold.
+    """Powers in octave or third-octave bands of a spectrum of lines: they add up to what the lines hold.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from bearingdyn.types import Array
 
 
 def coefficient_slope(system: System, change: Change) -> Array:
-    """Derivative of B (coefs, n) with the clearances, by which the arm of the rings' tilts changes.
+    """For implicit slopes, derivative of B (coefs, n) with the clearances: the arm of the tilts changes.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def check_differentiable(eq: Equilibrium) -> None:
 def implicit_slopes(
     eq: Equilibrium, changes: Mapping[str, Change], slopes: Mapping[int, Array], side: str | None
 ) -> tuple[Array, Array, Array]:
-    """Derivatives of the state x (p, n) and of the bearings' tangents K, C (p, coefs, coefs), by the changes.
+    """Implicit derivatives of the state x (p, n) and the bearings' tangents K, C (p, coefs, coefs).
 
     Parameters
     ----------

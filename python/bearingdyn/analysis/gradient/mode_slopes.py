@@ -15,7 +15,7 @@ from bearingdyn.types import Array, Complex
 
 @dataclass(frozen=True, eq=False)
 class ModeSlopes:
-    """Derivatives of a state's eigenvalues; fields as of `Gradient`, and how the modes are asked for.
+    """Slopes of a state's modes: derivatives of eigenvalues; fields as of `Gradient`, and modes asked for.
 
     References
     ----------

@@ -16,7 +16,7 @@ from bearingdyn.types import Array, Complex, Index
 
 @dataclass(frozen=True, eq=False)
 class ResponseSlopes:
-    """Derivatives −yᵀ Z' x + yᵀ f' of responses x by their adjoints y; fields as of `Gradient`."""
+    """Slopes of responses x by their adjoints y, −yᵀ Z' x + yᵀ f'; fields as of `Gradient`."""
 
     state: Linear
     changes: Mapping[str, Change]

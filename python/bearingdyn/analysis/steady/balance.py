@@ -212,7 +212,7 @@ class _Packed:
 
 @lru_cache(maxsize=8)
 def packed(system: System) -> tuple[_Packed, ...]:
-    """The kernels of a system's bearings, packed once for many calls."""
+    """For a harmonic balance, kernels of a system's bearings, packed once for many calls."""
     return tuple(_Packed(term.kernel().packed()) for term in system.bearings)
 
 

@@ -32,7 +32,7 @@ class _Worst:
 
 
 def warn_of_band(system: System, omega: Array, x: Complex) -> None:
-    """Warn of lines outside the band of a layer's material, where they count in its motion.
+    """Warn of what layers have borne in a steady motion: lines that count, outside their material's band.
 
     Parameters
     ----------
@@ -69,13 +69,13 @@ def warn_of_band(system: System, omega: Array, x: Complex) -> None:
 
 
 def pushed(balance: Balance, pressed: Pressed) -> bool:
-    """Whether a load acts, or a ball is pressed along a motion."""
+    """Whether anything is borne in a steady motion: a load acts, or a ball is pressed."""
     loaded = any((along.loads > PARTED).any() for along in pressed.bearings)
     return loaded or any(force.any() for _, force in balance.loads)
 
 
 def warn_of_motions(motions: Iterable[tuple[Balance, Complex, str]]) -> None:
-    """Warn of what the bearings bore along steady motions, once for each bearing.
+    """Warn of what bearings have borne along steady motions, once for each bearing.
 
     Parameters
     ----------

@@ -328,7 +328,7 @@ class Tracer:
 
 
 def divided(balance: Balance, passages: int) -> Balance:
-    """The balance of motions that repeat after so many passages only."""
+    """For branches of doubled period, the balance of motions that repeat after so many passages only."""
     if passages == 1:
         return balance
     bases = balance.bases

@@ -36,7 +36,7 @@ class Candidates:
 
 
 def candidates(problem: Problem, speed: float, harmonics: int) -> Candidates:
-    """Lines to choose from: combinations of the bases below the highest harmonic of the fastest passage."""
+    """Candidates for choosing lines: combinations of the bases below the highest harmonic."""
     bases = problem.bases
     omega = bases.frequencies(speed)
     kernels = [t.kernel() for t in problem.system.bearings]

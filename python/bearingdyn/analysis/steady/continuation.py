@@ -188,7 +188,7 @@ class Curve:
 
 
 class Solver(Protocol):
-    """Solves for a correction (dz flat, dp) in a curve's measure."""
+    """Solver of a continuation: for a correction (dz flat, dp) in a curve's measure."""
 
     @property
     def lasting(self) -> bool:
@@ -200,7 +200,7 @@ class Solver(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Products:
-    """A solver of many lines: by products with the derivative."""
+    """A continuation's solver for many lines: by products with the derivative."""
 
     curve: Curve
     linear: Linearised
@@ -228,7 +228,7 @@ class Products:
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """A solver of few lines: the derivative with its border, factored."""
+    """A continuation's solver for few lines: the derivative with its border in triangles."""
 
     curve: Curve
     factored: Factored

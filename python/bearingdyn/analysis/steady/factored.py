@@ -27,7 +27,7 @@ def few(z: Complex) -> bool:
 
 
 def jacobian(balance: Balance, pressed: Pressed) -> Array:
-    """Derivative of the residual (2Lm, 2Lm): of amplitudes (L, m) as their real and imaginary parts, flat."""
+    """Derivative of a balance's residual (2Lm, 2Lm), to be factored: amplitudes (L, m) as real numbers."""
     lines, omega, R = balance.lines, balance.omega, balance.R
     count, m = R.shape[:2]
     away = (lines.place[:, None] - lines.place) % lines.samples
@@ -64,7 +64,7 @@ def jacobian(balance: Balance, pressed: Pressed) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Factored:
-    """A square matrix in triangles, for many right-hand sides."""
+    """A factored derivative of a balance: a square matrix in triangles, for many right-hand sides."""
 
     triangles: Array
     pivots: Array

@@ -136,7 +136,7 @@ class Block:
 
 @lru_cache(maxsize=4)
 def taken_apart(system: System) -> tuple[System, Array, tuple[Block, ...]]:
-    """A system in its modes, x = T q, T and its blocks: once for the many speeds that are asked of it."""
+    """For receptances at many speeds, a system once in its modes, x = T q, T and its blocks."""
     if any(not isinstance(t.material, Maxwell) for t in system.layers):
         modal, T = system, np.eye(system.n)
     else:

@@ -25,7 +25,7 @@ from bearingdyn.types import Array, Index
 
 @dataclass(frozen=True, eq=False)
 class RevolvedElements:
-    """The elements of a body of revolution before its deformation.
+    """Elements of a revolved body at finite strain, before its deformation.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def _inverse(J: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class RevolvedState:
-    """A deformed body of revolution.
+    """State of a revolved body at finite strain.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ def joined(patches: Sequence[tuple[Array, Index]], tolerance: float) -> tuple[Ar
 
 
 def extruded(plane: Array, quads: Index, z: Array) -> tuple[Array, Index]:
-    """A plane patch extruded to bricks: points (k, 3) and bricks (m, 8) at heights z."""
+    """Plane patches extruded to bricks: points (k, 3) and bricks (m, 8) at heights z."""
     points = np.hstack([np.tile(plane, (len(z), 1)), np.repeat(z, len(plane))[:, None]])
     lower = (quads[None] + len(plane) * np.arange(len(z) - 1)[:, None, None]).reshape(-1, 4)
     return points, np.hstack([lower, lower + len(plane)])
