@@ -79,8 +79,9 @@ def test_two_layers_each_have_a_strain_of_their_own():
     def app(near, far):
         made = bd.Application()
         made.add("b", bd.RigidBody(mass=0.3, inertia=(1e-3, 1e-3, 1e-3)))
-        element = LAYER.superelement()
-        for name, material in (("near", near), ("far", far)):
+        short = bd.Layer(0.020, 0.024, 0.004, RUBBER)
+        for name, layer, material in (("near", LAYER, near), ("far", short, far)):
+            element = layer.superelement()
             rubber = tuple(replace(term, material=material) for term in element.viscoelastic)
             made.add(name, replace(element, viscoelastic=rubber))
         made.ground("near.outer")
@@ -88,7 +89,8 @@ def test_two_layers_each_have_a_strain_of_their_own():
         made.connect("b.centre", "far.inner")
         return made
 
-    f, names = [120.0, 250.0, 400.0], ["b.centre.z"]
+    # close to the resonance each layer's strain hangs on the other's: there the last step must be Newton's
+    f, names = np.linspace(100.0, 400.0, 61), ["b.centre.z"]
     soft = bd.frequency_response(app(RUBBER, RUBBER), f, names, names, amplitude=15.0)
     assert soft.layer.values.tolist() == ["near", "far"]
     for k, hz in enumerate(f):
