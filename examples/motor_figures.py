@@ -129,7 +129,7 @@ def radiated_power(story: Story) -> Any:
         ax.set_xlabel("frequency, Hz")
         ax.set_ylabel("equivalent radiated power, W/N²")
         finish(ax, "Outside of both housings, vertical force at mid-shaft; grey: 1–5 kHz", legend=True)
-        # a sphere of a housing's size against this power: bearingdyn.analysis.radiated_power
+        # a sphere of a housing's size against this power: bearingdyn.analysis.equivalent_radiated_power
         ax.annotate(
             "an upper bound, not sound power: a Ø100 mm sphere radiates 35 dB less at 200 Hz, 8 dB at 1 kHz",
             (0.01, 0.02), xycoords="axes fraction", fontsize=7.5, color="0.35",

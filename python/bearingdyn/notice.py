@@ -67,8 +67,8 @@ class OpenSideWarning(Notice):
 class UnusualMagnitude(Notice):
     """The notice that an input is larger or smaller than machines have it, probably in another unit.
 
-    When: a number lies outside the usual range of its row in `bearingdyn.magnitude.MAGNITUDES`, where it is
-    given or where what it is compared with becomes known.
+    When: a number lies outside the usual range of its row in `bearingdyn.plausible_ranges.MAGNITUDES`, where
+    it is given or where what it is compared with becomes known.
 
     Remedy: give it in SI units; the text names the unit that was probably meant and the number in SI. A
     machine that is rightly so unusual needs nothing: the number is used as it is.

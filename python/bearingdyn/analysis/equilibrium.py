@@ -20,11 +20,11 @@ from bearingdyn.bearing import (
     runs_off,
 )
 from bearingdyn.checks import one_of, positive, require, whole
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import is_volume, warn_beyond
 from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
 from bearingdyn.pictures import picture
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import fingerprint
 from bearingdyn.checks import numbers, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Maxwell
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import LayerTerm, System
 from bearingdyn.types import Array
 

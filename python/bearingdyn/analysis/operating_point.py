@@ -30,8 +30,8 @@ from bearingdyn.bearing import (
     ratings_of,
 )
 from bearingdyn.checks import instance, meant, named, one_speed, positive, require, vector, whole
-from bearingdyn.magnitude import plausible
 from bearingdyn.parts import Layer
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import System, system_of
 from bearingdyn.units import takes
 

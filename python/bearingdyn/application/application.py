@@ -19,8 +19,8 @@ from bearingdyn.application.plan import Plan
 from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, RowSet
 from bearingdyn.checks import named, require, truth
-from bearingdyn.magnitude import plausible
 from bearingdyn.pictures import picture
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 

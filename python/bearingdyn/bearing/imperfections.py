@@ -15,7 +15,7 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.checks import items, one_of, positive, require, whole
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 

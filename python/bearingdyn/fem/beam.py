@@ -15,8 +15,8 @@ import numpy as np
 import scipy
 
 from bearingdyn.checks import number, positive
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 

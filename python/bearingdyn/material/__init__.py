@@ -14,6 +14,7 @@ from bearingdyn.material.identification import fit_dense, fit_maxwell, fit_payne
 from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
+from bearingdyn.material.random_numbers import normals, uniforms
 from bearingdyn.material.reading import (
     ReadingError,
     StrainSweep,
@@ -23,7 +24,7 @@ from bearingdyn.material.reading import (
 )
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
-from bearingdyn.material.spread import Spread, normals, uniforms
+from bearingdyn.material.spread import Spread
 from bearingdyn.material.superposition import LIMIT as KK_LIMIT
 from bearingdyn.material.superposition import (
     MasterCurve,

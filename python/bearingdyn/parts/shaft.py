@@ -25,11 +25,11 @@ from bearingdyn.cms import (
     project,
 )
 from bearingdyn.fem import Section, assemble_beam, bending_wavelength
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 from bearingdyn.parts.profile import Profile, rectangle
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 from bearingdyn.units import takes

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import one_of, positive, require
-from bearingdyn.sound.signals import signal
+from bearingdyn.sound.signal_check import signal
 from bearingdyn.sound.weighting import Weighting, weighting
 from bearingdyn.types import Array, Complex
 

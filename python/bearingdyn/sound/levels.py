@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import one_of, positive, reals, require
 from bearingdyn.sound.bands import Fraction, band_powers
-from bearingdyn.sound.signals import signal
+from bearingdyn.sound.signal_check import signal
 from bearingdyn.sound.weighting import Weighting, weighting
 from bearingdyn.types import Array
 

@@ -10,7 +10,7 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from bearingdyn.analysis.core_channels import channel_of
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
 from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, follow, locate
 from bearingdyn.analysis.steady.problem import Problem

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.march_state import system_hash
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance
 from bearingdyn.analysis.steady.borne import PUSH, pushed, warn_of_motions
 from bearingdyn.analysis.steady.branch_files import BranchFiles

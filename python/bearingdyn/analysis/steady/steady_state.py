@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn import core
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import Contacts
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from bearingdyn.checks import meant, nonnegative, number, positive, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 LEAST_KAPPA = 0.1
 """Viscosity ratio below which ISO 281 knows no a_ISO."""

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.checks import named, positive, require, two
-from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification.bounds import Limits
@@ -33,6 +32,7 @@ from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shear_from_tension import shear_modulus
 from bearingdyn.material.superposition import MasterCurve, one_curve
 from bearingdyn.notice import CoarseModel, TensionAsShear, warn
+from bearingdyn.plausible_ranges import check_bulk
 from bearingdyn.types import Array
 
 _MOST = 20  # branches tried by n = "auto"

@@ -17,7 +17,7 @@ from bearingdyn.application import (
     SampledLoad,
     Unbalance,
 )
-from bearingdyn.plot.drawing.machine import Machine
+from bearingdyn.plot.drawing.shown_machine import Machine
 from bearingdyn.types import Array
 from bearingdyn.units import PREFIXES
 

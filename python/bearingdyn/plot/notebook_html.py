@@ -25,7 +25,7 @@ from bearingdyn.material import (
 )
 from bearingdyn.plot.drawing.bearing_section import draw_bearing
 from bearingdyn.plot.drawing.loads import course, value
-from bearingdyn.plot.drawing.sheet import draw
+from bearingdyn.plot.drawing.machine_drawing import draw
 from bearingdyn.plot.drawing.words import bearing_words, parts_list
 from bearingdyn.plot.frame import finish, style
 from bearingdyn.units import mm
