@@ -86,7 +86,7 @@ class Waviness:
 
 @dataclass(frozen=True)
 class Pit:
-    """An imperfection at one place: a ball drops into it by min(depth, D/2 − √(D²/4 − (width/2 − |s|)²)).
+    """Imperfection of a race, a pit: a ball drops into it by min(depth, D/2 − √(D²/4 − (width/2 − |s|)²)).
 
     s is the arc from its centre. The drop is continuous, and a ball cannot reach the bottom of a narrow pit.
 

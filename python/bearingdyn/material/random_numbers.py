@@ -26,7 +26,7 @@ def normals(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
 
 
 def uniforms(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
-    """Random numbers spread evenly over (0, 1), (n, size), by a Sobol sequence or at random.
+    """Random numbers that fill (0, 1) evenly, (n, size), by a Sobol sequence or at random.
 
     Parameters
     ----------

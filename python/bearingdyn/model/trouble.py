@@ -14,7 +14,7 @@ from bearingdyn.model.key_lines import Key
 
 @dataclass
 class Origin:
-    """For telling trouble, where the keys of a model stand: the file and line of each."""
+    """For messages of trouble in a model: the file and line of each key."""
 
     file: str
     known: dict[Key, tuple[str, int]] = field(default_factory=dict)

@@ -294,7 +294,7 @@ def _reach(spans: Sequence[tuple[float, float]], yes: Sequence[bool], k: int) ->
 
 
 def spin_generator(n_nodes: int) -> scipy.sparse.csr_matrix:
-    """Spin of a shaft: J (6 n, 6 n) with ẋ = Ω J x when all six-coordinate nodes turn as one body about z."""
+    """Shaft's spin as a matrix: J (6 n, 6 n) with ẋ = Ω J x when all nodes turn as one body about z."""
     one = np.zeros((6, 6))
     one[1, 0] = one[4, 3] = 1.0
     one[0, 1] = one[3, 4] = -1.0

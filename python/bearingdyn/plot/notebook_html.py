@@ -293,7 +293,7 @@ def elastic_html(material: Elastic) -> str:
 
 
 def master_html(curve: MasterCurve) -> str:
-    """The page of a master curve: its points, the law of its shifts, and what is doubted of it."""
+    """A master curve in a notebook: its points, the law of its shifts, and what is doubted of it."""
     with style():
         figure, ax = _figure(5.6, 2.8)
         ax.loglog(curve.frequency, curve.storage / 1e6, ".", markersize=3, label="storage")

@@ -18,7 +18,7 @@ Parameters: TypeAlias = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Case:
-    """One case of a study: its parameters, and its values or the error that kept it from them.
+    """A case, one of many: its parameters, and its values or the error that kept it from them.
 
     values is empty where error is set; error is the exception's kind and message.
     """

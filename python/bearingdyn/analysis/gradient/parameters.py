@@ -208,7 +208,7 @@ def _spring(system: System, path: str, place: str, word: str, component: str) ->
 
 
 def shear_names(material: Maxwell) -> list[str]:
-    """Names of a Maxwell model's parameters for a gradient."""
+    """Parameters of a gradient that are a Maxwell model's: their names."""
     n = material.G.size
     return ["G0", *(f"G{k + 1}" for k in range(n)), *(f"tau{k + 1}" for k in range(n)), "eta0"]
 

@@ -57,7 +57,7 @@ class Family(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Speeds:
-    """Branches of steady motions over speed: one system, its speed the parameter."""
+    """Branches over speed: the family whose parameter is the speed of one system."""
 
     problem: Problem
 
@@ -160,7 +160,7 @@ SAMPLES, PER_LINE = 96, 4
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """One point of a branch, as it is kept."""
+    """One point on one of the branches of a map: speed, motion and stability."""
 
     point: Point
     stability: Stability | None
@@ -328,7 +328,7 @@ class Tracer:
 
 
 def divided(balance: Balance, passages: int) -> Balance:
-    """For branches of doubled period, the balance of motions that repeat after so many passages only."""
+    """For branches of doubled period: the balance of what repeats after so many passages only."""
     if passages == 1:
         return balance
     bases = balance.bases
@@ -397,7 +397,7 @@ class Job:
 
 
 def sweeps(task: Task) -> list[Job]:
-    """The two searches for branches that begin at the ends of the range."""
+    """Jobs that search for branches from both ends of the range."""
     return [
         Job("sweep", task.high, -1.0, origin="coasting down"),
         Job("sweep", task.low, 1.0, origin="running up"),
@@ -405,7 +405,7 @@ def sweeps(task: Task) -> list[Job]:
 
 
 def states(task: Task) -> list[Job]:
-    """Searches for branches that begin within the range, from several states."""
+    """Jobs that search for branches from several states within the range."""
     places = np.linspace(task.low, task.high, PLACES + 2)[1:-1].tolist()
     return [Job("state", p, push=push, origin="another state") for p in places for push in (0.0, *PUSHES)]
 
@@ -413,7 +413,7 @@ def states(task: Task) -> list[Job]:
 def done(
     task: Task, job: Job, others: Sequence[Branch], flip: tuple[int, Mark] | None = None, tell: Tell = None
 ) -> list[Branch]:
-    """The branches that a job finds and that are not known from others."""
+    """Branches that one job finds and that are not known from others."""
     if job.kind == "sweep":
         return _sweep(task, others, job, tell)
     if job.kind == "state":

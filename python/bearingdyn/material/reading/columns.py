@@ -287,7 +287,7 @@ def number_of(cell: str) -> float:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell of a column holds a number."""
+    """Column cells: whether one holds a number."""
     try:
         number_of(cell)
     except ValueError:
