@@ -201,7 +201,7 @@ def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
 
 
 class Tracer:
-    """Follows one branch of steady motions and marks what happens on it."""
+    """Traces branches, one at a time, and marks what happens on it."""
 
     def __init__(
         self,
