@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +13,8 @@ from bearingdyn.analysis import equilibrium, modes, radiated_power, transient, u
 from bearingdyn.application import Application
 from bearingdyn.cms import Superelement, Surface
 from bearingdyn.fem import Section
-from bearingdyn.parts import Disc, Feet, Housing, RigidBody, Shaft
+from bearingdyn.material import Maxwell
+from bearingdyn.parts import Disc, Feet, Housing, Layer, RigidBody, Shaft
 from rotors import motor
 
 # ------------------------------------------------------------------- unbalance
@@ -230,3 +232,17 @@ def test_power_of_a_housing_does_not_depend_on_its_mesh():
     np.testing.assert_allclose(coarse, fine, rtol=0.05)
     # pushed along z, the front makes nearly half of what the outside does
     assert 0.4 < fine[0, 0, 0] / fine[0, 1, 0] < 0.5
+
+
+def test_speeds_beyond_the_band_of_a_layer_are_told_in_one_warning() -> None:
+    rubber = replace(Maxwell(G0=1e6, G=[1e6], tau=[1e-3], K=2e9, density=1150.0), band=(10.0, 100.0))
+    app = Application()
+    app.add("layer", Layer(0.02, 0.024, 0.012, rubber))
+    app.add("disc", RigidBody(mass=1.0, inertia=(1e-3, 1e-3, 1e-3), rotating=True))
+    app.connect("layer.inner", "disc.centre")
+    app.ground("layer.outer")
+    app.unbalance("disc.centre", 1e-5)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        unbalance_response(app, 2 * np.pi * np.array([2.0, 5.0, 50.0, 200.0, 300.0]), ["disc.centre.y"])
+    assert [str(w.message).partition(" lies")[0] for w in told] == ["2 to 300 Hz"]

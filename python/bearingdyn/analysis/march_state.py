@@ -68,7 +68,7 @@ def check_state(field: str, state: Array) -> None:
 
 
 def moved(system: System, x: Array, initial: Mapping[str, ArrayLike]) -> Array:
-    """The start of a march: coordinates nearest to x (n,) that put every place where it is wanted.
+    """State that a march starts from: coordinates nearest to x (n,) that put every place where it is wanted.
 
     Raises
     ------

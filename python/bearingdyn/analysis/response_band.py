@@ -21,7 +21,7 @@ SEED = 0
 
 @dataclass(frozen=True)
 class Band:
-    """Band of a response, or another real quantity, over draws: its ends and the median."""
+    """Response band, or that of another real quantity, over draws: its ends and the median."""
 
     lower: Array
     median: Array

@@ -1,7 +1,7 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
 from bearingdyn.material.amplitude import Payne, PayneFit
-from bearingdyn.material.beyond_data import warn_beyond
+from bearingdyn.material.beyond_data import band_told_once, warn_beyond
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
@@ -69,6 +69,7 @@ __all__ = [
     "Suspect",
     "TabulatedModulus",
     "Yeoh",
+    "band_told_once",
     "constant_bulk",
     "doubts",
     "fit_dense",

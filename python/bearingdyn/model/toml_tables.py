@@ -153,7 +153,7 @@ def _tupled(value: Any) -> Any:
 
 
 def written(value: Any, name_of: Callable[[Any], str], field: str = "value") -> Any:
-    """TOML value of an object in a table; a material becomes its name.
+    """TOML tables' value of an object; a material becomes its name.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def written(value: Any, name_of: Callable[[Any], str], field: str = "value") -> 
 def table_of(
     value: Any, name_of: Callable[[Any], str], field: str, expected: str | None = None
 ) -> dict[str, Any]:
-    """TOML table of an object: its type, and fields not at their default."""
+    """TOML table made of an object: its type, and fields not at their default."""
     name = type(value).__name__
     if kinds().get(name) is not type(value):
         raise ValueError(

@@ -55,7 +55,7 @@ class PortShapes:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Order:
-    """One order of a body with a raceway: its matrices, what is held, and its ports.
+    """Order of a raceway's shapes: the body's matrices in it, what is held, and its ports.
 
     Parameters
     ----------

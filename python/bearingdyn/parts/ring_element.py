@@ -25,7 +25,7 @@ def upon_supports(
     side: str = "outside",
     seat: str = "outer",
 ) -> Superelement:
-    """Ring element upon supports: free, between those of one side and their rigid interface."""
+    """Ring element joined to supports: free, between those of one side and their rigid interface."""
     outside = element.raceways[side]
     K, C = held_by(supports, outside.rows, outside.series, radius, width)
     wide = wider(element, 6, "raceway")

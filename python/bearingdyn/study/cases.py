@@ -148,7 +148,7 @@ def checked(cases: Iterable[Parameters]) -> list[dict[str, Any]]:
 
 
 def label(value: Any) -> float | int | bool | str:
-    """Label of a parameter of a case: a number or text itself, else its class and a hash."""
+    """Cases' label of a parameter: a number or text itself, else its class and a hash."""
     if _kind(value) != "object":
         return value  # type: ignore[no-any-return]
     return f"{type(value).__name__} {fingerprint.fingerprint(value)[:8]}"

@@ -214,7 +214,7 @@ def shear_names(material: Maxwell) -> list[str]:
 
 
 def modulus_slope(material: Maxwell, name: str, s: Any) -> Any:
-    """∂G*/∂(parameter) at s = iω, rad/s, or any complex rate, of any shape."""
+    """A gradient's ∂G*/∂(parameter) at s = iω, rad/s, or any complex rate, of any shape."""
     s = np.asarray(s, dtype=np.complex128)
     if name == "G0":
         return np.ones_like(s)

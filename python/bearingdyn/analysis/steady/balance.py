@@ -218,7 +218,7 @@ def packed(system: System) -> tuple[_Packed, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Harmonic balance linearised at a motion: P⁻¹ J times vectors; P has the mean tangent alone.
+    """Balance of harmonics, linearised at a motion: P⁻¹ J times vectors; P has the mean tangent alone.
 
     Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's
     imaginary part is kept at zero.

@@ -368,7 +368,7 @@ def _beyond(state: Stability, name: str) -> float:
 
 
 def known(branches: Sequence[Branch], passages: int, parameter: float, z: Complex) -> bool:
-    """Whether a motion lies on a branch, between two of its points."""
+    """Whether a motion lies on one of the branches, between two of its points."""
     size = float(np.linalg.norm(z[1:])) + 1e-4 * float(np.linalg.norm(z[0]))
     for branch in branches:
         if branch.passages != passages:
@@ -397,7 +397,7 @@ class Job:
 
 
 def sweeps(task: Task) -> list[Job]:
-    """Jobs that search for branches from both ends of the range."""
+    """Branches from both ends of the range: the jobs that search for them."""
     return [
         Job("sweep", task.high, -1.0, origin="coasting down"),
         Job("sweep", task.low, 1.0, origin="running up"),
@@ -405,7 +405,7 @@ def sweeps(task: Task) -> list[Job]:
 
 
 def states(task: Task) -> list[Job]:
-    """Jobs that search for branches from several states within the range."""
+    """Branches from several states within the range: the jobs that search for them."""
     places = np.linspace(task.low, task.high, PLACES + 2)[1:-1].tolist()
     return [Job("state", p, push=push, origin="another state") for p in places for push in (0.0, *PUSHES)]
 

@@ -182,7 +182,7 @@ def fit_dense(
     density: float,
     per_decade: int = 12,
 ) -> Maxwell:
-    """Master curve fitted densely: spring and branches at times equispaced in the logarithm.
+    """Fit of a master curve by a dense spectrum: spring, branches at times equispaced in the logarithm.
 
     Non-negative least squares of the deviations of G′ and tan δ, to first order; branches without strength
     are left out. No Maxwell model with non-negative strengths does much better; `fit` says how well, without

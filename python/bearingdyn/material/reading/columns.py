@@ -273,7 +273,7 @@ def names_shear(text: str) -> bool:
 
 
 def number_of(cell: str) -> float:
-    """The number in a cell of a column, decimal comma or point; ValueError if there is none."""
+    """Column cells: the number in one, decimal comma or point; ValueError if there is none."""
     text = cell.strip().strip('"').replace("−", "-")
     if "," in text and "." not in text:
         text = text.replace(",", ".")
