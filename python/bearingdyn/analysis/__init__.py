@@ -1,12 +1,6 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
-from bearingdyn.analysis.bearing_sheet import (
-    bearing_sheet,
-    sheet_html,
-    sheet_rows,
-    sheet_text,
-    single_bearing,
-)
+from bearingdyn.analysis.bearing_sheet import bearing_sheet, single_bearing
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.dissipation import dissipation
@@ -33,6 +27,7 @@ from bearingdyn.analysis.part_velocities import part_velocities, surface_of
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
 from bearingdyn.analysis.response_band import Band, band_of
 from bearingdyn.analysis.shaft_speed import shaft_angle
+from bearingdyn.analysis.sheet_pages import sheet_html, sheet_rows, sheet_text
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
