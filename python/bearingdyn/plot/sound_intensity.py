@@ -65,7 +65,9 @@ def sound_intensity(data: xarray.Dataset, ax: Axes | None = None) -> Axes:
         size, watts, _ = suited(float(data["power"]), data["power"].attrs["units"])
         power = float(data["power"]) / 10.0**size
         on.set_title(
-            f"{float(data.attrs['frequency']):.4g} Hz, {data.attrs['input']}: {power:.3g} {watts}", loc="left"
+            f"{float(data.attrs['frequency']):.4g} Hz, {data.attrs['input']}: {power:.3g} {watts}",
+            loc="left",
+            pad=12.0,
         )
     drawn_in: Axes = on
     return drawn_in
