@@ -1,4 +1,5 @@
 /* march_abreast: several marches in one call, those that share their linear part side by side. */
+#include "binding.h"
 #include "march.h"
 
 #include <string.h>
