@@ -1,6 +1,6 @@
 /* march_abreast: several marches in one call, those that share their linear part side by side. */
 #include "binding.h"
-#include "march.h"
+#include "marching.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Model.march: chunks without the GIL, and between them signals, progress and new factors. Its parts serve marches side
  * by side too (abreast.c). */
-#include "march.h"
 #include "binding.h"
+#include "marching.h"
 
 #include <string.h>
 

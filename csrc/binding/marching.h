@@ -1,6 +1,6 @@
-/* march.h - inside the binding: the parts of a call that marches, for one march and for several side by side. */
-#ifndef BD_PY_MARCH_H
-#define BD_PY_MARCH_H
+/* marching.h - inside the binding: the parts of a call that marches, for one march and for several side by side. */
+#ifndef BD_PY_MARCHING_H
+#define BD_PY_MARCHING_H
 
 #include "binding.h"
 
