@@ -1,17 +1,12 @@
 /* Marches side by side: cases of one structure, whose operators are read once for all of them.
  *
- * One march is bound by reading its operators; with a case in each lane each of their numbers serves eight. Bearings are
- * found case by case, by the code of a single march (newton.c), so that all sums have its order and all bits are its own. */
+ * One march is bound by reading its operators; with a case in each lane each of their numbers serves eight. All sums have
+ * the order of a single march, and so its bits. Bearings whose balls stand alike are found in lanes too, while the inverse
+ * that each case has serves; else a case is left to newton.c for that step. */
 #include "abreast.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#include "kernels.h"
-#include "loads.h"
-#include "newton.h"
-#include "record.h"
-#include "state.h"
 
 /* ---------------------------------------------------------------- what is shared */
 
@@ -70,15 +65,6 @@ bool bd_abreast_shares(const bd_abreast_case *p, const bd_abreast_case *q)
            same_doubles(v->step, w->step, v->step_at[a->n_blocks]);
 }
 
-/* Whether the balls of two bearings stand alike whenever their shafts do. */
-static bool turn_alike(const bd_bearing_data *a, const bd_bearing_data *b)
-{
-    const size_t n = (size_t)a->n_coefs;
-    return a->n_balls == b->n_balls && a->n_coefs == b->n_coefs && a->angle0 == b->angle0 &&
-           a->cage_ratio == b->cage_ratio && same(a->order, b->order, n * sizeof *a->order) &&
-           same(a->sine, b->sine, n * sizeof *a->sine);
-}
-
 /* ---------------------------------------------------------------- create, free */
 
 /* A case's columns of the loads into its lane. */
@@ -113,6 +99,39 @@ static void take_coefficients(bd_abreast *abreast, int n_cases, const bd_abreast
     }
 }
 
+/* Arrays of balls that a bearing has. */
+enum { BALL_PARTS = 9 };
+
+static size_t most_balls(int n_cases, const bd_abreast_case *cases, int bearing)
+{
+    int most = 0;
+    for (int l = 0; l < n_cases; l++) {
+        const int n = cases[l].model->bearings[bearing].data.n_balls;
+        most = n > most ? n : most;
+    }
+    return (size_t)most;
+}
+
+/* Geometry and contacts of a bearing, the first case's in lanes that are not there. Returned: the memory behind it */
+static double *take_bearing(bd_abreast_bearing *wide, int n_cases, const bd_abreast_case *cases,
+                            int bearing, double *memory)
+{
+    const size_t room = BD_ABREAST * most_balls(n_cases, cases, bearing);
+    double **parts[BALL_PARTS] = {&wide->shift_X,      &wide->shift_Y,      &wide->shift,
+                                  &wide->shift_X_rate, &wide->shift_Y_rate, &wide->shift_rate,
+                                  &wide->force,        &wide->sine_a,       &wide->peak};
+    for (int p = 0; p < BALL_PARTS; p++, memory += room)
+        *parts[p] = memory;
+    for (int l = 0; l < BD_ABREAST; l++) {
+        const bd_bearing_data *data = &cases[l < n_cases ? l : 0].model->bearings[bearing].data;
+        wide->x0[l] = data->x0, wide->y0[l] = data->y0, wide->A[l] = data->A;
+        wide->e0[l] = data->e0, wide->h0[l] = data->contact.h0;
+        wide->kappa[l] = data->contact.kappa, wide->c[l] = data->contact.c;
+    }
+    wide->by_load = cases[0].model->bearings[bearing].data.contact.law == BD_DAMPING_LOAD;
+    return memory;
+}
+
 bd_abreast *bd_abreast_create(int n, const bd_abreast_case *cases)
 {
     const bd_model *model = cases[0].model;
@@ -140,6 +159,16 @@ bd_abreast *bd_abreast_create(int n, const bd_abreast_case *cases)
         {&abreast->trial, model->n_stress},
         {&abreast->z, m},
         {&abreast->z_rate, m},
+        {&abreast->g[0], m},
+        {&abreast->g[1], m},
+        {&abreast->g[2], m},
+        {&abreast->guess, m},
+        {&abreast->z_new, m},
+        {&abreast->z_rate_new, m},
+        {&abreast->force, m},
+        {&abreast->change, m},
+        {&abreast->W, m * m},
+        {&abreast->inverse, m * m},
         {&abreast->minus_g, m},
         {&abreast->SP, 2 * loads * rows},
         {&abreast->factor, 2 * loads},
@@ -150,10 +179,13 @@ bd_abreast *bd_abreast_create(int n, const bd_abreast_case *cases)
     size_t total = BD_ABREAST;
     for (size_t i = 0; i < n_pieces; i++)
         total += BD_ABREAST * pieces[i].count;
+    for (int b = 0; b < model->n_bearings; b++)
+        total += BD_ABREAST * BALL_PARTS * most_balls(n, cases, b);
     abreast->memory = aligned_alloc(64, total * sizeof(double));
     abreast->swings = calloc(loads + 1, sizeof *abreast->swings);
     abreast->own = calloc(m + 1, sizeof *abreast->own);
-    if (!abreast->memory || !abreast->swings || !abreast->own) {
+    abreast->bearings = calloc((size_t)model->n_bearings + 1, sizeof *abreast->bearings);
+    if (!abreast->memory || !abreast->swings || !abreast->own || !abreast->bearings) {
         bd_abreast_free(abreast);
         return NULL;
     }
@@ -163,6 +195,8 @@ bd_abreast *bd_abreast_create(int n, const bd_abreast_case *cases)
         *pieces[i].place = next;
         next += BD_ABREAST * pieces[i].count;
     }
+    for (int b = 0; b < model->n_bearings; b++)
+        next = take_bearing(&abreast->bearings[b], n, cases, b, next);
     abreast->model = model;
     abreast->work = cases[0].work;
     for (int l = 0; l < n; l++)
@@ -178,29 +212,31 @@ void bd_abreast_free(bd_abreast *abreast)
     free(abreast->memory);
     free(abreast->swings);
     free(abreast->own);
+    free(abreast->bearings);
     free(abreast);
 }
 
 /* ---------------------------------------------------------------- states in and out of their lanes */
 
 /* The parts of a state that lie in lanes. */
-enum { PARTS = 5 };
+enum { PARTS = 8 };
 
 static void parts_of(const bd_abreast *abreast, const bd_state *state, double **wide, double **flat,
                      size_t *counts)
 {
     const bd_model *model = abreast->model;
-    double *const lanes_of[PARTS] = {abreast->x, abreast->v, abreast->a, abreast->y_rate,
-                                     abreast->stress};
-    double *const parts[PARTS] = {state->x, state->v, state->a, state->y_rate, state->stress};
-    const size_t n = (size_t)model->n_padded;
-    const size_t sizes[PARTS] = {n, n, n, (size_t)model->ranks, model->n_stress};
+    const size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
+    double *const lanes_of[PARTS] = {abreast->x,      abreast->v,    abreast->a,    abreast->y_rate,
+                                     abreast->stress, abreast->g[0], abreast->g[1], abreast->g[2]};
+    double *const parts[PARTS] = {state->x,      state->v, state->a,        state->y_rate,
+                                  state->stress, state->g, state->g_before, state->g_before + m};
+    const size_t sizes[PARTS] = {n, n, n, (size_t)model->ranks, model->n_stress, m, m, m};
     memcpy(wide, lanes_of, sizeof lanes_of);
     memcpy(flat, parts, sizeof parts);
     memcpy(counts, sizes, sizeof sizes);
 }
 
-static void take(const bd_abreast *abreast, const bd_state *state, int lane)
+void bd_abreast_take(const bd_abreast *abreast, const bd_state *state, int lane)
 {
     double *wide[PARTS], *flat[PARTS];
     size_t counts[PARTS];
@@ -210,7 +246,7 @@ static void take(const bd_abreast *abreast, const bd_state *state, int lane)
             wide[p][BD_ABREAST * i + (size_t)lane] = flat[p][i];
 }
 
-static void give(const bd_abreast *abreast, const bd_state *state, int lane)
+void bd_abreast_give(const bd_abreast *abreast, const bd_state *state, int lane)
 {
     double *wide[PARTS], *flat[PARTS];
     size_t counts[PARTS];
@@ -220,8 +256,7 @@ static void give(const bd_abreast *abreast, const bd_state *state, int lane)
             flat[p][i] = wide[p][BD_ABREAST * i + (size_t)lane];
 }
 
-/* Zeroes a lane: what is not finite there, or grows without its bearings, would slow the others down. */
-static void empty(const bd_abreast *abreast, int lane)
+void bd_abreast_empty(const bd_abreast *abreast, int lane)
 {
     const bd_model *model = abreast->model;
     const size_t n = (size_t)model->n_padded, ranks = (size_t)model->ranks;
@@ -243,185 +278,13 @@ static void empty(const bd_abreast *abreast, int lane)
         {abreast->stress, model->n_stress},
         {abreast->trial, model->n_stress},
         {abreast->minus_g, (size_t)model->coefs},
+        {abreast->g[0], (size_t)model->coefs},
+        {abreast->g[1], (size_t)model->coefs},
+        {abreast->g[2], (size_t)model->coefs},
+        {abreast->guess, (size_t)model->coefs},
         {abreast->factor, 2 * (size_t)model->n_loads},
     };
     for (size_t p = 0; p < sizeof all / sizeof all[0]; p++)
         for (size_t i = 0; i < all[p].count; i++)
             all[p].wide[BD_ABREAST * i + (size_t)lane] = 0.0;
-}
-
-/* ---------------------------------------------------------------- march */
-
-/* Cases that march, by their lanes. */
-typedef struct runners {
-    bd_state state[BD_ABREAST];
-    bool runs[BD_ABREAST];
-    int n, left;
-} runners;
-
-/* A case ends: its state is that of its last step. */
-static void retire(bd_abreast *abreast, runners *all, bd_abreast_case *one, int lane,
-                   bd_status status)
-{
-    bd_state *state = &all->state[lane];
-    one->report.status = status;
-    give(abreast, state, lane);
-    empty(abreast, lane);
-    one->report.t = bd_clock_time(&state->clock, 0);
-    bd_clock_keep(state);
-    all->runs[lane] = false;
-    all->left--;
-}
-
-/* Begins a case as bd_march begins. */
-static void begin(bd_abreast *abreast, runners *all, bd_abreast_case *one, int lane)
-{
-    const double dt = one->work->scheme.dt;
-    bd_state *state = &all->state[lane];
-
-    one->report = (bd_report){.status = BD_OK, .bearing = -1, .open_t = -1.0, .open_bearing = -1};
-    one->rows = 0;
-    all->runs[lane] = false;
-    if (one->steps == 0)
-        return;
-    *state = bd_state_view(one->model, one->flat);
-    if (!bd_clock_valid(&state->clock)) {
-        one->report.status = BD_BAD_VALUE;
-        return;
-    }
-    if (state->clock.dt != dt) {
-        bd_clock_restart(&state->clock, dt);
-        state->clock.inverse_set = false;
-    }
-    take(abreast, state, lane);
-    all->runs[lane] = true;
-    all->left++;
-}
-
-/* Whether two shafts stand and turn alike, at every step to come: at the same time, of the same constant speed. */
-static bool shafts_alike(const runners *all, const bd_abreast_case *cases, int a, int b)
-{
-    const bd_clock *p = &all->state[a].clock, *q = &all->state[b].clock;
-    const bd_speed *s = &cases[a].work->profile.speed, *t = &cases[b].work->profile.speed;
-    return p->origin == q->origin && p->steps == q->steps && s->value[0] == t->value[0] &&
-           s->time[0] == t->time[0];
-}
-
-/* Lets each case that marches use the turn and the bases of the first such that turns alike; `leader` names it. */
-static void follow(const runners *all, const bd_abreast_case *cases, int *leader)
-{
-    for (int l = 0; l < all->n; l++) {
-        const bd_model *model = cases[l].model;
-        leader[l] = l;
-        for (int k = 0; k < l && leader[l] == l && all->runs[l]; k++)
-            if (all->runs[k] && leader[k] == k && shafts_alike(all, cases, k, l))
-                leader[l] = k;
-        for (int b = 0; b < model->n_bearings; b++) {
-            const bd_bearing *own = &model->bearings[b];
-            const bd_bearing *first = &cases[leader[l]].model->bearings[b];
-            const bool led = leader[l] != l && turn_alike(&first->data, &own->data);
-            bd_bearing_lead(own, &cases[l].work->bearings[b],
-                            led ? &cases[leader[l]].work->bearings[b] : NULL);
-        }
-    }
-}
-
-/* Where the shaft of a case is, and what its loads are, at the end of the step. */
-static void turn(bd_abreast *abreast, bd_abreast_case *cases, int lane, int leader, double t)
-{
-    const bd_abreast_case *one = &cases[lane];
-    const double dt = one->work->scheme.dt;
-    one->work->turn = leader == lane ? bd_turn_at(&one->work->profile, t, 0.5 * dt, 0.5 * dt)
-                                     : cases[leader].work->turn;
-    bd_load_factors(one->model, one->work, t);
-    for (int k = 0; k < 2 * one->model->n_loads; k++)
-        abreast->factor[BD_ABREAST * k + lane] = one->work->load_factor[k];
-}
-
-/* The bearings of one case, found as in a march of its own. */
-static bd_status find_bearings(bd_abreast *abreast, bd_abreast_case *one, bd_state *state, int lane)
-{
-    bd_work *work = one->work;
-    const int m = one->model->coefs;
-    bd_turn_bearings(one->model, work);
-    bd_guess_bearings(one->model, work, state);
-    for (int k = 0; k < m; k++) {
-        work->z_linear[k] = abreast->z[BD_ABREAST * k + lane];
-        work->z_rate_linear[k] = abreast->z_rate[BD_ABREAST * k + lane];
-    }
-    const bd_status status = bd_solve_bearings(one->model, work, state, &one->report);
-    for (int k = 0; k < m; k++)
-        abreast->minus_g[BD_ABREAST * k + lane] = -work->guess[k];
-    return status;
-}
-
-/* What else a step leaves of one case, once its state has moved on. */
-static void end_step(const bd_abreast *abreast, bd_abreast_case *one, bd_state *state, int lane,
-                     double t)
-{
-    const bd_model *model = one->model;
-    bd_work *work = one->work;
-    const size_t m = (size_t)model->coefs, row = m * sizeof *state->g;
-
-    memcpy(state->g_before + m, state->g_before, row);
-    memcpy(state->g_before, state->g, row);
-    memcpy(state->g, work->guess, row);
-    state->clock.steps++;
-    bd_count_open_sides(model, work, t, &one->report);
-    for (int b = 0; b < model->n_bearings; b++)
-        work->kernels->keep_peaks(&model->bearings[b], &work->bearings[b]);
-    if (state->clock.steps % one->decimate == 0) {
-        give(abreast, state, lane);
-        bd_record_row(model, work, state, one->record + one->rows * model->n_channels);
-        one->rows++;
-    }
-    one->report.steps++;
-}
-
-/* One step of all. Returned: whether the same cases go on */
-static bool step(bd_abreast *abreast, runners *all, bd_abreast_case *cases, const int *leader)
-{
-    const bd_kernels *kernels = abreast->work->kernels;
-    const int before = all->left;
-    double t[BD_ABREAST];
-
-    for (int l = 0; l < all->n; l++)
-        if (all->runs[l]) {
-            t[l] = bd_clock_time(&all->state[l].clock, 1);
-            turn(abreast, cases, l, leader[l], t[l]);
-        }
-    kernels->abreast_predict(abreast);
-    for (int l = 0; l < all->n; l++)
-        if (all->runs[l] && abreast->model->n_bearings > 0) {
-            const bd_status status = find_bearings(abreast, &cases[l], &all->state[l], l);
-            if (status != BD_OK)
-                retire(abreast, all, &cases[l], l, status);
-        }
-    const unsigned lost = kernels->abreast_complete(abreast);
-    for (int l = 0; l < all->n; l++)
-        if (all->runs[l] && lost >> l & 1)
-            retire(abreast, all, &cases[l], l, BD_NOT_FINITE);
-    kernels->abreast_commit(abreast);
-    for (int l = 0; l < all->n; l++)
-        if (all->runs[l]) {
-            end_step(abreast, &cases[l], &all->state[l], l, t[l]);
-            if (cases[l].report.steps == cases[l].steps)
-                retire(abreast, all, &cases[l], l, BD_OK);
-        }
-    return all->left == before;
-}
-
-void bd_abreast_march(bd_abreast *abreast, int n, bd_abreast_case *cases)
-{
-    runners all = {.n = n};
-    int leader[BD_ABREAST];
-
-    for (int l = 0; l < n; l++)
-        begin(abreast, &all, &cases[l], l);
-    while (all.left > 0) {
-        follow(&all, cases, leader);
-        while (step(abreast, &all, cases, leader))
-            ;
-    }
-    follow(&all, cases, leader); /* each its own again */
 }

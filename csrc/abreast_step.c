@@ -230,6 +230,10 @@ void BD_NAMED(bd_abreast_predict)(bd_abreast *of)
         }
     }
     push(of);
+    /* Newton starts from the parabola through the last three forces */
+    for (int k = 0; k < model->coefs * BD_ABREAST; k += BD_WIDTH)
+        LANES_AT(of->guess + k) =
+            3.0 * (LANES(of->g[0] + k) - LANES(of->g[1] + k)) + LANES(of->g[2] + k);
     const double *a_new = of->a_new, *x_ahead = of->x_ahead, *v_ahead = of->v_ahead;
     double *x_new = of->x_new, *v_new = of->v_new;
     const int n = model->n_padded * BD_ABREAST;
@@ -249,6 +253,8 @@ unsigned BD_NAMED(bd_abreast_complete)(bd_abreast *of)
     const bd_work *work = of->work;
     const double in_x = work->in_x, in_v = work->in_v;
 
+    for (int k = 0; k < model->coefs * BD_ABREAST; k += BD_WIDTH)
+        LANES_AT(of->minus_g + k) = -LANES(of->guess + k);
     for (int b = 0; b < model->n_bearings; b++) {
         const int at = model->bearing_slot[b], *touched = model->touched + b * model->n_blocks;
         const double *columns = work->SB + (size_t)at * (size_t)model->n_padded;
@@ -314,6 +320,9 @@ void BD_NAMED(bd_abreast_commit)(bd_abreast *of)
     double *now[] = {of->x, of->v, of->a, of->y_rate};
     double *next[] = {of->x_new, of->v_new, of->a_new, of->rate_new};
 
+    double *oldest = of->g[2];
+
+    of->g[2] = of->g[1], of->g[1] = of->g[0], of->g[0] = of->guess, of->guess = oldest;
     of->x = next[0], of->v = next[1], of->a = next[2], of->y_rate = next[3];
     of->x_new = now[0], of->v_new = now[1], of->a_new = now[2], of->rate_new = now[3];
     for (int l = 0; l < model->n_layers; l++) {

@@ -13,8 +13,6 @@
 #include "grazing.h"
 #include "kernels.h"
 
-/* A frozen Newton matrix that needs more evaluations than this is replaced. */
-enum { PATIENCE = 3 };
 /* From here on corrections are halved; where a ball hops across the jump of its force, balls are held instead. */
 enum { GRAZING = 10 };
 /* Corrections with held balls: so many in which all that must move do, then one ball at a time (the first, which
@@ -203,7 +201,7 @@ static bd_status iterate(const bd_model *model, bd_work *work, bd_state *state, 
                 measure(model, work, &residual, &scale);
             }
         }
-        if (!converged && (!fresh || iteration >= PATIENCE)) {
+        if (!converged && (!fresh || iteration >= BD_PATIENCE)) {
             if (refresh(model, work)) {
                 report->bearing = worst_bearing(model, work);
                 return BD_SINGULAR;

@@ -4,6 +4,9 @@
 
 #include "work.h"
 
+/* A frozen Newton matrix that needs more evaluations than this is replaced. */
+enum { BD_PATIENCE = 3 };
+
 /* Where the balls are at work->turn. */
 void bd_turn_bearings(const bd_model *model, bd_work *work);
 

@@ -280,4 +280,6 @@ const bd_kernels BD_NAMED(bd_kernels) = {
     .abreast_predict = BD_NAMED(bd_abreast_predict),
     .abreast_complete = BD_NAMED(bd_abreast_complete),
     .abreast_commit = BD_NAMED(bd_abreast_commit),
+    .abreast_find = BD_NAMED(bd_abreast_find),
+    .abreast_keep_peaks = BD_NAMED(bd_abreast_keep_peaks),
 };
