@@ -178,4 +178,5 @@ def _unpacked(held: Mapping[str, Any], laws: list[Any]) -> Superelement:
 
 def _face(told: Mapping[str, Any]) -> RoundFace:
     """Pairs are lists in JSON."""
-    return RoundFace(**{name: tuple(v) if isinstance(v, list) else v for name, v in told.items()})
+    values: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in told.items()}
+    return RoundFace(**values)
