@@ -88,7 +88,7 @@ def kept_superelement(part: Reducible, folder: str | Path) -> Superelement:
     else:
         made, doubts = _unpacked(held, laws), json.loads(str(held["doubts"]))
     for category, text in doubts:  # of the reduction, whether made now or before
-        notice.warn(text, getattr(notice, category, UserWarning))
+        notice.warn(text, getattr(notice, category, notice.Notice))
     return made
 
 
