@@ -19,12 +19,12 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples"))
 
 import motor
-from bearingdyn.analysis.core_channels import channel_of
 from printing import printed
 
 import bearingdyn as bd
 from bearingdyn import core
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.recordable_channels import channel_of
 
 ABREAST, STEPS, REPEATS = 8, 12_000, 12
 RATIO = 2.2  # target
