@@ -23,8 +23,8 @@ from printing import printed
 
 import bearingdyn as bd
 from bearingdyn import core
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.recordable_channels import channel_of
 
 ABREAST, STEPS, REPEATS = 8, 12_000, 12
 RATIO = 2.2  # target
