@@ -7,6 +7,7 @@ from bearingdyn.analysis.dissipation import dissipation
 from bearingdyn.analysis.energy_shares import energy_shares
 from bearingdyn.analysis.envelope import envelope_spectrum
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, state_of
+from bearingdyn.analysis.equivalent_radiated_power import radiated_power
 from bearingdyn.analysis.frequency_response import frequencies, frequency_response
 from bearingdyn.analysis.gradient import Gradient, gradient
 from bearingdyn.analysis.inputs_outputs import Input
@@ -23,7 +24,6 @@ from bearingdyn.analysis.operating_point import (
 from bearingdyn.analysis.orbit import orbit
 from bearingdyn.analysis.orders import order_spectrum, track_orders
 from bearingdyn.analysis.part_velocities import part_velocities, surface_of
-from bearingdyn.analysis.radiated_power import radiated_power
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
 from bearingdyn.analysis.response_band import Band, band_of
 from bearingdyn.analysis.shaft_speed import shaft_angle

@@ -34,9 +34,9 @@ from bearingdyn.bearing import (
 )
 from bearingdyn.bearing import catalogue as listed
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.notice import BearingWarning, UnusualMagnitude, warn
 from bearingdyn.parts import RigidBody
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 

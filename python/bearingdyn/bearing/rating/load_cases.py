@@ -135,7 +135,7 @@ def load_cases(
 
 
 def lives(bearing: BallBearing, inner: Array, outer: Array, C: float) -> Array:
-    """Lives (m,) of many load cases, million revolutions, from the loads of the balls (m, Z), N.
+    """Load cases' lives (m,), million revolutions, from the loads of the balls (m, Z), N.
 
     Parameters
     ----------
