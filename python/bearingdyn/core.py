@@ -41,7 +41,7 @@ class Packable(Protocol):
 
 
 class SolverError(RuntimeError):
-    """A march in the core that could not go on.
+    """The core's error: a march that could not go on.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class Scheme:
 
 @dataclass(frozen=True)
 class Stepping:
-    """How the core steps a state: step, speed, audit and scheme (bd_scheme).
+    """Core: how a state is stepped, by step, speed, audit and scheme (bd_scheme).
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ class Report:
 
 
 def maxwell_stress(rate: Array, dt: float | Array, G0: float, eta0: float, G: Array, tau: Array) -> Array:
-    """Deviatoric stress (nt, m) by the core's history update, the strain rate (nt, m) linear between samples.
+    """Core (C): deviatoric stress (nt, m) by the history update, the strain rate (nt, m) linear in between.
 
     It starts from e = 0 and S = 0.
 
@@ -247,7 +247,7 @@ def bearing_force(
     shaft_angle: float = 0.0,
     shaft_speed: float = 0.0,
 ) -> tuple[Array, Array, Array, Array]:
-    """Call of the core: force of a bearing on its raceways' coefficients, tangents, load of each ball.
+    """Core (C): force of a bearing on its raceways' coefficients, tangents, load of each ball.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ def bearing_force(
 def bearing_settle(
     kernel: Packable, loads: Array, radius: Array, angle: float, shaft_angle: float = 0.0
 ) -> tuple[Array, Array, Array]:
-    """Call of the core: where a bearing comes to rest under each of many loads, its outer ring held.
+    """Core (C): where a bearing comes to rest under each of many loads, its outer ring held.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def bearing_settle(
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """Answer of the core for one bearing along the samples (s) of a motion.
+    """Core: answer for one bearing along the samples (s) of a motion.
 
     Parameters
     ----------
@@ -373,7 +373,7 @@ def march(
     progress: Progress | None = None,
     modes: dict[str, Array] | None = None,
 ) -> tuple[Array, Array, Report]:
-    """Call of the core: march a state, and say how far it came, whatever the status.
+    """Core (C): march a state, and say how far it came, whatever the status.
 
     Parameters
     ----------
@@ -419,7 +419,7 @@ def harmonic(
     progress: Progress | None = None,
     balls: tuple[Complex, Array] | None = None,
 ) -> Complex:
-    """Call of the core: complex response (frequencies, outputs, inputs) of its model to unit forces.
+    """Core (C): complex response (frequencies, outputs, inputs) of its model to unit forces.
 
     Parameters
     ----------
@@ -469,7 +469,7 @@ def changed_layers(
     end: ArrayLike,
     isa: str = "best",
 ) -> tuple[Complex, Complex]:
-    """Call of the core: motions of layers whose moduli have changed (csrc/changed_layers.h).
+    """Core (C): motions of layers whose moduli have changed (csrc/changed_layers.h).
 
     Parameters
     ----------
@@ -529,7 +529,7 @@ def helmholtz(
 
 
 def time_of(model: Model, state: Array) -> float:
-    """Time of a state of the core, s.
+    """Core: the time that a state holds, s.
 
     Parameters
     ----------
@@ -540,7 +540,7 @@ def time_of(model: Model, state: Array) -> float:
 
 
 def energies(model: Model, state: Array) -> dict[str, float]:
-    """What the audit of a march in the core integrated, J, by the names of ENERGIES.
+    """Core: what the audit of a march integrated, J, by the names of ENERGIES.
 
     Parameters
     ----------

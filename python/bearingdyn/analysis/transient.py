@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.step_size import step_error_made
 from bearingdyn.application import Application
 from bearingdyn.checks import instance, items, name_list, named, number, one_speed, whole
