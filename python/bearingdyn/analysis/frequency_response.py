@@ -185,7 +185,7 @@ def frequency_response(
             for drive, one in zip(drives, found, strict=True):
                 size = np.einsum("fii->fi", drive)
                 x = one.x / np.where(size == 0, 1.0, size)[:, None, :]
-                moduli = moduli_of(state.system, omega, one.change)
+                moduli = moduli_of(state.system, one.modulus)
                 responses.append(recovered(wanted, given, x, omega, speed, power, bearings, moduli))
             response, strain = np.stack(responses), np.stack([one.strain for one in found])
             warn_of_strain(state.system, strain)

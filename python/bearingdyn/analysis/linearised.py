@@ -39,12 +39,15 @@ class Linear:
         rows: Array,
         speed: float,
         progress: core.Progress | None = None,
+        modulus: Complex | None = None,
     ) -> Complex:
-        """Motions rows (k, n) under forces (i, n) e^{iωt}, (f, k, i); paper (20)."""
+        """Motions rows (k, n) under forces (i, n) e^{iωt}, (f, k, i); paper (20).
+
+        modulus: of `moduli`, where it is known already.
+        """
         system = self.system
-        modulus = np.ones((omega.size, len(system.layers)), dtype=np.complex128)
-        for k, layer in enumerate(system.layers):
-            modulus[:, k] = layer.material.complex_modulus(omega)
+        if modulus is None:
+            modulus = self.moduli(omega)
         # η0 sits in G*(ω) here, so C is the structure's own
         moving = omega > 0
         if moving.all():
@@ -55,6 +58,17 @@ class Linear:
                 held = system if omega[part][0] > 0 else self.held_at_rest(modulus[part][0], force)
                 x[part] = self._respond(held, omega[part], modulus[part], force, rows, speed, progress)
         return x
+
+    def moduli(self, omega: Array) -> Complex:
+        """G* or K* (f, layers) of the layers' materials at omega (f,), rad/s, Pa; of each material once."""
+        of: dict[int, Complex] = {}
+        for layer in self.system.layers:
+            if id(layer.material) not in of:
+                of[id(layer.material)] = np.asarray(layer.material.complex_modulus(omega))
+        found = np.ones((omega.size, len(self.system.layers)), dtype=np.complex128)
+        for k, layer in enumerate(self.system.layers):
+            found[:, k] = of[id(layer.material)]
+        return found
 
     def _respond(
         self,

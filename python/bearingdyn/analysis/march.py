@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core, fingerprint, run_file
+from bearingdyn.analysis.abreast import GATHERING
 from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
@@ -221,9 +222,30 @@ class March:
         return self._modes.step(self.stepping.dt)
 
     def _core_march(self, model: core.Model, state: Array, steps: int, every: int, **how: Any) -> CoreMarch:
-        """The core's march by this method."""
+        """The core's march by this method, side by side with others where a gathering says so."""
         modes = None if self.method == "newmark" else self._step
-        return core.march(model, state, self.stepping, steps, every, modes=modes, **how)
+        gathering = GATHERING.get()
+        if gathering is None:
+            return core.march(model, state, self.stepping, steps, every, modes=modes, **how)
+        call = core.MarchCall(model, state, self.stepping, steps, every, modes=modes, **how)
+        return gathering.march(call, self._structure)
+
+    @cached_property
+    def _structure(self) -> str | None:
+        """Fingerprint of what marches that go side by side share; None for one that goes by itself."""
+        system = self.modal
+        turns = np.ptp(self.stepping.profile[1]) > 0 or len(self.stepping.profile[1]) > 1
+        if self.method != "newmark" or self.memory is not None or self.stepping.audit or turns:
+            return None
+        return fingerprint.fingerprint(
+            {
+                "matrices": (system.M, system.C, system.G, system.K, system.N),
+                "layers": [(term.L, term.material.G, term.material.tau) for term in system.layers],
+                "bearings": [bearing.B.shape for bearing in system.bearings],
+                "loads": len(system.loads),
+                "stepping": self.stepping,
+            }
+        )
 
     def step_error(self, model: core.Model, state: Array) -> Array:
         """Error of each channel that the step size leaves behind a state, (channels,): `step_error`."""

@@ -357,8 +357,12 @@ class BallBearing:
     @cached_property
     def static_rating(self) -> float:
         """Radial load ZQcosα/5 with 4.2 GPa in the heavier contact (ISO 76), N; axial play neglected."""
-        Q = min(c.load_at_pressure(STATIC_PRESSURE) for c in (self.inner_contact, self.outer_contact))
-        return self.Z * Q * math.cos(self.contact_angle or 0.0) / 5
+        return self.Z * self.static_ball_load * math.cos(self.contact_angle or 0.0) / 5
+
+    @cached_property
+    def static_ball_load(self) -> float:
+        """Load of one ball with 4.2 GPa in its heavier contact (ISO 76), N."""
+        return min(c.load_at_pressure(STATIC_PRESSURE) for c in (self.inner_contact, self.outer_contact))
 
     @takes(speed="rad/s", contact_angle="rad")
     def frequencies(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from typing import Any
 
 import numpy as np
@@ -25,9 +25,13 @@ WANTED = 4e-3  # what the choice aims at against the rich basis, which is itself
 STILL = 2e-4  # the same at rest, at any modulus
 LOSS = 0.02  # loss factor at which a part without rubber is judged: no error is told at an undamped resonance
 MOMENTS = 2  # answers to inertia, beyond the static shapes
-PATH = 24  # frequencies at which the small models are compared
+PATH = 24  # evenly spaced frequencies at which the small models are compared, besides their resonances
+BANDS = 8  # of 0…f_max, in each of which the moduli are taken as one to find the resonances
 OWN = 1e-10  # energy of a combination of shapes of unit energy, below which it is not one of its own
-CHECKS = (1.0, 0.55, 0.8, 0.3, 0.92, 0.67, 0.43, 0.17)  # of f_max: where the rich basis meets the whole model
+FIRST = (0.55, 0.8)  # of f_max: where the first rich basis meets the whole model, after its resonances
+PASSES = 3  # how many such meetings must go well in a row
+CHECKS = 16  # and how many there are at most
+APART = 0.03  # of f_max: meetings nearer than that tell the same
 RICH = 0.2  # of what is wanted, the error of the rich basis there
 
 
@@ -167,18 +171,28 @@ def port_shapes(
         shapes = shapes / (2 * np.pi * frequency)  # of unit energy
         return _Small(order, faces, rigid, shapes, levels, shear, f_max)
 
-    small, missed, passed = small_model(), 0.0, 0
-    for share in CHECKS if f_max > 0 else ():
-        omega = 2 * np.pi * f_max * share
-        u, T = order.motion(lossy(shear(omega)), omega)
-        missed = small.missed(T, lossy(shear(omega)), omega)
-        passed = passed + 1 if missed < RICH * WANTED else 0
-        if passed == 2:
+    small, missed = small_model(), 0.0
+    # the first basis meets the whole at its resonances, a richer one where it differs most from the last
+    most = 2 * np.pi * f_max
+    meetings = [most, *sorted(small.resonances, reverse=True), *(most * share for share in FIRST)]
+    passed: list[tuple[float, float]] = []
+    for _ in range(CHECKS if f_max > 0 else 0):
+        apart = (w for w in meetings if all(abs(w - v) > APART * most for v, _ in passed))
+        omega = next(apart, None)
+        if omega is None:
             break
-        if not passed:
-            u[:, :r] -= faces
-            rich.append(np.hstack([u.real, u.imag]))
-            small = small_model()
+        u, T = order.motion(lossy(shear(omega)), omega)
+        error = small.missed(T, lossy(shear(omega)), omega)
+        if error < RICH * WANTED:
+            passed.append((omega, error))
+            if len(passed) == PASSES:
+                break
+            continue
+        u[:, :r] -= faces
+        rich.append(np.hstack([u.real, u.imag]))
+        poorer, small, passed, missed = small, small_model(), [], error
+        meetings = small.unlike(poorer)
+    missed = max((error for _, error in passed), default=missed)
     kept, error = small.choose()
     _, internal = orthogonalise(small.shapes @ kept, K, M)
     return PortShapes(
@@ -252,6 +266,8 @@ class _Small:
         rest = [np.asarray(level, dtype=np.complex128) for level in levels]
         rest += [np.sqrt(a * b) for a, b in pairwise(rest)]
         omegas = [2 * np.pi * f_max * k / PATH for k in range(1, PATH + 1)] if f_max > 0 else []
+        self.resonances = self._resonances(shear, 2 * np.pi * f_max)
+        omegas += self.resonances
         self.points = [(G, still) for G in rest] + [(lossy(shear(w)), w) for w in omegas]
         self.limits = np.array([STILL] * len(rest) + [WANTED] * len(omegas))
         self.D = [self.dynamic(G, w) for G, w in self.points]
@@ -266,6 +282,25 @@ class _Small:
         D = self.K - omega**2 * self.M
         return np.asarray(D + sum(G * H for G, H in zip(shear, self.H, strict=True)), dtype=np.complex128)
 
+    def _resonances(self, shear: Callable[[float], Sequence[complex]], most: float) -> list[float]:
+        """Those below `most`, rad/s, with the faces held: there a small error is felt most.
+
+        With several raceways, one of which springs may hold, also those with all of them held.
+        """
+        f, found = self.fixed, []
+        free = [np.eye(self.size)]
+        if self.several:
+            free.append(scipy.linalg.null_space(self.L[:, f:]))
+        for k in range(BANDS if most > 0 else 0):
+            low, high = most * k / BANDS, most * (k + 1) / BANDS
+            G = lossy(shear(0.5 * (low + high))).real
+            for Z in free:
+                K = Z.T @ self.dynamic(G, 0.0).real[f:, f:] @ Z
+                slowness = scipy.linalg.eigh(Z.T @ self.M[f:, f:] @ Z, K, eigvals_only=True)
+                own = slowness[slowness > 1 / most**2] ** -0.5
+                found += own[(own > low) & (own <= high)].tolist()
+        return found
+
     def elastic(self, T: Complex, omega: float) -> Complex:
         """What is felt less what a free body does as a whole: that is exact, and may be cancelled by what
         will hold it."""
@@ -275,6 +310,21 @@ class _Small:
         """Error of the rich basis against the whole model."""
         got = felt(self.dynamic(shear, omega), self.L, self.r)
         return self._misfit(got, T, omega)
+
+    def unlike(self, other: _Small) -> list[float]:
+        """Frequencies, rad/s, from where the two differ most; resonances and the others of the path in turn.
+
+        In turn, for a basis may come right where the last was worst, and not yet at a sharp resonance.
+        """
+        differ = {
+            w: self._misfit(felt(other.dynamic(G, w), other.L, other.r), wanted, w)
+            for (G, w), wanted, limit in zip(self.points, self.wanted, self.limits, strict=True)
+            if limit == WANTED
+        }
+        sharp = set(self.resonances)
+        found = sorted(differ, key=lambda w: -differ[w])
+        pairs = zip_longest([w for w in found if w in sharp], [w for w in found if w not in sharp])
+        return [w for pair in pairs for w in pair if w is not None]
 
     def choose(self) -> tuple[Array, float]:
         """Combinations (m, k) of the internal shapes that are kept, and the largest error."""
