@@ -244,6 +244,57 @@ def test_loudness_at_another_rate_and_in_a_diffuse_field() -> None:
     assert sound.loudness(p, 44100.0, "diffuse") > 1.2 * sound.loudness(p, 44100.0)
 
 
+def narrow_noise(centre: float, width: float, decibels: float, seconds: float = 2.0) -> np.ndarray:
+    """Noise of even lines in a band; Pa."""
+    n = round(RATE * seconds)
+    f = np.fft.rfftfreq(n, 1 / RATE)
+    inside = np.abs(f - centre) <= 0.5 * width
+    phases = np.exp(2j * np.pi * np.random.default_rng(3).random(f.size))
+    x = np.fft.irfft(np.where(inside, phases, 0.0), n)
+    return x * 20e-6 * 10 ** (decibels / 20) / np.sqrt(np.mean(x**2))
+
+
+@pytest.mark.parametrize(
+    ("centre", "width", "acum"), [(250, 100, 0.38), (1000, 160, 1.0), (2500, 380, 1.78), (4000, 700, 2.82)]
+)
+def test_sharpness_of_narrow_noise(centre: float, width: float, acum: float) -> None:
+    """The definition of the acum, and others of DIN 45692 table A.2, which allows .05 acum; .033 seen.
+
+    Its noises have 4 sone; here all have 60 dB, on which sharpness hardly depends.
+    """
+    pytest.importorskip("mosqito")
+    assert sound.sharpness(narrow_noise(centre, width, 60.0), RATE) == pytest.approx(acum, abs=0.05)
+
+
+def test_roughness_of_a_modulated_tone() -> None:
+    """The definition of the asper; ears tell 17 % apart. At 10 Hz it is no more than a fluctuation."""
+    pytest.importorskip("mosqito")
+    t = np.arange(round(RATE)) / RATE
+
+    def modulated(f: float) -> np.ndarray:
+        x = (1 + np.sin(2 * np.pi * f * t)) * np.sin(2 * np.pi * 1000 * t)
+        return x * 20e-3 / np.sqrt(np.mean(x**2))
+
+    assert sound.roughness(modulated(70.0), RATE) == pytest.approx(1.0, rel=0.17)
+    assert sound.roughness(modulated(10.0), RATE) < 0.2
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda: sound.sharpness([0.0] * 48000, 48000.0), "it must be heard"),
+        (lambda: sound.sharpness([0.0] * 9600, 48000.0), "it must last 0.5 s or more"),
+        (lambda: sound.sharpness([0.0] * 48000, 48000.0, "near"), "field is 'near'"),
+        (lambda: sound.roughness([0.0] * 4800, 48000.0), "it must last 0.2 s or more"),
+        (lambda: sound.roughness([0.0] * 48000, 8000.0), "cannot carry the audible band"),
+    ],
+)
+def test_what_cannot_be_heard_is_named(call: object, text: str) -> None:
+    pytest.importorskip("mosqito")
+    with pytest.raises(ValueError, match=text):
+        call()
+
+
 @pytest.mark.parametrize(
     ("call", "text"),
     [

@@ -3,7 +3,7 @@
 from bearingdyn.sound.bands import band_filter, band_powers, bands, filtered_bands
 from bearingdyn.sound.contributions import sound_contributions
 from bearingdyn.sound.field import box_positions, far_field, far_power, hemisphere_positions, pressure_at
-from bearingdyn.sound.hearing import loudness, pressure_signal, weighted_signal
+from bearingdyn.sound.hearing import loudness, pressure_signal, roughness, sharpness, weighted_signal
 from bearingdyn.sound.intensity import panel_forces, sound_intensity
 from bearingdyn.sound.levels import (
     band_levels,
@@ -42,6 +42,8 @@ __all__ = [
     "pressure_signal",
     "radiated_power",
     "read_wav",
+    "roughness",
+    "sharpness",
     "solve",
     "sound_contributions",
     "sound_intensity",

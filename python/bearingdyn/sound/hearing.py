@@ -130,7 +130,80 @@ def loudness(pressure: ArrayLike, rate: float, field: str = "free") -> float:
     ----------
     ISO 532-1:2017 (Zwicker), clause 5: stationary sounds.
     """
-    one_of("field", field, ("free", "diffuse"))
+    return float(_specific_loudness(pressure, rate, field, "loudness")[0])
+
+
+def sharpness(pressure: ArrayLike, rate: float, field: str = "free") -> float:
+    """Sharpness of a steady sound as one hears it, acum, by the package mosqito (extra "sound").
+
+    Parameters
+    ----------
+    pressure, rate, field
+        As in `loudness`, on whose bands it stands.
+
+    Returns
+    -------
+    float
+        Acum: 1 of noise a critical band wide about 1 kHz at 60 dB.
+
+    Raises
+    ------
+    ImportError
+        Where mosqito is not installed, or is of a version without these filters.
+    ValueError
+        As `loudness`, and for a sound that cannot be heard, which has no sharpness.
+
+    References
+    ----------
+    DIN 45692:2009.
+    """
+    heard, specific = _specific_loudness(pressure, rate, field, "sharpness")
+    from mosqito.sq_metrics.sharpness.sharpness_din.sharpness_din_from_loudness import (
+        sharpness_din_from_loudness,
+    )
+
+    require(
+        heard > 0.0, "pressure", f"of {heard:g} sone", "it must be heard; a silent sound has no sharpness"
+    )
+    return float(np.squeeze(sharpness_din_from_loudness(np.array([heard]), specific, "din")))
+
+
+def roughness(pressure: ArrayLike, rate: float) -> float:
+    """Roughness of a steady sound as one hears it, asper, by the package mosqito (extra "sound").
+
+    Parameters
+    ----------
+    pressure
+        (n,), Pa, a fifth of a second or more: the mean over windows of .2 s that overlap by half.
+    rate
+        Samples a second.
+
+    Returns
+    -------
+    float
+        Asper: 1 of a tone of 1 kHz and 60 dB, fully modulated at 70 Hz.
+
+    Raises
+    ------
+    ImportError
+        Where mosqito is not installed.
+    ValueError
+        For a signal that is too short, and a rate that does not carry the audible band.
+
+    References
+    ----------
+    P. Daniel, R. Weber, Acustica 83 (1997) 113.
+    """
+    x, rate = _audible(pressure, rate, 0.2)
+    try:
+        from mosqito.sq_metrics.roughness.roughness_dw.roughness_dw import roughness_dw
+    except ImportError as error:
+        raise _lacking("roughness", error) from error
+    return float(np.mean(roughness_dw(_at_48_kilohertz(x, rate), 48000, overlap=0.5)[0]))
+
+
+def _audible(pressure: ArrayLike, rate: float, least: float) -> tuple[Array, float]:
+    """A signal that lasts at least so many seconds, and whose rate carries most of what is heard."""
     x, rate = signal("pressure", pressure), positive("rate", rate)
     require(
         rate >= 0.5 * AUDIBLE,
@@ -138,17 +211,31 @@ def loudness(pressure: ArrayLike, rate: float, field: str = "free") -> float:
         rate,
         f"its step cannot carry the audible band; it must be {AUDIBLE:g}, and half that at least",
     )
-    require(x.size >= 0.5 * rate, "pressure", f"{x.size / rate:.3g} s", "it must last half a second or more")
+    require(x.size >= least * rate, "pressure", f"{x.size / rate:.3g} s", f"it must last {least:g} s or more")
+    return x, rate
+
+
+def _at_48_kilohertz(x: Array, rate: float) -> Array:
+    import scipy.signal
+
+    return x if rate == 48000.0 else np.asarray(scipy.signal.resample(x, round(x.size * 48000.0 / rate)))
+
+
+def _lacking(what: str, error: ImportError) -> ImportError:
+    return ImportError(f'{what} needs mosqito 1.2: pip install "bearingdyn[sound]" ({error})')
+
+
+def _specific_loudness(pressure: ArrayLike, rate: float, field: str, what: str) -> tuple[float, Array]:
+    """Loudness, sone, and loudness of each tenth of a Bark, sone/Bark."""
+    one_of("field", field, ("free", "diffuse"))
+    x, rate = _audible(pressure, rate, 0.5)
     try:
         from mosqito.sq_metrics.loudness.loudness_zwst._calc_slopes import _calc_slopes
         from mosqito.sq_metrics.loudness.loudness_zwst._main_loudness import _main_loudness
         from mosqito.sq_metrics.loudness.loudness_zwtv._third_octave_levels import _third_octave_levels
     except ImportError as error:
-        raise ImportError(f'loudness needs mosqito 1.2: pip install "bearingdyn[sound]" ({error})') from error
-    import scipy.signal
-
-    if rate != 48000.0:
-        x = scipy.signal.resample(x, round(x.size * 48000.0 / rate))
-    levels, time, _ = _third_octave_levels(x, 48000)
+        raise _lacking(what, error) from error
+    levels, time, _ = _third_octave_levels(_at_48_kilohertz(x, rate), 48000)
     mean = 10.0 * np.log10(np.mean(10.0 ** (levels[:, time > SETTLED] / 10.0), axis=1))
-    return float(_calc_slopes(_main_loudness(mean, field))[0])
+    total, specific = _calc_slopes(_main_loudness(mean, field))[:2]
+    return float(total), np.asarray(specific)
