@@ -58,7 +58,7 @@ def layer_strain(layer: Layer, relative: ArrayLike, ax: Axes | None = None) -> A
     with style():
         ax = ax or new_axes()
         field = PolyCollection(
-            1e3 * np.stack([mesh.z, mesh.r], axis=-1)[corners], cmap="viridis", linewidths=0
+            list(1e3 * np.stack([mesh.z, mesh.r], axis=-1)[corners]), cmap="viridis", linewidths=0
         )
         field.set_array(100 * mean[at])
         field.set_edgecolor("face")
