@@ -10,7 +10,7 @@ typedef struct bd_echo_weights {
 } bd_echo_weights;
 
 /* Given:    dt > 0; an echo whose decay has a positive real part
- * Returned: the weights, exact for p linear in the step, to 1e-14 of them for any decay dt */
+ * Returned: the weights, exact for p linear in the step, to 2e-14 of the larger for any decay dt */
 bd_echo_weights bd_echo_step(const bd_echo *echo, double dt);
 
 /* Doubles that a state keeps of one bearing: p, then of each echo the real and imaginary parts of q, ball by ball. */
