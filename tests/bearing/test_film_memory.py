@@ -40,12 +40,9 @@ def test_memory_answers_as_the_films_do(case: tuple[str, int, float, float, floa
     assert law.load is not None
     omega = np.linspace(0.02, 4, 60) / max(law.answer.passages(law.load))
     found, wanted = memory.stiffness(omega), law.answer.under(np.array([law.load])).stiffness(omega)[:, 0]
-    # a sum of three decays a contact against a table whose values are within 1 % of K
-    assert np.abs(found.real - wanted.real).max() < 0.01
-    c0 = memory.slope * memory.softness
-    assert np.abs((found - wanted).imag / omega).max() < 0.08 * c0
-    # the table's own C has a kink at its first frequency; the fit is as near as it says
-    assert np.abs(found - wanted).max() <= 1.05 * memory.error
+    # two contacts in series have other decays than each alone, near enough to them: 2e-6 was the most
+    assert np.abs(found - wanted).max() < 1e-5
+    assert memory.error < 1e-5
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]} VG{case[1]} {case[2]:g} °C")
@@ -78,9 +75,9 @@ def test_memory_of_a_ring_that_gives_is_in_series() -> None:
     omega = np.linspace(0.02, 4, 40) / max(law.answer.passages(law.load))
     k = bare.stiffness(omega)
     # `stiffness` is over that of dry contacts, with the ring's static share taken out of it
-    wanted = k * (1 + give * dry * bare.softness) / (1 + give * dry * k)
-    # both are fits, of K̂ within .005
-    np.testing.assert_allclose(soft.stiffness(omega), wanted, atol=5e-3)
+    wanted = k * (1 + give * dry * bare.decays.softness) / (1 + give * dry * k)
+    # fits with decays that are not quite those of the series
+    np.testing.assert_allclose(soft.stiffness(omega), wanted, atol=1e-4)
 
 
 def test_kernel_touches_the_films_line_at_its_load() -> None:
@@ -88,9 +85,11 @@ def test_kernel_touches_the_films_line_at_its_load() -> None:
     film = ball.film
     memory = FilmMemory.of(ball.law, ball.kappa)
     assert film.kappa * (ball.rest + film.h0) ** 1.5 == pytest.approx(ball.F, rel=1e-12)
-    assert 1.5 * ball.F / (ball.rest + film.h0) == pytest.approx(memory.softness * ball.stiffness, rel=1e-12)
+    assert 1.5 * ball.F / (ball.rest + film.h0) == pytest.approx(
+        memory.decays.softness * ball.stiffness, rel=1e-12
+    )
     # theory.md §4.3: K0/K_Hertz of M = 100, L = 10
-    assert memory.softness == pytest.approx(0.979, abs=1e-3)
+    assert memory.decays.softness == pytest.approx(0.979, abs=1e-3)
 
 
 def test_kernel_and_twin_agree() -> None:

@@ -48,7 +48,7 @@ def system_hash(system: System, contacts: Contacts = "viscous") -> str:
             ],
             # without memory as before there was any
             "bearings": [
-                ({k: v for k, v in packed.items() if k != "echoes" or np.size(v)}, B)
+                ({k: v for k, v in packed.items() if k != "echoes" or np.asarray(v).size}, B)
                 for packed, B in bearings
             ],
             "loads": system.loads,
