@@ -76,9 +76,9 @@ def test_a_march_answers_as_the_films_do(Omega: float, method: str) -> None:
     # 40 steps a period, or 6 µs: a mode of 8 kHz, which the step must see, is damped
     found = stiffness(f, min(6e-6, 1 / f / 40), "film", method)
     # the law is for the dry bearing's loads, 1.4 % off: .009/3 of that in K, a third of it in the passage
-    assert abs(found / wanted - 1) < 5e-4
+    assert abs(found / wanted - 1) < 1.5e-3  # and the fit's own, FilmMemory.error
     # c(ω), which falls to a sixth at Ω = 2
-    assert found.imag == pytest.approx(wanted.imag, rel=0.02)
+    assert found.imag == pytest.approx(wanted.imag, rel=0.04)
     if Omega >= 2:
         assert stiffness(f, 1 / f / 40, "viscous").imag > 3 * wanted.imag
 

@@ -1,6 +1,6 @@
 """The memory of a ball's films in time: what the oil carries through both contacts, as decays.
 
-Over frequency both contacts of a ball in series answer with K̂ = K0 (1 + iω b Σ ρ/(iω + d)) (`ehl.FilmDecays`);
+Over frequency both contacts of a ball in series answer with K̂ = K0 (1 + iωb Σ ρ/(iω + d)), `ehl.FilmDecays`;
 in time that is
 
     dq/dt = −d q + b dδ/dt,    η = Σ Re(ρ q),    F = κ(δ + h0 + η)^{3/2},
