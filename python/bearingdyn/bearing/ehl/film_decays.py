@@ -26,9 +26,9 @@ from bearingdyn.types import Array, Complex
 # of a 6205 answer; the fast one stands for the 1/√t with which the share of the inlet begins.
 DECAYS = np.array([21.0 + 0j, 1.45 - 2.99j, 1.92 - 0.95j])
 """Rates of decay of one contact's film, um/a; of pairs the first."""
-# Weight of the strengths in the fit, rising until films give no energy beyond the last frequency, where nothing
-# is known of them. Below it they may: surfaces that roll drive them, and with D = 1 and L beyond 20 the solutions
-# have c(ω) down to −.04 c0 about ωa/um = 2.
+# Weight of the strengths in the fit, rising until films give no energy beyond the last frequency, where
+# nothing is known of them. Below it they may: surfaces that roll drive them, and with D = 1 and L beyond 20
+# the solutions have c(ω) down to −.04 c0 about ωa/um = 2.
 _RESTRAINTS = (0.0, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
 _BEYOND = np.geomspace(1.0, 1e4, 200)  # over the last frequency: where that is asked
 
