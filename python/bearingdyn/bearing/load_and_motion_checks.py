@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 

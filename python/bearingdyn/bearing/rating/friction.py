@@ -28,7 +28,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from bearingdyn.checks import nonnegative, number, one_of, positive, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 FrictionModel = Literal["palmgren", "four-term"]
 Supply = Literal["oil mist", "oil bath", "oil jet", "grease"]
