@@ -115,6 +115,17 @@ def test_a_march_on_films_resumes_and_streams_bit_for_bit(tmp_path: Path) -> Non
         transient(eq, steps=10, resume=half, **(how | {"contacts": "viscous"}))
 
 
+def test_marches_on_films_go_side_by_side_bit_for_bit() -> None:
+    cases = [
+        dict(source=oiled(2000.0, radial), speed=OMEGA, dt=5e-6, steps=400, record=PLACES, contacts="film")
+        for radial in (0.0, 50.0, 100.0)
+    ]
+    for case, found in zip(cases, bd.transients(cases, threads=1), strict=True):
+        alone = transient(**case)
+        np.testing.assert_array_equal(found["record"].values, alone["record"].values)
+        np.testing.assert_array_equal(found["state"].values, alone["state"].values)
+
+
 def test_energies_balance_on_films() -> None:
     """What contacts take stands among the energies; films also hold some, and give it back."""
     run = transient(
