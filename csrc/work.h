@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "echoes.h"
 #include "model.h"
 #include "profile.h"
 
@@ -35,6 +36,7 @@ struct bd_work {
         W_rate; /* of an exact step, where W is of z alone and both hold what in_x and in_v are for */
     bd_exact *exact;            /* or NULL */
     bd_branch_weights *weights; /* (branches) layer by layer */
+    bd_echo_weights *echoes;    /* (n_echoes) bearing by bearing */
 
     /* vectors of a step, padded */
     double *x, *v, *a;       /* predictor; a without the bearings, then with */

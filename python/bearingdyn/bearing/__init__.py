@@ -20,6 +20,7 @@ from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_p
 from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.film_answer import AnswerUnderLoads, FilmAnswer
+from bearingdyn.bearing.film_memory import FilmMemory, carried
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.half_space import footprint_profile, half_space_orders
@@ -78,6 +79,7 @@ __all__ = [
     "Film",
     "FilmAnswer",
     "FilmDamping",
+    "FilmMemory",
     "Frequencies",
     "Friction",
     "FrictionModel",
@@ -110,6 +112,7 @@ __all__ = [
     "Waviness",
     "WavinessSpectrum",
     "at_distance",
+    "carried",
     "catalogue",
     "check_bearing_pressure",
     "clearance_range",

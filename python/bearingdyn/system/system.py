@@ -24,7 +24,7 @@ from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.raceway_channels import raceway_row
 from bearingdyn.system.softening_layer import marched_layer
 from bearingdyn.system.system_matrix_check import check_matrix
-from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
+from bearingdyn.system.terms import BearingTerm, Contacts, LayerTerm, LoadTerm, PartTerm, SpringTerm
 from bearingdyn.types import Array, Index
 
 # a test spring in N/m that stands for a bearing when free motions are sought: any stiff value serves
@@ -245,6 +245,7 @@ class System:
         channels: list[tuple[int, Array | None, int, int]],
         relaxed: bool = True,
         memory: float | None = None,
+        contacts: Contacts = "viscous",
     ) -> core.Model:
         """The core's model.
 
@@ -257,11 +258,13 @@ class System:
             harmonic response: the whole deviatoric stiffness is left to a modulus given per frequency.
         memory
             Time, s, over which layers that soften remember their amplitude; needed for their march.
+        contacts
+            Whether films answer as viscous dampers, or remember.
 
         Raises
         ------
         ValueError
-            Without a memory that is needed.
+            Without a memory that is needed, and as `BearingTerm.kernel`.
         """
         C = self.viscous() if relaxed else self.C
         K = self.stiffness(self.marched_moduli()) if relaxed else self.K
@@ -274,7 +277,7 @@ class System:
             K=K,
             N=self.N,
             layers=layers,
-            bearings=[(t.kernel().packed(), t.B) for t in self.bearings],
+            bearings=[(t.kernel(contacts).packed(), t.B) for t in self.bearings],
             loads=[(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels=channels,
         )

@@ -11,7 +11,6 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
-from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
@@ -23,7 +22,7 @@ from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
 from bearingdyn.notice import OutsideBand
-from bearingdyn.system import System
+from bearingdyn.system import Contacts, System
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
