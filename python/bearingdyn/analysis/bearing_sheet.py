@@ -26,16 +26,16 @@ from bearingdyn.bearing import (
     fault_lines,
     friction,
     in_hours,
-    life_of_loads,
     modified_life,
     nijenbanning_venner_moes,
     ratings_of,
     reliability_factor,
 )
 from bearingdyn.bearing import catalogue as listed
+from bearingdyn.bearing.rating import check_given, lives
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
 from bearingdyn.magnitude import plausible
-from bearingdyn.notice import BearingWarning, UnusualMagnitude, warn
+from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.parts import RigidBody
 from bearingdyn.types import Array
 from bearingdyn.units import takes
@@ -105,8 +105,6 @@ _ROWS: dict[str, dict[str, tuple[str, str, float, str]]] = {
         "2 BSF": ("Hz", "spot of a ball past a race", 1, "Hz"),
     },
 }
-FAR = 3.0
-"""Factor between a rating given and that of the balls by ISO that is doubted; makers differ by 1.3."""
 _MEANING = {name: row for group in _ROWS.values() for name, row in group.items()}
 
 
@@ -416,15 +414,7 @@ def _check_ratings(hung: Mapping[str, BallBearing], C: Mapping[str, float], C0: 
     """Warn (UnusualMagnitude) of ratings given that are far from what ISO gives to the bearing's balls."""
     for what, given in (("C", C), ("C0", C0)):
         for name, value in given.items():
-            found = getattr(ratings_of(hung[name]), what)
-            if not 1 / FAR < value / found < FAR:
-                kilo = 1 / FAR < 1e3 * value / found < FAR
-                guess = f"; is it in kN? give {1e3 * value:.4g} N" if kilo else ""
-                warn(
-                    f"{what} of bearing {name!r} is {value:.4g} N, and its balls give {found:.4g} N by ISO"
-                    f"{guess}",
-                    UnusualMagnitude,
-                )
+            check_given(what, value, getattr(ratings_of(hung[name]), what), f" of bearing {name!r}")
 
 
 def _row(
@@ -482,7 +472,7 @@ def _row(
         "P0": P0,
         "static_safety": C0 / P0 if P0 > 0 else math.inf,
         "L10": (C / P) ** 3 if P > 0 else math.inf,
-        "L10r": life_of_loads(bearing, Q, C=C),
+        "L10r": float(lives(bearing, Q[None], Q[None], C)[0]),
     }
     for key, index in (("stiffness_x", x), ("stiffness_y", y), ("stiffness_z", along)):
         row[key] = math.nan if index is None else float(state.K[index, index])
@@ -571,7 +561,8 @@ def _life_of_phase(
     C, C0 = iso.C if C is None else C, iso.C0 if C0 is None else C0
     inner, outer = bearing.ring_speeds
     relative = plausible("speed", "speed of a phase", speed) * (inner - outer)
-    life = life_of_loads(bearing, state.bearings[name].loads, C=C)
+    Q = state.bearings[name].loads[None]
+    life = float(lives(bearing, Q, Q, C)[0])
     if oil is not None and relative != 0 and math.isfinite(life):
         nu = oil.kinematic.viscosity(T)
         found, doubt = _modified(life, C, C0, bearing, relative, nu, contamination, reliability)

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bearingdyn.checks import number, positive, require
+from bearingdyn.magnitude import plausible
 from bearingdyn.material import Doubts, Maxwell, uniforms
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -79,6 +80,7 @@ class LogNormal:
     def __post_init__(self) -> None:
         positive("LogNormal.median", self.median)
         positive("LogNormal.relative", self.relative, "it must be a positive standard deviation")
+        plausible("spread", "LogNormal.relative", self.relative)
 
     def quantile(self, share: Array) -> Array:
         """Values (n,) below which these shares (n,) of the distribution lie."""

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY
+from bearingdyn.bearing.rating.iso_ratings import check_given
 from bearingdyn.bearing.rating.life import Arm, race_capacities, ratings_of, with_arm
 from bearingdyn.checks import instance, number, real
 from bearingdyn.types import Array
@@ -95,6 +96,8 @@ def load_cases(
     if f.ndim != 2 or f.shape[1] != 6 or not np.isfinite(f).all():
         raise ValueError(f"loads has the shape {f.shape}; it must be (m, 6), finite, in N and N m")
     held = with_arm(bearing, arm)
+    found = ratings_of(held).C
+    rating = found if C is None else check_given("C", C, found)
     turn = number("angle", angle, "it must be a finite angle in rad")
     R = held.arm
     target = np.column_stack([f[:, 0], f[:, 1], f[:, 2], -f[:, 4] / R, f[:, 3] / R])
@@ -115,7 +118,7 @@ def load_cases(
     q = np.column_stack([z[:, 0], z[:, 1], z[:, 2], z[:, 4] / R, -z[:, 3] / R, np.zeros(len(z))])
     peak = Q.max(axis=1, initial=0.0)
     pressure = max(c.pressure(1.0) for c in (held.inner_contact, held.outer_contact)) * np.cbrt(peak)
-    return LoadCases(q, Q, pressure, lives(held, Q, Q, ratings_of(held).C if C is None else C))
+    return LoadCases(q, Q, pressure, lives(held, Q, Q, rating))
 
 
 def lives(bearing: BallBearing, inner: Array, outer: Array, C: float) -> Array:
