@@ -130,5 +130,5 @@ def test_a_designation_leads_to_its_lines():
     "text", ["6205/HC5", "HC6205", "6205-2RSLTN9/HC5C3WT", "7014 CD/HCP4A", "6205 hybrid"]
 )
 def test_ceramic_balls_are_not_read_as_steel_nor_as_a_clearance(text):
-    with pytest.raises(ValueError, match="means ceramic balls.*give ball_material"):
+    with pytest.raises(ValueError, match=r"means ceramic balls.*give ball_material"):
         read_designation(text)

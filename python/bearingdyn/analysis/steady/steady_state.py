@@ -72,7 +72,8 @@ def steady_state(
     record
         Channels as in `transient`.
     harmonics
-        Of the ball pass, 1 or more; 40 by default. The motion of a machine with unbalance, waviness, pits,
+        Of the base frequency, 1 or more; 40 by default. The base is the ball pass, and the cage's turn where
+        a standing ring has waves or pits. The motion of a machine with unbalance, waviness, pits,
         unequal balls or harmonic loads has several base frequencies (shaft, cage, ball spin); its lines up to
         this harmonic (20 by default) are chosen by how far they would move the bearings, and refined.
     subharmonic
