@@ -25,8 +25,8 @@ import motor
 from printing import printed
 
 import bearingdyn as bd
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.recordable_channels import channel_of
 
 SPEED = 5000 * 2 * np.pi / 60
 SETTLE, SPAN, SAMPLE = 0.1, 0.02, 2e-5  # s

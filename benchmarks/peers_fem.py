@@ -33,6 +33,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples"))
 import motor
 
 import bearingdyn as bd
+from bearingdyn.examples.paper import paper_pedestal
 from bearingdyn.fem import FEMatrices, assemble_solid, block_with_bore, lowest_modes, read_matrices
 from bearingdyn.parts import Imported, NodeSet, at_radius
 
@@ -118,7 +119,7 @@ class HousingCase:
 
     def __init__(self, folder: Path, size: float | None = None) -> None:
         thickest = motor.designs(motor.rubber()[0])[1].thickness
-        part = motor.housing(2 * (motor.RING[1] + thickest))
+        part = paper_pedestal(2 * (motor.RING[1] + thickest))
         self.volume = (part.width * part.height - np.pi / 4 * part.bore_diameter**2) * part.length
         size = size or (self.volume / 300) ** (1 / 3)  # as the part chooses it
         self.part = part = replace(part, element_size=size)

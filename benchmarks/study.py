@@ -29,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples"))
 import motor
 
 import bearingdyn as bd
+from bearingdyn.examples.paper import PRELOAD, paper_pedestal, paper_shaft, plain_6305
 
 BORE = 0.039  # m, radius: a layer of 2 to 6 mm leaves a ring of 2 mm or more outside the raceway
 FREQUENCY = np.linspace(10.0, 6000.0, 1000)
@@ -39,13 +40,13 @@ RANGES = {"thickness": (0.002, 0.006), "width": (0.012, 0.026), "G0": (5e5, 5e6,
 @functools.cache
 def shaft() -> bd.Superelement:
     """The shaft, reduced once in each process."""
-    return motor.shaft().superelement()
+    return paper_shaft().superelement()
 
 
 @functools.lru_cache(maxsize=1)
 def housing(bore: float) -> bd.Superelement:
     """The housing, reduced where the bore is another than before."""
-    return motor.housing(2 * bore).superelement()
+    return paper_pedestal(2 * bore).superelement()
 
 
 def build(case: dict[str, Any]) -> bd.Application:
@@ -54,7 +55,7 @@ def build(case: dict[str, Any]) -> bd.Application:
     rubber = bd.Maxwell(G0, [0.5 * G0, case["loss"] * G0], [1e-3, 5e-5], K=2e9, density=1150.0)
     layer = bd.Layer(bore - thickness, bore, case["width"], rubber)
     ring = bd.RigidBody.ring(motor.RING[0], bore - thickness, motor.RING[2])
-    ball = motor.bearing("6305", balls=motor.BALLS, clearance=10e-6, damping=motor.CONTACT_DAMPING)
+    ball = plain_6305()
     app = bd.Application()
     app.add("shaft", shaft())
     app.free("shaft.middle")
@@ -68,7 +69,7 @@ def build(case: dict[str, Any]) -> bd.Application:
         app.connect(f"{side}_layer.outer", f"{side}_housing.bore")
         app.ground(f"{side}_housing.feet")
         app.bearing(side, ball, inner=f"shaft.{side}", outer=f"{side}_ring.centre")
-    app.load("shaft.middle", (0.0, -motor.RADIAL, motor.PRELOAD, 0.0, 0.0, 0.0))
+    app.load("shaft.middle", (0.0, -motor.RADIAL, PRELOAD, 0.0, 0.0, 0.0))
     return app
 
 

@@ -84,15 +84,25 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
         &work->shift_rate, &work->place,    &work->inside, &work->pull,         &work->peak};
 
     work->holds = false;
-    work->phi = memory;
-    work->dphi = work->phi + by_ball;
-    work->phi_ball = work->dphi + by_ball;
-    work->dphi_ball = work->phi_ball + balls * coefs;
-    work->normal = work->dphi_ball + balls * coefs;
+    work->normal = memory + 2 * by_ball + 2 * balls * coefs;
+    bd_bearing_lead(bearing, work, NULL);
     work->along = work->normal + balls * coefs;
     memory = work->along + balls * coefs;
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++, memory += balls)
         *parts[i] = memory;
+}
+
+void bd_bearing_lead(const bd_bearing *bearing, bd_bearing_work *work,
+                     const bd_bearing_work *leader)
+{
+    const size_t balls = (size_t)bearing->balls, coefs = (size_t)bearing->coefs;
+    const size_t by_ball = (size_t)bearing->data.n_coefs * balls, by_coef = balls * coefs;
+
+    work->led = leader != NULL;
+    work->phi = leader ? leader->phi : work->normal - 2 * by_ball - 2 * by_coef;
+    work->dphi = work->phi + by_ball;
+    work->phi_ball = work->dphi + by_ball;
+    work->dphi_ball = work->phi_ball + by_coef;
 }
 
 /* Of the largest ball load: a ball that only brushes the groove does not carry. */

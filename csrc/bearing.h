@@ -37,6 +37,7 @@ struct bd_bearing_work {
     /* (balls) a ball at the jump of its force (grazing.h): its place, the force in the jump, and what moves it */
     double *place, *inside, *pull;
     bool holds; /* whether the three count */
+    bool led;   /* whether the basis is another bearing's, which turns it (abreast.c) */
 };
 
 /* Doubles of the constant arrays (spacing and absent), and their fill. */
@@ -45,6 +46,10 @@ void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *
 
 /* Carve a work out of bd_bearing_work_size doubles, zeroed. */
 void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, double *memory);
+
+/* Takes the basis from another bearing whose balls stand alike, or (NULL) its own again. */
+void bd_bearing_lead(const bd_bearing *bearing, bd_bearing_work *work,
+                     const bd_bearing_work *leader);
 
 /* Whether a bearing has no waves, pits or unequal balls; its shifts are then zero for ever. */
 bool bd_bearing_perfect(const bd_bearing *bearing);

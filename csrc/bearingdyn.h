@@ -507,6 +507,41 @@ double bd_peak_load(const bd_model *model, const bd_work *work, int bearing);
 long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work, double *flat,
                    long long n_steps, long long decimate, double *record, bd_report *report);
 
+/* ---------------------------------------------------------------- marches side by side (abreast.c) */
+
+/* At most so many. */
+enum { BD_ABREAST = 8 };
+
+/* One of several marches that share the structure and its step: bearings (their clearance, waves, balls), loads, states,
+ * channels and counts of steps are its own. */
+typedef struct bd_abreast_case {
+    const bd_model *model;
+    bd_work *work; /* prepared by bd_prepare */
+    double *flat;  /* the state */
+    long long steps, decimate;
+    double *record;   /* as bd_march's */
+    long long rows;   /* written by the last call */
+    bd_report report; /* of the last call */
+} bd_abreast_case;
+
+typedef struct bd_abreast bd_abreast;
+
+/* Whether two marches share their linear part, to the bit (how bearings see it apart, as the arm of a tilt follows from
+ * the clearance): they have one step and one constant speed, no audit, no layer
+ * that softens, no exact steps. */
+bool bd_abreast_shares(const bd_abreast_case *a, const bd_abreast_case *b);
+
+/* For n <= BD_ABREAST cases of which each shares with the first; model and work of that must outlive it. NULL: out of
+ * memory */
+bd_abreast *bd_abreast_create(int n, const bd_abreast_case *cases);
+void bd_abreast_free(bd_abreast *abreast); /* safe on NULL */
+
+/* bd_march of every case, its steps of its own; one that fails ends by itself.
+ * Given:    the cases of bd_abreast_create, whose states may have been marched on; steps may be 0
+ * Returned: states, records, rows and reports as bd_march returns them, to the bit
+ * Notes:    allocates nothing, calls no LAPACK */
+void bd_abreast_march(bd_abreast *abreast, int n, bd_abreast_case *cases);
+
 /* Force and tangents of one bearing by itself, rows padded to the caller's n_coefs.
  * Returned: g (n_coefs), K and C (n_coefs x n_coefs row-major) = dg/dz, dg/dzdot, loads (n_balls);
  *           BD_NOT_FINITE where they overflow */

@@ -72,7 +72,7 @@ bd_work *bd_work_create(const bd_model *model)
     size_t bytes = (total + BD_LANES) * sizeof(double);
     work->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
     work->diagonal = calloc((size_t)model->n_blocks, sizeof *work->diagonal);
-    work->step_at = calloc((size_t)model->n_blocks, sizeof *work->step_at);
+    work->step_at = calloc((size_t)model->n_blocks + 1, sizeof *work->step_at);
     work->weights = calloc((size_t)model->branches + 1, sizeof *work->weights);
     work->bearings = calloc((size_t)model->n_bearings + 1, sizeof *work->bearings);
     if (!work->memory || !work->diagonal || !work->step_at || !work->weights || !work->bearings) {
@@ -95,6 +95,7 @@ bd_work *bd_work_create(const bd_model *model)
         work->step_at[b] = at;
         at += step_columns(model, &model->blocks[b]) * (size_t)model->blocks[b].padded;
     }
+    work->step_at[model->n_blocks] = at;
     return work;
 }
 

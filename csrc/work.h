@@ -27,7 +27,7 @@ struct bd_work {
                        * C' = C + C_ve + speed G; where M and K' are diagonal, the first column is
                        * -K'/(M + beta dt^2 K') and the rest of the first n go unused */
     bool *diagonal;  /* (n_blocks) whether they are */
-    size_t *step_at; /* (n_blocks) where a block's columns start */
+    size_t *step_at; /* (n_blocks) where a block's columns start, and their end */
     double *SB;      /* S^-1 B^T: a column per padded coefficient */
     double *SP;      /* S^-1 p: two columns per load (cosine, sine) */
     double *W;       /* B S^-1 B^T: a column per padded coefficient */

@@ -21,14 +21,14 @@ import sys
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import xarray
 
 import bearingdyn as bd
-from bearingdyn.bearing.catalogue import bearing
+from bearingdyn.examples import paper_motor
+from bearingdyn.examples.paper import INNER_6305, LEFT_SEAT, OUTER_6305, plain_6305
 from bearingdyn.notice import UnequalRuns
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -42,12 +42,8 @@ K_RUBBER = 2e9  # Pa, bulk modulus of a filled rubber; DMA does not measure it
 DENSITY = 1150.0  # kg/m³
 ONE_KHZ = 2 * math.pi * 1e3
 
-PRELOAD = 180.0  # N, axial, on the shaft; both bearings are fixed axially and share it
 RADIAL = 10e3  # N, at mid-shaft, half of it on each bearing
 SPEED = 5000 * math.pi / 30  # rad/s
-BALLS = 7  # the 6305 of ISO/TS 16281: 7 balls of 11.5 mm
-CONTACT_DAMPING = 30.0  # N s/m for each ball, the paper's
-ZETA_SHAFT, ZETA_HOUSING = 0.005, 0.01  # modal damping of the steel parts, in both domains
 
 AUDIBLE = np.linspace(1000.0, 5000.0, 4001)  # Hz, over which the paper judges the housing
 
@@ -62,9 +58,7 @@ SPEEDS = np.geomspace(500.0, 12_000.0, 120) * math.pi / 30
 VELOCITIES = ("shaft.end.y.velocity", "left_housing.top.y.velocity", "left_housing.top.z.velocity")
 PAPER_MODES = (382.0, 1885.0, 2027.0, 4756.0)  # Hz, bending modes of the paper's shaft without layers
 
-RING = (0.0275, 0.031, 0.017)  # outer ring of the 6305: groove radius taken off, outside radius, width, m
-INNER = (0.0125, 0.0165, 0.017)
-SEAT = 0.0185  # m, of the left bearing from the shaft's end
+RING, INNER, SEAT = OUTER_6305, INNER_6305, LEFT_SEAT
 
 
 @dataclass(frozen=True)
@@ -87,16 +81,6 @@ class Design:
     def inside(self) -> float:
         """Inner radius of the layer, m."""
         return self.bore - self.thickness if self.bore else RING[1]
-
-    @property
-    def ring(self) -> bd.RigidBody:
-        """The bearing's outer ring, and the sleeve on it."""
-        ring = bd.RigidBody.ring(*RING)
-        if self.inside == RING[1]:
-            return ring
-        sleeve = bd.RigidBody.ring(RING[1], self.inside, RING[2])
-        inertia = tuple(a + b for a, b in zip(ring.inertia, sleeve.inertia, strict=True))
-        return bd.RigidBody(ring.mass + sleeve.mass, inertia, measures=RING)
 
     @property
     def layer(self) -> bd.Layer | None:
@@ -151,82 +135,14 @@ def loss_designs(low: bd.Maxwell) -> list[Design]:
     ]
 
 
-def sections() -> list[bd.Section]:
-    """Steps of the shaft."""
-    return [
-        bd.Section(0.027, 0.025),
-        bd.Section(0.0274, 0.0437),
-        bd.Section(0.286, 0.0508),
-        bd.Section(0.1567, 0.0437),
-        bd.Section(0.017, 0.025),
-        bd.Section(0.064, 0.0122),
-    ]
-
-
-def shaft() -> bd.Shaft:
-    """Stepped shaft with seats for the bearings, a place for the load at mid-span, and a free end."""
-    ends = np.cumsum([s.length for s in sections()])
-    # where its shape is looked at: the steps, and between them
-    seen = np.unique(np.concatenate([[0.0], ends[:5], np.linspace(0.08, 0.48, 9), [0.545]]))
-    return bd.Shaft(
-        sections(),
-        seats={"left": SEAT, "right": float(ends[4] - 0.0085), "middle": float(ends[1] + 0.143)},
-        points={"end": float(ends[5])} | {f"p{k}": float(z) for k, z in enumerate(seen)},
-        damping=ZETA_SHAFT,
-        f_max=15e3,
-    )
-
-
-def housing(bore_diameter: float) -> bd.Housing:
-    """A pedestal of steel plate on a rigid base."""
-    return bd.Housing(
-        width=0.16,
-        height=0.20,
-        length=0.030,
-        bore_diameter=bore_diameter,
-        bore_height=0.12,
-        damping=ZETA_HOUSING,
-        f_max=10e3,  # within 0.4 % of the unreduced pedestal to 5 kHz, as bd.reduction_error says
-    )
-
-
-@cache
-def pedestal(bore_diameter: float) -> bd.Superelement:
-    """The housing, reduced once for each bore: designs of equal thickness share it, and so do both sides."""
-    return housing(bore_diameter).superelement()
-
-
 def bore(design: Design) -> float:
     """Diameter of the bore that takes ring and layer."""
     return 2 * (design.inside + design.thickness)
 
 
 def motor(design: Design, radial: float = 0.0) -> bd.Application:
-    """The application: shaft, rings, layers, housings, bearings and loads."""
-    app = bd.Application()
-    app.add("shaft", shaft())
-    app.free("shaft.middle")
-    layer = design.layer
-    for side in ("left", "right"):
-        ring, house = f"{side}_ring", f"{side}_housing"
-        app.add(f"{side}_inner", bd.RigidBody.ring(*INNER, rotating=True))
-        app.add(ring, design.ring)
-        app.add(house, pedestal(bore(design)))
-        app.connect(f"shaft.{side}", f"{side}_inner.centre")
-        app.ground(f"{house}.feet")
-        if layer is None:
-            app.connect(f"{ring}.centre", f"{house}.bore")
-        else:
-            app.add(f"{side}_layer", layer)
-            # half as wide again as the bearing: a rigid sleeve carries what the ring leaves over
-            app.connect(f"{ring}.centre", f"{side}_layer.inner", fits=False)
-            app.connect(f"{side}_layer.outer", f"{house}.bore")
-        ball_bearing = bearing("6305", balls=BALLS, clearance=10e-6, damping=CONTACT_DAMPING)
-        app.bearing(side, ball_bearing, inner=f"shaft.{side}", outer=f"{ring}.centre")
-    app.load("shaft.middle", (0.0, 0.0, PRELOAD, 0.0, 0.0, 0.0))
-    if radial:
-        app.load("shaft.middle", (0.0, -radial, 0.0, 0.0, 0.0, 0.0))
-    return app
+    """The application: shaft, rings, layers, housings, bearings and loads; built in bearingdyn.examples."""
+    return paper_motor(design.layer, radial, sleeve=design.bore and design.inside)
 
 
 INPUT = "shaft.middle.y"
@@ -389,7 +305,7 @@ def sweep(eq: bd.Equilibrium, progress: Callable[[int, int], object] | None = No
 
 def ball_pass() -> float:
     """Ball-pass frequency of the outer race, Hz."""
-    brg = bearing("6305", balls=BALLS, clearance=10e-6)
+    brg = plain_6305()
     return brg.Z * brg.cage_ratio * SPEED / (2 * math.pi)
 
 

@@ -14,6 +14,7 @@ import xarray
 
 import bearingdyn as bd
 from bearingdyn import plot
+from bearingdyn.examples.paper import paper_pedestal, paper_shaft
 from bearingdyn.plot.frame import DASHES, colour, finish, new_axes, style
 
 MODE_VIEW = (-45.0, 590.0)  # mm, along z
@@ -129,7 +130,7 @@ def radiated_power(story: Story) -> Any:
         ax.set_xlabel("frequency, Hz")
         ax.set_ylabel("equivalent radiated power, W/N²")
         finish(ax, "Outside of both housings, vertical force at mid-shaft; grey: 1–5 kHz", legend=True)
-        # a sphere of a housing's size against this power: bearingdyn.analysis.radiated_power
+        # a sphere of a housing's size against this power: bearingdyn.analysis.equivalent_radiated_power
         ax.annotate(
             "an upper bound, not sound power: a Ø100 mm sphere radiates 35 dB less at 200 Hz, 8 dB at 1 kHz",
             (0.01, 0.02), xycoords="axes fraction", fontsize=7.5, color="0.35",
@@ -195,10 +196,10 @@ def _parts_in_motion(ax: Any, shape: xarray.Dataset) -> None:
     slope = -(motion.sel(component="θx").values[along] * turn).real / 1e3
     curve = CubicHermiteSpline(z[along], dy[along], slope)
     fine = np.linspace(z[along][0], z[along][-1], 500)
-    ends = 1e3 * (np.cumsum([s.length for s in motor.sections()]) - motor.SEAT)
+    ends = 1e3 * (np.cumsum([s.length for s in paper_shaft().sections]) - motor.SEAT)
     radius = (
         500
-        * np.array([s.d_outer for s in motor.sections()])[
+        * np.array([s.d_outer for s in paper_shaft().sections])[
             np.minimum(np.searchsorted(ends, fine), len(ends) - 1)
         ]
     )
@@ -244,7 +245,7 @@ def _parts_at_rest(ax: Any, design: motor.Design) -> None:
             Rectangle((1e3 * z, 1e3 * y), 1e3 * length, 1e3 * height, color=shade, linewidth=0, zorder=0)
         )
 
-    house, seats = motor.housing(motor.bore(design)), motor.shaft().seats
+    house, seats = paper_pedestal(motor.bore(design)), paper_shaft().seats
     below = house.bore_height if house.bore_height is not None else house.height / 2
     inner, above = motor.bore(design) / 2, house.height - below
     for seat in (seats["left"], seats["right"]):
@@ -258,7 +259,7 @@ def _parts_at_rest(ax: Any, design: motor.Design) -> None:
             for low in (inside, -outside):
                 box(z - width / 2, low, width, outside - inside, shade)
     z = -motor.SEAT
-    for section in motor.sections():
+    for section in paper_shaft().sections:
         box(z, -section.d_outer / 2, section.length, section.d_outer, "0.84")
         z += section.length
 

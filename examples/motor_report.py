@@ -17,6 +17,7 @@ import numpy as np
 import xarray
 
 import bearingdyn as bd
+from bearingdyn.examples.paper import PRELOAD, reduced_pedestal
 from bearingdyn.notice import StrainedLayer
 
 IN_MOTION = ("no layer", "layer, high loss")
@@ -288,7 +289,7 @@ def steady_table(label: str, found: Steady) -> None:
 def harmonic_part(states: Mapping[str, State], clock: Stages) -> tuple[dict[str, Harmonic], dict[str, Any]]:
     """The paper's section 4.1: responses and modes of every design, in tables."""
     print(
-        f"\nlayers ({motor.PRELOAD:g} N axial, shared by both bearings; {motor.RADIAL / 1e3:g} kN radial for "
+        f"\nlayers ({PRELOAD:g} N axial, shared by both bearings; {motor.RADIAL / 1e3:g} kN radial for "
         f"the strain)"
     )
     bare = states["no layer"].rest
@@ -360,7 +361,7 @@ def main() -> int:
     four, losses = motor.designs(low), motor.loss_designs(low)
     with clock.stage("housings reduced, one for each bore"):
         for design in four:
-            motor.pedestal(motor.bore(design))
+            reduced_pedestal(motor.bore(design))
     with clock.stage("other parts, assembly and equilibria"):
         states = {design.label: State.of(design) for design in (*four, losses[-1])}
     harmonics, bending = harmonic_part(states, clock)

@@ -311,7 +311,7 @@ def _show() -> Reader:
 
 def _run() -> Reader:
     import bearingdyn as bd
-    from bearingdyn import runfile
+    from bearingdyn import run_file
     from bearingdyn.results import open_result
 
     def write(folder: Path) -> None:
@@ -322,7 +322,7 @@ def _run() -> Reader:
         bd.transient(app, speed=0.0, dt=1e-5, steps=60, record=["m.centre.y"], stream=folder / "x.run")
 
     def inside(data: bytes, mutate: Mutate) -> bytes:
-        at, blocks = len(runfile.MAGIC), []
+        at, blocks = len(run_file.MAGIC), []
         while at < len(data):
             length = struct.unpack_from("<QI", data, at)[0]
             blocks.append(data[at + 12 : at + 12 + length])
@@ -330,7 +330,7 @@ def _run() -> Reader:
         k = zlib.crc32(mutate(b"which")) % len(blocks)
         front = mutate(blocks[k][:200])  # where sizes and counts stand
         blocks[k] = front + blocks[k][200:]
-        made = runfile.MAGIC
+        made = run_file.MAGIC
         for block in blocks:
             place = struct.pack("<QQ", len(made), len(block))
             made += struct.pack("<QI", len(block), zlib.crc32(place + block)) + block

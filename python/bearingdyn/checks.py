@@ -140,7 +140,7 @@ def truth(field: str, value: object) -> bool:
 
 
 def table(field: str, value: object, holding: Sequence[str], maker: str) -> None:
-    """Check an argument that must be a Dataset with these variables, the result of `maker`."""
+    """Check of an argument that must be a Dataset with these variables, the result of `maker`."""
     good = hasattr(value, "data_vars") and all(name in value for name in holding)  # type: ignore[operator]
     told = value if not hasattr(value, "data_vars") else f"a Dataset of {sorted(map(str, value))}"  # type: ignore[call-overload]
     require(good, field, told, f"it must be the result of `{maker}`, with {', '.join(holding)}")
@@ -212,7 +212,7 @@ def one_of(field: str, value: object, choices: Sequence[object]) -> None:
 
 
 def one_speed(speed: Any, rpm: Any, default: float | None = None, what: str = "speed") -> Any:
-    """Check that a speed is given once: in rad/s as `speed`, or in revolutions a minute as `rpm`.
+    """Check of an argument: a speed given once, in rad/s as `speed` or in revolutions a minute as `rpm`.
 
     Parameters
     ----------

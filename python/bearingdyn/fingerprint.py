@@ -19,10 +19,21 @@ import sys
 import sysconfig
 import types
 from collections.abc import Callable, Mapping
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
 
+
+def _own_version() -> str:
+    try:
+        return version("bearingdyn")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+# found once: it takes milliseconds where many packages are installed
+VERSION = _own_version()
 # arrays of more numbers than this are told by their digest
 WRITTEN_OUT = 64
 # HDF5 keeps an attribute of up to 64 kB

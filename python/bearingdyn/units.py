@@ -293,7 +293,7 @@ def suited(largest: float, unit: str) -> tuple[int, str, bool]:
 
 
 def display(result: xarray.Dataset, *wanted: str) -> xarray.Dataset:
-    """A result in other units, such as "µm", "rpm", "kN": a copy for tables and figures of your own.
+    """Units for display: a result in others, such as "µm", "rpm", "kN", a copy for tables and figures.
 
     Variables and coordinates that measure what a unit measures are converted, the channels of a march each by
     its own; all else stays as it is. The package's own functions take results in SI only.

@@ -95,6 +95,18 @@ def test_a_duty_cycle_follows_miner():
     assert float(sheet["duty_life"][0]) == pytest.approx(by_hand, rel=1e-12)
 
 
+def test_what_one_phase_of_a_duty_cycle_asks_too_much_is_named():
+    """Its load, and its film, for which ISO 281 has no factor: then the cycle has no life."""
+    light, heavy = one(radial=1000.0), one(axial=20_000.0)
+    with pytest.warns(BearingWarning, match=r"'b': duty\[1\]: loaded above its static rating: P0 is 10000 N"):
+        sheet = bd.bearing_sheet(light, duty=[(light, 100.0, 60.0, 0.7), (heavy, 200.0, 60.0, 0.3)])
+    assert math.isfinite(float(sheet["duty_life"][0]))
+    with pytest.warns(BearingWarning, match=r"duty\[0\]: kappa is 0\.0"):
+        slow = bd.bearing_sheet(light, oil=OIL, duty=[(light, 1.0, 60.0, 0.7), (light, 100.0, 60.0, 0.3)])
+    assert math.isnan(float(slow["duty_life"][0]))
+    assert "duty[0]" in str(slow["warnings"].values[0])
+
+
 def test_makers_ratings_are_taken_where_given():
     sheet = bd.bearing_sheet(one(radial=2000.0), C={"b": 14000.0}, C0={"b": 7850.0})
     assert float(sheet["L10"][0]) == pytest.approx(343.0, rel=1e-9)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import bearingdyn as bd
-from bearingdyn import runfile
+from bearingdyn import run_file
 from bearingdyn.analysis import ball_channels
 from bearingdyn.analysis.march import March
 from bearingdyn.notice import BearingWarning
@@ -75,7 +75,7 @@ def test_a_stream_keeps_the_peaks_of_the_chunks_before(tmp_path, monkeypatch):
     path = tmp_path / "run.bdrun"
     with pytest.warns(BearingWarning, match="a ball bore"):
         march(rotor(1.5e5), stream=path)
-    chunks = runfile.read(path)[1]
+    chunks = run_file.read(path)[1]
     assert len(chunks) == STEPS // 500
     assert chunks[0].report.peaks[0] > 3 * chunks[-1].report.peaks[0]
     with pytest.warns(BearingWarning, match="bearing 'a': a ball bore"):

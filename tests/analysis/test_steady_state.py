@@ -24,8 +24,8 @@ from bearingdyn.analysis import (
     transient,
     unbalance_response,
 )
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady import balance
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, FilmDamping, Waviness

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
+from bearingdyn import examples
 from bearingdyn.analysis import equilibrium, modes, radiated_power, transient, unbalance_response
 from bearingdyn.application import Application
 from bearingdyn.cms import Superelement, Surface
@@ -230,3 +232,11 @@ def test_power_of_a_housing_does_not_depend_on_its_mesh():
     np.testing.assert_allclose(coarse, fine, rtol=0.05)
     # pushed along z, the front makes nearly half of what the outside does
     assert 0.4 < fine[0, 0, 0] / fine[0, 1, 0] < 0.5
+
+
+def test_speeds_beyond_the_band_of_the_layers_are_told_in_one_warning() -> None:
+    state = equilibrium(examples.motor())
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        unbalance_response(state, 2 * np.pi * np.array([2.0, 5.0, 50.0]), ["shaft.middle.y"])
+    assert [str(w.message).partition(" lies")[0] for w in told] == ["2 to 5 Hz"]  # the band begins at 10 Hz

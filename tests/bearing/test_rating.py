@@ -34,7 +34,7 @@ from bearingdyn.bearing.rating import (
     static_factor,
 )
 from bearingdyn.material import Elastic
-from bearingdyn.notice import Notice
+from bearingdyn.notice import BearingWarning, Notice
 
 ISO = BallBearing(7, 11.5e-3, 43.5e-3, 0.52, 0.53, clearance=0.0)
 LOOSE = replace(ISO, clearance=10e-6)
@@ -215,6 +215,16 @@ class TestManyCases:
         loads = np.array([[0, 0, 500.0, 0, 0, 0], [0, 0, -500.0, 0, 0, 0]])
         with pytest.raises(ValueError, match=r"^loads\[1\] is .*open side"):
             load_cases(bearing("7205"), loads)
+
+    def test_loads_above_the_static_rating_are_named_once(self):
+        """A 6205's rating is where its heaviest contact has 4.2 GPa; pressure grows with the cube root."""
+        ball, loads = bearing("6205", clearance=0.0), np.zeros((3, 6))
+        loads[:, 0] = np.array([0.5, 3.0, 2.0]) * ball.static_rating
+        with pytest.warns(BearingWarning, match=r"^loads\[1\] is .*and 1 more cases above it") as caught:
+            found = load_cases(ball, loads)
+        assert len(caught) == 1
+        # the rating takes 5/Z of the load for the heaviest ball, of 9 it has 4.37/Z
+        assert found.pressure[1] / 4.2e9 == pytest.approx(3 ** (1 / 3), rel=0.06)
 
     @pytest.mark.parametrize("bad", [np.zeros(6), np.zeros((2, 5)), [[math.nan] * 6], "load"])
     def test_loads_of_another_shape_are_refused(self, bad):

@@ -240,9 +240,9 @@ def test_estimate_for_a_layer_bounds_its_error_within_a_factor_of_three(inertia)
 )
 def test_demo_housing_is_within_one_percent_of_full_up_to_5_khz(size, frequency):
     """On its feet, loaded in the bore and at its top: outputs bore, top and a point on the side."""
-    import motor
+    from bearingdyn.examples.paper import paper_pedestal
 
-    housing = replace(motor.housing(0.078), element_size=size, points={"side": (0.08, 0.02, 0.0)})
+    housing = replace(paper_pedestal(0.078), element_size=size, points={"side": (0.08, 0.02, 0.0)})
     body = housing.body
     full = body.full_model()
     how = {"damping": housing.damping, "held": "feet"}

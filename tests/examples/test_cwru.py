@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import cwru
 import numpy as np
 import pytest
 
+from bearingdyn.notice import CoarseStep
 from measured import DATA
 
 
@@ -58,6 +60,21 @@ def test_made_records_are_known_again(capsys):
         # a second resolves half a hertz of the lowest line
         assert max(abs(frequency) for frequency, _, _ in lines.values()) < 5e-3
     assert abs(found["inner"]["1"][1]) < 3.0
+
+
+@pytest.mark.parametrize("body", ["inner", "outer"])
+def test_a_labelled_record_has_the_steps_that_its_spall_asks_for(body):
+    """`CoarseStep` asks for twenty in the passage of a ball; half of them are too few for it."""
+    rig = cwru.Rig()
+    for width, rpm in ((0.1e-3, 1800.0), (0.2e-3, 1720.0)):
+        ball = cwru.ball_bearing(rig, body, width, 0.0)
+        more = cwru.steps_in_a_sample(ball, rpm)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", CoarseStep)
+            cwru.march(rig, ball, rpm, 1 / cwru.RATE, [cwru.SENSOR], more)
+        with pytest.warns(CoarseStep):
+            cwru.march(rig, ball, rpm, 1 / cwru.RATE, [cwru.SENSOR], int(0.9 * more))
+    assert cwru.steps_in_a_sample(cwru.ball_bearing(rig, None, 0.0, 0.0), 1800.0) == 10
 
 
 def test_a_labelled_record_keeps_its_seed_and_its_truth(tmp_path):

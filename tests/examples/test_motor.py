@@ -15,6 +15,7 @@ import xarray
 
 import bearingdyn as bd
 from bearingdyn import core
+from bearingdyn.examples.paper import PRELOAD, paper_pedestal, plain_6305
 from rotors import motor_rubber
 from twins.linear_twin import discrete_response
 
@@ -105,8 +106,8 @@ def test_the_motors_rubber_carries_at_rest_what_the_master_curve_has_after_five_
 def test_both_bearings_share_the_axial_preload() -> None:
     eq = equilibrium(0)
     shares = [eq.bearings[side].g[2] for side in ("left", "right")]
-    assert sum(shares) == pytest.approx(motor.PRELOAD, rel=1e-9)  # statics, to Newton's tolerance
-    assert min(shares) > 0.45 * motor.PRELOAD
+    assert sum(shares) == pytest.approx(PRELOAD, rel=1e-9)  # statics, to Newton's tolerance
+    assert min(shares) > 0.45 * PRELOAD
 
 
 def steady_amplitude(signal: np.ndarray, per_period: int) -> complex:
@@ -203,7 +204,7 @@ def test_radiated_power_is_that_of_the_pedestals_faces() -> None:
     assert (top + front + back < outside).all()
     tip = bd.frequency_response(eq, [700.0], [motor.INPUT], ["left_housing.top.z"], quantity="velocity")
     square = abs(complex(tip["response"].values[0, 0, 0])) ** 2
-    part = motor.housing(2 * motor.RING[1])
+    part = paper_pedestal(2 * motor.RING[1])
     face = part.width * part.height - np.pi * part.bore_diameter**2 / 4
     for power in (front, back):
         assert 0.25 < power[0] / (0.5 * 1.204 * 343.2 * face * square) < 1 / 3  # ρ and c of air at 20 °C
@@ -282,7 +283,7 @@ def test_contact_statistics_tell_of_the_loaded_balls_what_the_march_counts(side:
     assert found["loaded"].values == pytest.approx(share, abs=1e-12)  # two counts of the same samples
     assert (1 - found["free"].values).sum() == pytest.approx(counted.mean(), rel=1e-12)
     # in two turns of the cage every ball leaves the loaded zone twice, and is loaded as long as any other
-    turn = 2 * np.pi / (motor.bearing("6305", balls=motor.BALLS, clearance=10e-6).cage_ratio * motor.SPEED)
+    turn = 2 * np.pi / (plain_6305().cage_ratio * motor.SPEED)
     assert 2 * turn == pytest.approx(26_000 * motor.STEP, rel=0.01)
     assert (found["losses"].values >= 2).all()
     # the record ends within 1 % of two turns

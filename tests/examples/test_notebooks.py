@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import sys
@@ -155,26 +156,24 @@ def test_a_notebook_can_be_copied_out_and_run(tmp_path: Path, monkeypatch: pytes
     assert names["rubber"].fit.storage_rms < 0.05
 
 
-def test_the_machines_of_the_notebooks_are_those_of_the_examples(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sleeve_weighs_what_its_steel_does_and_the_layer_sits_on_it() -> None:
     import bearingdyn as bd
-    from bearingdyn.bearing import spall
-    from bearingdyn.system import assemble
+    from bearingdyn.bearing.catalogue import bearing
+    from bearingdyn.material import STEEL
 
-    monkeypatch.syspath_prepend(str(ROOT / "examples"))
-    import fault_bench
-    import motor
-
-    design = motor.Design("layer", 0.008, 0.0255, bd.examples.rubber())
-    for ours, theirs in (
-        (bd.examples.paper_motor(), motor.motor(motor.Design("no layer"))),
-        (bd.examples.paper_motor(design.layer, 10e3), motor.motor(design, motor.RADIAL)),
-        (bd.examples.fault_bench(), fault_bench.bench()),
-        (
-            bd.examples.fault_bench(defects=[spall("outer", -np.pi / 2, length=0.6e-3, depth=4e-6)]),
-            fault_bench.bench(None, [fault_bench.SPALL]),
-        ),
-    ):
-        assert assemble(ours).inputs == assemble(theirs).inputs
+    ring, sleeve = bearing("6305").boundary, 0.036
+    assert ring is not None
+    around = bd.Layer(sleeve, sleeve + 0.004, 0.017, bd.examples.rubber())
+    parts = {
+        radius: bd.examples.paper_motor(layer, sleeve=radius).plan.sources["left_ring"]
+        for layer, radius in ((None, 0.0), (around, sleeve))
+    }
+    steel = STEEL.density * math.pi * (sleeve**2 - (ring[1] / 2) ** 2) * ring[2]
+    added = parts[sleeve].mass - parts[0.0].mass  # type: ignore[attr-defined]
+    assert added == pytest.approx(steel, rel=1e-12)  # a hollow cylinder, to round-off
+    # about the axis m (r² + R²)/2; one of another diameter would not do
+    turning = parts[sleeve].inertia[2] - parts[0.0].inertia[2]  # type: ignore[attr-defined]
+    assert turning == pytest.approx(steel * (sleeve**2 + (ring[1] / 2) ** 2) / 2, rel=1e-12)
 
 
 @pytest.mark.parametrize(

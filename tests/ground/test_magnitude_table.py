@@ -12,8 +12,8 @@ import pytest
 
 import bearingdyn as bd
 from bearingdyn.bearing import Lubricant, Mounting, Pair, Running, Seat, Walther, lubricate
-from bearingdyn.magnitude import MAGNITUDES, plausible
 from bearingdyn.notice import BearingWarning, Notice, UnloadedBearing, UnusualMagnitude
+from bearingdyn.plausible_ranges import MAGNITUDES, plausible
 
 ROWS = sorted(MAGNITUDES)
 BALLS = {"Z": 9, "Dw": 7.94e-3, "Dpw": 39.04e-3, "fi": 0.52, "fo": 0.53}

@@ -33,7 +33,7 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 ORDER: tuple[tuple[str, ...], ...] = (
     ("pictures", "progress", "short_repr", "types"),
     ("checks", "core", "fingerprint", "notice"),
-    ("magnitude", "units", "writing"),
+    ("plausible_ranges", "units", "writing"),
     ("kept_arrays",),
     ("material",),
     ("bearing", "fem"),
@@ -41,7 +41,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("parts",),
     ("application",),
     ("system",),
-    ("runfile",),
+    ("run_file",),
     ("results",),
     ("analysis",),
     ("sound",),
@@ -315,7 +315,7 @@ MAY_NAME_WORDS = {
     ): "the reference of a level of each quantity, ISO 1683",
     ("bearingdyn.analysis.steady.torus", "PIT_KINDS"): "how the base frequency of each body is called",
     ("bearingdyn.bearing.ball_bearing", "PIT_KINDS"): "how far each body turns as the balls go round",
-    ("bearingdyn.runfile", "REPORT_FIELDS"): "what files of version 1 hold, which will not change",
+    ("bearingdyn.run_file", "REPORT_FIELDS"): "what files of version 1 hold, which will not change",
 }
 
 # Types that spell words out for the type checker; they must be all words of a list.

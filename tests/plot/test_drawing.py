@@ -18,7 +18,7 @@ from bearingdyn.demo import motor
 from bearingdyn.parts.profile import cut
 from bearingdyn.plot.drawing.labels import spread
 from bearingdyn.plot.drawing.loads import value
-from bearingdyn.plot.drawing.machine import machine
+from bearingdyn.plot.drawing.shown_machine import machine
 from bearingdyn.plot.drawing.words import designation
 
 matplotlib.use("Agg")

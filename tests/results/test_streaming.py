@@ -21,7 +21,7 @@ import pytest
 import xarray
 
 import bearingdyn as bd
-from bearingdyn import runfile
+from bearingdyn import run_file
 from bearingdyn.cli import main
 
 RECORD = ["rotor.centre.y", "rotor.centre.y.velocity", "ball.loaded"]
@@ -63,7 +63,7 @@ def test_a_streamed_run_is_the_same_run(start: bd.Equilibrium, tmp_path: Path) -
     assert same(plain, bd.open_result(path))
     assert bd.open_result(path).attrs["complete"] == 1
     # settling in 3, the last of the 80 steps that the filter looks back; 13 of recording (9000/700)
-    assert len(runfile.read(path)[1]) == 16
+    assert len(run_file.read(path)[1]) == 16
 
 
 def test_a_file_cut_anywhere_opens_and_goes_on_to_the_same_run(start: bd.Equilibrium, tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_a_file_cut_anywhere_opens_and_goes_on_to_the_same_run(start: bd.Equilib
     for cut in [*rng.integers(0, len(data), 12), len(data) - 1]:
         path = tmp_path / f"cut{cut}.bdrun"
         path.write_bytes(data[:cut])
-        if runfile.is_run(path) and cut > 4000:
+        if run_file.is_run(path) and cut > 4000:
             partial = bd.open_result(path)
             n = partial.sizes["time"]
             assert partial.attrs["complete"] == 0
@@ -89,7 +89,7 @@ def test_a_flipped_bit_ends_the_file_before_it(start: bd.Equilibrium, tmp_path: 
     data = bytearray(path.read_bytes())
     data[len(data) // 2] ^= 1
     path.write_bytes(data)
-    assert 0 < len(runfile.read(path)[1]) < 16
+    assert 0 < len(run_file.read(path)[1]) < 16
     assert same(plain, bd.transient(start, stream=path, **ARGUMENTS))
 
 
@@ -131,11 +131,11 @@ def test_a_file_of_version_1_is_read_and_not_gone_on_from(start: bd.Equilibrium,
     path, old = tmp_path / "run.bdrun", tmp_path / "old.bdrun"
     new = bd.transient(start, stream=path, **ARGUMENTS)
     data = path.read_bytes()
-    at = len(runfile.MAGIC)
+    at = len(run_file.MAGIC)
     length, _ = struct.unpack_from("<QI", data, at)
     header = data[at + 12 : at + 12 + length]
     text = b"bearingdyn run 1\n" + struct.pack("<QI", length, zlib.crc32(header)) + header
-    for chunk in runfile.read(path)[1]:
+    for chunk in run_file.read(path)[1]:
         r = chunk.report
         counts = (r.steps, r.iterations, r.refreshes, r.refactors, r.grazing)
         block = struct.pack("<7Q", len(chunk.rows), chunk.state.size, *counts)
@@ -155,13 +155,13 @@ def test_counters_of_a_file_go_by_name(start: bd.Equilibrium, tmp_path: Path) ->
     """One that the file does not know is 0, whatever the order."""
     path = tmp_path / "run.bdrun"
     bd.transient(start, stream=path, **ARGUMENTS)
-    chunk = runfile.read(path)[1][3]
+    chunk = run_file.read(path)[1][3]
     packed = chunk.packed()
     named = json.dumps({**chunk.report.counts, "peaks": chunk.report.peaks}).encode()
     other = json.dumps({"grazing": 5, "steps": 700}).encode()
     assert named in packed
     changed = packed.replace(named, other.ljust(len(named)))
-    report = runfile.Chunk.unpacked(changed, len(RECORD), version=2).report
+    report = run_file.Chunk.unpacked(changed, len(RECORD), version=2).report
     assert (report.steps, report.grazing, report.iterations) == (700, 5, 0)
 
 
@@ -178,8 +178,8 @@ def killed_and_resumed(
         time.sleep(float(rng.uniform(0.0, 0.25)))
         process.send_signal(signal.SIGKILL)
         done += process.wait() == -signal.SIGKILL
-        if runfile.is_run(path):
-            chunks = runfile.read(path)[1]
+        if run_file.is_run(path):
+            chunks = run_file.read(path)[1]
             if chunks:
                 rows = bd.open_result(path)["record"].values
                 assert np.array_equal(rows, plain["record"].values[: len(rows)])
@@ -266,7 +266,7 @@ def finished(path: Path, plain: xarray.Dataset) -> int:
 
 def ends(path: Path) -> list[int]:
     """Where each finished chunk of a sound file ends, the header first."""
-    data, at, found = path.read_bytes(), len(runfile.MAGIC), []
+    data, at, found = path.read_bytes(), len(run_file.MAGIC), []
     while at < len(data):
         at += 12 + struct.unpack_from("<QI", data, at)[0]
         found.append(at)
@@ -290,7 +290,7 @@ def test_zeros_or_an_end_where_a_power_cut_left_them_lose_nothing_finished(
         chunks = max(sum(bound <= cut for bound in bounds) - 1, 0)
         assert rows >= min(max(chunks - 3, 0) * 700, 9000) // 3  # three chunks of settling have no rows
         if cut > bounds[0]:
-            assert len(runfile.read(path)[1]) >= chunks
+            assert len(run_file.read(path)[1]) >= chunks
         assert same(plain, bd.transient(start, stream=path, **ARGUMENTS))
         assert path.read_bytes() == data
 
@@ -302,12 +302,12 @@ def test_a_block_that_was_moved_is_none(start: bd.Equilibrium, tmp_path: Path) -
     a, b, c = bounds[4:7]
     moved = tmp_path / "moved.bdrun"
     moved.write_bytes(data[:a] + data[b:c] + data[a:b] + data[c:])
-    assert len(runfile.read(moved)[1]) == 4
+    assert len(run_file.read(moved)[1]) == 4
 
 
 def as_version(data: bytes, magic: bytes) -> bytes:
     """The blocks of a file with the CRC of versions 1 and 2, of the bytes alone."""
-    at, text = len(runfile.MAGIC), magic
+    at, text = len(run_file.MAGIC), magic
     while at < len(data):
         length, _ = struct.unpack_from("<QI", data, at)
         block = data[at + 12 : at + 12 + length]
@@ -353,11 +353,11 @@ def test_two_writers_of_one_process_do_not_write_one_file(tmp_path: Path) -> Non
         "channels": [], "units": [], "speed": [[0.0], [1.0]], "dt": 1.0, "decimate": 1, "settle": 0,
         "steps": 1,
     }  # fmt: skip
-    first = runfile.Writer(path, header)
+    first = run_file.Writer(path, header)
     with pytest.raises(OSError, match="another march writes this run now"):
-        runfile.Writer(path, header)
+        run_file.Writer(path, header)
     first.close()
-    runfile.Writer(path, header).close()
+    run_file.Writer(path, header).close()
 
 
 @pytest.mark.parametrize(
@@ -379,7 +379,7 @@ def test_a_file_that_is_lost_under_a_march_ends_it_with_an_error(
 
     def progress(fraction: float, *_: object) -> None:
         nonlocal done
-        if not done and runfile.is_run(path) and len(runfile.read(path)[1]) > 5:
+        if not done and run_file.is_run(path) and len(run_file.read(path)[1]) > 5:
             done = True
             harm(path)
 
@@ -418,7 +418,7 @@ def test_odd_content_behind_a_valid_checksum_is_refused_by_name(tmp_path: Path) 
         (facts, [chunk((1, 4, 16), counts, row, np.full(4, np.nan).tobytes())], "which cannot be a time"),
         (facts, [chunk((1, 4, 16), counts, row, np.full(4, 1e300).tobytes())], "which cannot be a time"),
     ):
-        data = runfile.MAGIC
+        data = run_file.MAGIC
         for block in (json.dumps(header).encode(), *blocks):
             place = struct.pack("<QQ", len(data), len(block))
             data += struct.pack("<QI", len(block), zlib.crc32(place + block)) + block

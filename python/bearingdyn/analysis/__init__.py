@@ -1,18 +1,13 @@
 """Analyses: static equilibrium, modes, harmonic response, transient, spectra."""
 
-from bearingdyn.analysis.bearing_sheet import (
-    bearing_sheet,
-    sheet_html,
-    sheet_rows,
-    sheet_text,
-    single_bearing,
-)
+from bearingdyn.analysis.bearing_sheet import bearing_sheet, single_bearing
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.campbell import campbell
 from bearingdyn.analysis.dissipation import dissipation
 from bearingdyn.analysis.energy_shares import energy_shares
 from bearingdyn.analysis.envelope import envelope_spectrum
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, state_of
+from bearingdyn.analysis.equivalent_radiated_power import radiated_power
 from bearingdyn.analysis.frequency_response import frequencies, frequency_response
 from bearingdyn.analysis.gradient import Gradient, gradient
 from bearingdyn.analysis.inputs_outputs import Input
@@ -29,10 +24,10 @@ from bearingdyn.analysis.operating_point import (
 from bearingdyn.analysis.orbit import orbit
 from bearingdyn.analysis.orders import order_spectrum, track_orders
 from bearingdyn.analysis.part_velocities import part_velocities, surface_of
-from bearingdyn.analysis.radiated_power import radiated_power
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
 from bearingdyn.analysis.response_band import Band, band_of
 from bearingdyn.analysis.shaft_speed import shaft_angle
+from bearingdyn.analysis.sheet_pages import sheet_html, sheet_rows, sheet_text
 from bearingdyn.analysis.spectrum import spectrum
 from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary

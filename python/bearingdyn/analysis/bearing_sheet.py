@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.analysis.equilibrium import PARTED, Equilibrium, equilibrium
+from bearingdyn.analysis.sheet_quantities import MEANING
 from bearingdyn.application import Application
 from bearingdyn.bearing import (
     STATIC_PRESSURE,
@@ -32,80 +32,17 @@ from bearingdyn.bearing import (
     reliability_factor,
 )
 from bearingdyn.bearing import catalogue as listed
-from bearingdyn.bearing.rating import check_given, lives
+from bearingdyn.bearing.rating import check_given
+from bearingdyn.bearing.rating import lives as lives_of
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.parts import RigidBody
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
-
-# name: unit, meaning, factor and unit in print; in the order of the page, under its headings
-_ROWS: dict[str, dict[str, tuple[str, str, float, str]]] = {
-    "Geometry": {
-        "balls": ("1", "number of balls", 1, ""),
-        "ball_diameter": ("m", "ball diameter", 1e3, "mm"),
-        "pitch_diameter": ("m", "pitch diameter", 1e3, "mm"),
-        "groove_inner": ("1", "groove radius over ball diameter, inner race", 1, ""),
-        "groove_outer": ("1", "groove radius over ball diameter, outer race", 1, ""),
-        "clearance": ("m", "diametral clearance", 1e6, "µm"),
-        "free_angle": ("rad", "free contact angle", 180 / math.pi, "°"),
-    },
-    "Load": {
-        "radial_load": ("N", "radial load", 1, "N"),
-        "axial_load": ("N", "axial load", 1, "N"),
-        "ball_load": ("N", "heaviest ball", 1, "N"),
-        "loaded_balls": ("1", "loaded balls", 1, ""),
-        "contact_angle": ("rad", "contact angle of the heaviest ball", 180 / math.pi, "°"),
-        "pressure_inner": ("Pa", "contact pressure, inner race", 1e-9, "GPa"),
-        "pressure_outer": ("Pa", "contact pressure, outer race", 1e-9, "GPa"),
-        "ellipse_inner": ("m", "length of the contact ellipse, inner race", 1e3, "mm"),
-        "ellipse_outer": ("m", "length of the contact ellipse, outer race", 1e3, "mm"),
-        "cut_inner": ("1", "share of the ellipse cut by the shoulder, inner race", 100, "%"),
-        "cut_outer": ("1", "share of the ellipse cut by the shoulder, outer race", 100, "%"),
-    },
-    "Rating and life": {
-        "C": ("N", "basic dynamic rating C", 1, "N"),
-        "C0": ("N", "basic static rating C0", 1, "N"),
-        "P": ("N", "dynamic equivalent load P (ISO 281)", 1, "N"),
-        "P0": ("N", "static equivalent load P0 (ISO 76)", 1, "N"),
-        "static_safety": ("1", "static safety C0/P0", 1, ""),
-        "pressure_safety": ("1", "static safety by load at 4.2 GPa over the heaviest ball's", 1, ""),
-        "L10": ("million revolutions", "basic rating life (C/P)³", 1, "million rev."),
-        "L10r": ("million revolutions", "basic reference rating life (ISO/TS 16281)", 1, "million rev."),
-        "L10rh": ("h", "the same in hours", 1, "h"),
-        "kappa": ("1", "viscosity ratio κ", 1, ""),
-        "a_iso": ("1", "a1 a_ISO", 1, ""),
-        "L10mh": ("h", "modified reference rating life", 1, "h"),
-        "duty_life": ("h", "life of the duty cycle", 1, "h"),
-    },
-    "Film and friction": {
-        "temperature": ("°C", "temperature of the oil", 1, "°C"),
-        "viscosity": ("m²/s", "kinematic viscosity", 1e6, "mm²/s"),
-        "film_inner": ("m", "central film, inner race", 1e6, "µm"),
-        "film_outer": ("m", "central film, outer race", 1e6, "µm"),
-        "lambda_inner": ("1", "film over roughness, inner race", 1, ""),
-        "lambda_outer": ("1", "film over roughness, outer race", 1, ""),
-        "friction_moment": ("N m", "frictional moment", 1e3, "N mm"),
-        "friction_power": ("W", "frictional power", 1, "W"),
-    },
-    "Stiffness of the balls": {
-        "stiffness_x": ("N/m", "along x", 1e-6, "N/µm"),
-        "stiffness_y": ("N/m", "along y", 1e-6, "N/µm"),
-        "stiffness_z": ("N/m", "along z", 1e-6, "N/µm"),
-    },
-    "Lines": {
-        "shaft": ("Hz", "shaft", 1, "Hz"),
-        "FTF": ("Hz", "cage", 1, "Hz"),
-        "BPFO": ("Hz", "balls past a spot of the outer race", 1, "Hz"),
-        "BPFI": ("Hz", "balls past a spot of the inner race", 1, "Hz"),
-        "2 BSF": ("Hz", "spot of a ball past a race", 1, "Hz"),
-    },
-}
-_MEANING = {name: row for group in _ROWS.values() for name, row in group.items()}
 
 
 @takes(speed="rad/s", temperature="°C")
@@ -150,7 +87,8 @@ def bearing_sheet(
         Of `friction`.
     duty
         Phases (equilibrium, speed, temperature, share of the time) of a duty cycle, each of the same
-        bearings; their life is by Palmgren and Miner, modified where there is an oil.
+        bearings; their life is by Palmgren and Miner, modified where there is an oil. Where one phase is
+        doubted, the warning says which; NaN where its film is too thin for ISO 281.
     rpm
         The speed in revolutions a minute, instead of `speed`.
 
@@ -211,7 +149,7 @@ def bearing_sheet(
         require(good, f"duty[{k}]", phase, "it must be (equilibrium, speed, temperature, share)")
         require(_hung(phase[0]).keys() == hung.keys(), f"duty[{k}]", phase[0], "its bearings are others")
 
-    columns: dict[str, list[float]] = {name: [] for name in _MEANING}
+    columns: dict[str, list[float]] = {name: [] for name in MEANING}
     told: list[str] = []
     sources: list[str] = []
     for name, bearing in hung.items():
@@ -222,12 +160,15 @@ def bearing_sheet(
         )  # fmt: skip
         row["duty_life"] = math.nan
         if phases:
-            lives = [
-                _life_of_phase(phase, name, oil, contamination, reliability, given["C"].get(name),
-                               given["C0"].get(name))
-                for phase in phases
-            ]  # fmt: skip
-            row["duty_life"] = equivalent_life(lives)[1]
+            lives = []
+            for k, phase in enumerate(phases):
+                life, doubted = _life_of_phase(
+                    phase, name, oil, contamination, reliability, given["C"].get(name), given["C0"].get(name)
+                )
+                lives.append(life)
+                doubts += [f"duty[{k}]: {doubt}" for doubt in doubted]
+            known = all(life is not None for life in lives)
+            row["duty_life"] = equivalent_life([x for x in lives if x])[1] if known else math.nan
         for key, values_ in columns.items():
             values_.append(row.get(key, math.nan))
         for doubt in doubts:
@@ -238,7 +179,7 @@ def bearing_sheet(
     from bearingdyn.results import dataset, inputs_of
 
     variables: dict[str, Any] = {
-        name: ("bearing", np.array(values), _MEANING[name][0], _MEANING[name][1])
+        name: ("bearing", np.array(values), MEANING[name][0], MEANING[name][1])
         for name, values in columns.items()
     }
     variables["source"] = ("bearing", sources, "", "where the geometry comes from")
@@ -282,110 +223,9 @@ def single_bearing(
     return equilibrium(app)
 
 
-def sheet_text(sheet: xarray.Dataset) -> str:
-    """The bearing sheet as a page of plain text, a column for each bearing.
-
-    Parameters
-    ----------
-    sheet
-        By `bearing_sheet`.
-    """
-    names = _names(sheet)
-    lines: list[str] = []
-    width = max(12, *(len(n) + 2 for n in names))
-    for heading, rows in sheet_rows(sheet).items():
-        lines += ["", f"{heading:<58}" + "".join(f"{n:>{width}}" for n in names)]
-        for label, values, unit in rows:
-            title = f"{label}, {unit}" if unit else label
-            lines.append(f"  {title:<56}" + "".join(f"{v:>{width}}" for v in values))
-    for name in names:
-        one = sheet.sel(bearing=name)
-        lines += ["", f"{name}: {one['source'].item()}"]
-        if one["warnings"].item():
-            lines.append(f"{name}, warnings: {one['warnings'].item()}")
-    return "\n".join(lines[1:])
-
-
-def sheet_rows(sheet: xarray.Dataset) -> dict[str, list[tuple[str, list[str], str]]]:
-    """Rows of the bearing sheet, by heading, for a table of one's own: label, value of each bearing, unit.
-
-    Parameters
-    ----------
-    sheet
-        By `bearing_sheet`.
-    """
-    _names(sheet)
-    return {heading: _printed(sheet, rows) for heading, rows in _ROWS.items()}
-
-
-def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
-    """The bearing sheet as one page of HTML that needs nothing else, a column for each bearing.
-
-    Parameters
-    ----------
-    sheet
-        By `bearing_sheet`.
-    title
-        Of the page.
-    """
-    names = _names(sheet)
-    instance("title", title, str, "give a text")
-
-    def cells(tag: str, texts: Sequence[str]) -> str:
-        return "".join(f"<{tag}>{html.escape(t)}</{tag}>" for t in texts)
-
-    body: list[str] = []
-    for heading, rows in sheet_rows(sheet).items():
-        body.append(f"<tr>{cells('th', [heading, '', *names])}</tr>")
-        body += [f"<tr>{cells('td', [label, unit, *values])}</tr>" for label, values, unit in rows]
-    notes = []
-    for name in names:
-        one = sheet.sel(bearing=name)
-        notes.append(f"<p><b>{html.escape(name)}</b>: {html.escape(one['source'].item())}</p>")
-        if one["warnings"].item():
-            notes.append(
-                f"<p class=warning><b>{html.escape(name)}</b>: {html.escape(one['warnings'].item())}</p>"
-            )
-    style = (
-        "body{font-family:sans-serif;margin:2em}table{border-collapse:collapse}"
-        "th,td{padding:.15em 1em;text-align:right}th:first-child,td:first-child{text-align:left}"
-        "th{border-bottom:1px solid;padding-top:1em}.warning{color:#a00}"
-    )
-    return (
-        f"<!DOCTYPE html><html lang=en><head><meta charset=utf-8><title>{html.escape(title)}</title>"
-        f"<style>{style}</style></head><body><h1>{html.escape(title)}</h1>"
-        f"<table>{''.join(body)}</table>{''.join(notes)}<p>{html.escape(sheet.attrs['made_by'])}, "
-        f"{html.escape(sheet.attrs['made_at'])}</p></body></html>\n"
-    )
-
-
 def _hung(eq: Equilibrium) -> dict[str, BallBearing]:
     found = {t.name: t.bearing for t in eq.system.bearings if isinstance(t.bearing, BallBearing)}
     require(bool(found), "eq", eq, "it has no ball bearing")
-    return found
-
-
-def _names(sheet: Any) -> list[str]:
-    kind = getattr(sheet, "attrs", {}).get("analysis")
-    require(kind == "bearing sheet", "sheet", kind, "it must be a Dataset of bearing_sheet")
-    return [str(name) for name in sheet["bearing"].values]
-
-
-def _printed(
-    sheet: xarray.Dataset, rows: Mapping[str, tuple[str, str, float, str]]
-) -> list[tuple[str, list[str], str]]:
-    """Label, values and unit of each row that is known of any bearing."""
-    found = []
-    for name, (_, meaning, factor, unit) in rows.items():
-        values = sheet[name].values * factor
-        if not np.isnan(values).all():
-            found.append(
-                (
-                    meaning,
-                    ["–" if np.isnan(v) else f"{v:.4g}" if abs(v) < 1e4 else f"{v:.0f}" for v in values],
-                    unit,
-                )
-            )
     return found
 
 
@@ -472,7 +312,7 @@ def _row(
         "P0": P0,
         "static_safety": C0 / P0 if P0 > 0 else math.inf,
         "L10": (C / P) ** 3 if P > 0 else math.inf,
-        "L10r": float(lives(bearing, Q[None], Q[None], C)[0]),
+        "L10r": float(lives_of(bearing, Q[None], Q[None], C)[0]),
     }
     for key, index in (("stiffness_x", x), ("stiffness_y", y), ("stiffness_z", along)):
         row[key] = math.nan if index is None else float(state.K[index, index])
@@ -481,8 +321,7 @@ def _row(
         row[f"ellipse_{race}"] = 2 * axes[race][0]
     peak = max(row["pressure_inner"], row["pressure_outer"])
     row["pressure_safety"] = (STATIC_PRESSURE / peak) ** 3 if peak > 0 else math.inf
-    if P0 > C0:
-        doubts.append(f"loaded above its static rating: P0 is {P0:.4g} N, C0 {C0:.4g} N")
+    doubts += _overloaded(P0, C0)
     if shoulder is not None:
         for race, f in (("inner", bearing.fi), ("outer", bearing.fo)):
             cut = _cut(f * bearing.Dw, 2 * f * bearing.Dw / (2 * f + 1), axes[race][0], abs(alpha), shoulder)
@@ -553,22 +392,33 @@ def _life_of_phase(
     reliability: float,
     C: float | None,
     C0: float | None,
-) -> Phase:
-    """One phase of a duty cycle as its life."""
+) -> tuple[Phase | None, list[str]]:
+    """One phase of a duty cycle as its life, None where that is not known; and what is doubted of it."""
     state, speed, T, share = phase
     bearing = _hung(state)[name]
     iso = ratings_of(bearing)
     C, C0 = iso.C if C is None else C, iso.C0 if C0 is None else C0
     inner, outer = bearing.ring_speeds
     relative = plausible("speed", "speed of a phase", speed) * (inner - outer)
+    force = state.bearings[name].force
+    P0 = equivalent_static_load(
+        float(np.hypot(force[0], force[1])), abs(float(force[2])), bearing.contact_angle or 0.0
+    )
+    doubts = _overloaded(P0, C0)
     Q = state.bearings[name].loads[None]
-    life = float(lives(bearing, Q, Q, C)[0])
+    life = float(lives_of(bearing, Q, Q, C)[0])
     if oil is not None and relative != 0 and math.isfinite(life):
         nu = oil.kinematic.viscosity(T)
         found, doubt = _modified(life, C, C0, bearing, relative, nu, contamination, reliability)
-        require(not doubt, "duty", name, doubt)
+        if doubt:
+            return None, [*doubts, doubt]
         life *= found["a_iso"]
-    return Phase(share, relative, life)
+    return Phase(share, relative, life), doubts
+
+
+def _overloaded(P0: float, C0: float) -> list[str]:
+    """The doubt about a load above the static rating, or none."""
+    return [f"loaded above its static rating: P0 is {P0:.0f} N, C0 {C0:.0f} N"] if P0 > C0 else []
 
 
 def _cut(groove: float, surface: float, half: float, alpha: float, shoulder: float) -> float:

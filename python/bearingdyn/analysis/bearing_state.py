@@ -13,7 +13,7 @@ from bearingdyn.types import Array
 
 @dataclass(frozen=True, eq=False)
 class BearingState:
-    """A bearing in the static state, linearised at rest.
+    """State of a bearing at rest, and the bearing linearised in it.
 
     Parameters
     ----------

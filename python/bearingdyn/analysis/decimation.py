@@ -93,13 +93,16 @@ class Decimator:
 
     def _filtered(self, data: Array, at: int, n: int) -> Array:
         """n samples, the first of row `at`; tap by tap, so that no sum depends on how many there are."""
-        span, weight = (n - 1) * self.every + 1, taps(self.every)
+        every, weight = self.every, taps(self.every)
+        padded = np.concatenate([data, np.zeros((-len(data) % every, data.shape[1]))])
+        # (place in a sample, channel, sample): what a tap meets lies side by side
+        phases = padded.reshape(-1, every, data.shape[1]).transpose(1, 2, 0).copy()
 
         def rows(start: int) -> Array:
-            return data[start : start + span : self.every]
+            return np.asarray(phases[start % every, :, start // every : start // every + n])
 
         found = weight[0] * rows(at)
         for k in range(1, self.half + 1):
             found += weight[k] * (rows(at - k) + rows(at + k))
-        found[:, self.plain] = rows(at)[:, self.plain]
-        return np.asarray(found)
+        found[self.plain] = rows(at)[self.plain]
+        return np.ascontiguousarray(found.T)

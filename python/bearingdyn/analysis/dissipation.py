@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.core_channels import CoreChannel
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.recordable_channels import CoreChannel
 from bearingdyn.application import Application
 from bearingdyn.checks import one_speed
 from bearingdyn.material import is_volume

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.recorded_channels import sampling_time, signal_of, unit_of
+from bearingdyn.analysis.march_record import sampling_time, signal_of, unit_of
 from bearingdyn.analysis.spectrum import amplitudes, check_window
 from bearingdyn.checks import vector
 

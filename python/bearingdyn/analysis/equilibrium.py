@@ -22,11 +22,11 @@ from bearingdyn.bearing import (
     warn_of_lean,
 )
 from bearingdyn.checks import one_of, positive, require, whole
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import is_volume, warn_beyond
 from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
 from bearingdyn.pictures import picture
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
@@ -344,7 +344,7 @@ def _turned(system: System, angle: float) -> tuple[BearingTerm, ...]:
 
 
 def state_of(source: object) -> dict[str, str]:
-    """Attribute of a result that says with which modulus of the layers its equilibrium was found.
+    """The equilibrium behind a result: with which modulus of the layers it was found, as an attribute.
 
     Parameters
     ----------
@@ -356,7 +356,7 @@ def state_of(source: object) -> dict[str, str]:
 
 
 def warn_at_rest(system: System, time: float) -> None:
-    """Warn of an equilibrium at a time, s, that a layer's data do not cover; inf: relaxed (BeyondData)."""
+    """Warn that an equilibrium at a time, s (inf: relaxed), rests on what a layer's data do not cover."""
     warn_beyond(
         [(layer.part, layer.material) for layer in system.layers],
         time,
@@ -384,5 +384,5 @@ def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, Bear
 
 
 def with_loads(system: System, loads: tuple[LoadTerm, ...]) -> System:
-    """An equilibrium's system under other loads."""
+    """The system for an equilibrium under other loads."""
     return replace(system, loads=loads)

@@ -17,8 +17,8 @@ from bearingdyn.analysis.response_band import response_band
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, softening_layers, warn_of_strain
 from bearingdyn.application import QUANTITIES, RATES, Application
 from bearingdyn.checks import name_list, numbers, one_of, one_speed, positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import warn_beyond
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex

@@ -10,7 +10,7 @@ from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.bearing import RIGID, BallBearing, Running
 from bearingdyn.checks import instance, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import BearingTerm
 from bearingdyn.types import Array
 

@@ -103,7 +103,7 @@ def azimuth_terms(kernel: BearingKernel, azimuth: float) -> Array:
 
 
 def contact_angles(kernel: BearingKernel, z: Array, azimuth: float) -> Array:
-    """Angles of the lines between the groove centres (Z,), rad, of raceway coefficients z, the first ball at
+    """Contact angles of lubricated balls (Z,), rad, of raceway coefficients z, the first ball at
     the azimuth, rad; surfaces taken as smooth."""
     phi = azimuth_terms(kernel, azimuth)
     axial = np.asarray(kernel.axial, dtype=bool)

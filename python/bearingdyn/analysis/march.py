@@ -11,20 +11,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn import core, fingerprint, runfile
-from bearingdyn.analysis.core_channels import CoreChannel, channel_of
+from bearingdyn import core, fingerprint, run_file
+from bearingdyn.analysis.abreast import GATHERING
 from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
 from bearingdyn.analysis.march_state import Beginning, check_state, moved, system_hash
+from bearingdyn.analysis.recordable_channels import CoreChannel, channel_of
 from bearingdyn.analysis.shaft_speed import drive_of
 from bearingdyn.analysis.softening import memory_of, softening_layers
 from bearingdyn.analysis.step_size import step_error, warn_if_coarse, warn_if_growing
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import instance, one_of, positive, require, whole
-from bearingdyn.magnitude import plausible
 from bearingdyn.notice import NothingPushes, OpenSideWarning, warn
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.progress import part_of
 from bearingdyn.results import inputs_of
 from bearingdyn.system import System, system_of
@@ -221,9 +222,30 @@ class March:
         return self._modes.step(self.stepping.dt)
 
     def _core_march(self, model: core.Model, state: Array, steps: int, every: int, **how: Any) -> CoreMarch:
-        """The core's march by this method."""
+        """The core's march by this method, side by side with others where a gathering says so."""
         modes = None if self.method == "newmark" else self._step
-        return core.march(model, state, self.stepping, steps, every, modes=modes, **how)
+        gathering = GATHERING.get()
+        if gathering is None:
+            return core.march(model, state, self.stepping, steps, every, modes=modes, **how)
+        call = core.MarchCall(model, state, self.stepping, steps, every, modes=modes, **how)
+        return gathering.march(call, self._structure)
+
+    @cached_property
+    def _structure(self) -> str | None:
+        """Fingerprint of what marches that go side by side share; None for one that goes by itself."""
+        system = self.modal
+        turns = np.ptp(self.stepping.profile[1]) > 0 or len(self.stepping.profile[1]) > 1
+        if self.method != "newmark" or self.memory is not None or self.stepping.audit or turns:
+            return None
+        return fingerprint.fingerprint(
+            {
+                "matrices": (system.M, system.C, system.G, system.K, system.N),
+                "layers": [(term.L, term.material.G, term.material.tau) for term in system.layers],
+                "bearings": [bearing.B.shape for bearing in system.bearings],
+                "loads": len(system.loads),
+                "stepping": self.stepping,
+            }
+        )
 
     def step_error(self, model: core.Model, state: Array) -> Array:
         """Error of each channel that the step size leaves behind a state, (channels,): `step_error`."""
@@ -432,7 +454,7 @@ class March:
         start: bool,
         plain: Array,
         past: Array | None,
-        chunks: Sequence[runfile.Chunk],
+        chunks: Sequence[run_file.Chunk],
     ) -> Decimator:
         """What filters this march from the end of its chunks; the rows before that end are marched again."""
         own = not start and state[STEP] == self.stepping.dt
@@ -478,7 +500,7 @@ class March:
         OSError
             Where the file cannot be written.
         """
-        writer = None if stream is None else runfile.Writer(stream, header or {})
+        writer = None if stream is None else run_file.Writer(stream, header or {})
         try:
             kept = [] if writer is None else [c.rows for c in writer.chunks]
             report = core.Report(t=core.time_of(model, state))
@@ -489,7 +511,7 @@ class March:
             if writer is not None and writer.chunks:
                 state, start = writer.chunks[-1].state.copy(), False
                 check_state(f"stream {writer.path}", state)
-                report = runfile.report_of(writer.chunks)
+                report = run_file.report_of(writer.chunks)
             size = None if writer is None else CHUNK_STEPS
             go: dict[str, Any] = {"start": start, "size": size, "done": report.steps, "progress": progress}
             for rows, after, part in (
@@ -498,7 +520,7 @@ class March:
                 state = after
                 kept.append(rows)
                 if writer is not None and part.steps > 0:
-                    writer.append(runfile.Chunk(rows, state, part))
+                    writer.append(run_file.Chunk(rows, state, part))
                 report = report + part
         finally:
             if writer is not None:

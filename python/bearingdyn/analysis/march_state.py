@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import fingerprint
 from bearingdyn.checks import numbers, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Maxwell
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import LayerTerm, System
 from bearingdyn.types import Array
 
@@ -68,7 +68,7 @@ def check_state(field: str, state: Array) -> None:
 
 
 def moved(system: System, x: Array, initial: Mapping[str, ArrayLike]) -> Array:
-    """The start of a march: coordinates nearest to x (n,) that put every place where it is wanted.
+    """State that a march starts from: coordinates nearest to x (n,) that put every place where it is wanted.
 
     Raises
     ------

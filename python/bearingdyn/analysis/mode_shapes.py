@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class MovedSurface:
-    """The surface of a part, and its motion in a mode shape.
+    """Mode shape of one part's surface: its points, faces and motion.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def mode_surfaces(
     mode: int,
     parts: Sequence[str] | None = None,
 ) -> list[MovedSurface]:
-    """One of the modes that `modes` found, on the surfaces of the parts.
+    """Mode shapes of the parts' surfaces, for one of the modes that `modes` found.
 
     Parameters
     ----------

@@ -30,8 +30,8 @@ from bearingdyn.bearing import (
     ratings_of,
 )
 from bearingdyn.checks import instance, meant, named, one_speed, positive, require, vector, whole
-from bearingdyn.magnitude import plausible
 from bearingdyn.parts import Layer
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import System, system_of
 from bearingdyn.units import takes
 
@@ -119,7 +119,7 @@ class OperatingPoint:
 
 
 def estimated_network(app: Application, ambient: float = 20.0) -> ThermalNetwork:
-    """Estimated thermal network for an operating point: bearings and layers, where nothing better is known.
+    """For an operating point: an estimated thermal network of bearings and layers.
 
     Each bearing has nodes "name.inner" and "name.outer". Its seats pass heat on as ISO 15312's reference
     does, 320 W/(m² K) of their area; a layer of rubber behind the outer ring lies in between, as a ring of

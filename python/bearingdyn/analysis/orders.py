@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.recorded_channels import signal_of, unit_of
+from bearingdyn.analysis.march_record import signal_of, unit_of
 from bearingdyn.analysis.shaft_speed import shaft_angle, speed_profile
 from bearingdyn.analysis.spectrum import amplitudes, check_window
 from bearingdyn.checks import numbers, positive, require, whole

@@ -82,7 +82,7 @@ def part_velocities(
 
 
 def surface_of(system: System, name: str) -> tuple[PartTerm, Surface]:
-    """A radiating surface by its name, and the part it is of.
+    """For its velocities, a surface of a part by its name, and the part.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.analysis.recorded_channels import recorded, sampling_time, signal_of
+from bearingdyn.analysis.march_record import recorded, sampling_time, signal_of
 from bearingdyn.checks import instance
 from bearingdyn.system import System
 

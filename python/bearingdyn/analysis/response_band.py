@@ -21,7 +21,7 @@ SEED = 0
 
 @dataclass(frozen=True)
 class Band:
-    """Band of a response, or another real quantity, over draws: its ends and the median."""
+    """Response band, or that of another real quantity, over draws: its ends and the median."""
 
     lower: Array
     median: Array
@@ -29,7 +29,7 @@ class Band:
 
 
 def band_of(draws: Array, coverage: float) -> Band:
-    """The band of responses that covers this share of further draws, at each place by itself.
+    """Response band over draws: covers this share of further draws, at each place by itself.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def band_of(draws: Array, coverage: float) -> Band:
 def drawn_sources(
     source: Equilibrium | Application | System, n: int, seed: int = SEED
 ) -> Iterator[Equilibrium | System]:
-    """Sources of a response's band: one with its layers' materials drawn from their spreads, n times.
+    """Sources for the band of a response: one with its layers' materials drawn from their spreads, n times.
 
     Layers of equal material are of one batch, and drawn together. An equilibrium is found anew for each draw.
 

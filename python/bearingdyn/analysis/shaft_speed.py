@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn import core
 from bearingdyn.checks import number, table
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:

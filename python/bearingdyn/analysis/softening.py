@@ -267,7 +267,7 @@ def warn_of_strain(system: System, strain: Array) -> None:
 
 
 def moduli_of(system: System, omega: Array, change: Complex) -> dict[tuple[str, int], Complex]:
-    """G* (f, c), Pa, of each softening rubber, by its part and its place among that part's rubbers."""
+    """In an analysis with softening, G* (f, c), Pa, of each rubber that softens, by part and place in it."""
     found, seen, number = {}, dict[str, int](), 0
     for layer in system.layers:
         place = seen.get(layer.part, 0)
@@ -280,7 +280,7 @@ def moduli_of(system: System, omega: Array, change: Complex) -> dict[tuple[str, 
 
 
 def layer_names(system: System) -> list[str]:
-    """Names of the softening layers: the part's, numbered where it has several rubbers."""
+    """Names, in results of softening, of the layers: the part's, numbered where it has several."""
     parts = [system.layers[k].part for k in softening_layers(system)]
     return [
         name if parts.count(name) == 1 else f"{name} {parts[: k + 1].count(name)}"

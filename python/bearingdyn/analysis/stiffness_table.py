@@ -180,7 +180,7 @@ def export_stiffness(
 
 
 def ross_table(table: xarray.Dataset, load: int = 0) -> dict[str, Any]:
-    """Keyword arguments of `ross.BearingElement` from a stiffness table: kxx … cyy and "frequency", rad/s.
+    """A stiffness table for ROSS: arguments of `ross.BearingElement`, kxx … cyy and "frequency", rad/s.
 
     Parameters
     ----------

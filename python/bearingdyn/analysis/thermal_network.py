@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bearingdyn.checks import meant, number, positive, require, whole
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 AIR = "air"

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.analysis.core_channels import channel_of
+from bearingdyn.analysis.abreast import Gathering
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.step_size import step_error_made
 from bearingdyn.application import Application
 from bearingdyn.checks import instance, items, name_list, named, number, one_speed, truth, whole
@@ -273,16 +275,19 @@ def transients(
     *,
     progress: Progress | bool | None = None,
 ) -> list[xarray.Dataset]:
-    """Many transients at once over threads.
+    """Many transients at once: over threads, and within each up to eight side by side.
 
-    The marches share nothing and hold no lock.
+    Cases that share their structure (matrices, layers, step and constant speed, to the bit) and differ in
+    clearance, preload, loads, waviness, phase or start are marched side by side, which takes a core some 0.7
+    of the time. Every result is that of `transient` to the bit, whichever cases are beside it.
 
     Parameters
     ----------
     cases
         Of each march the arguments of `transient` by name, `source` too.
     threads
-        How many marches run at a time; by default as many as there are cores.
+        How many cores march at a time; by default as many as there are. Marches with an audit, exact steps, a
+        run-up or layers that soften go one after another on each.
     progress
         True for a bar, False for none, or a function called with (marches done, marches in all); None for a
         bar where standard error is a terminal. The marches themselves show none.
@@ -305,11 +310,14 @@ def transients(
         threads = whole("threads", threads, 1)
     remedy = "it must be a list of mappings, each the arguments of `transient` by name"
     asked = [named(f"cases[{k}]", case, remedy) for k, case in enumerate(items("cases", cases, remedy))]
+    gathering = Gathering(len(asked), threads or os.cpu_count() or 1)
     with (
         told(progress, "march") as tell,
-        ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool,
+        ThreadPoolExecutor(max(gathering.members, 1)) as pool,
     ):
-        marches = [pool.submit(transient, **{"progress": False, **case}) for case in asked]
+        marches = [
+            pool.submit(gathering.member, partial(transient, **{"progress": False, **case})) for case in asked
+        ]
         for done, _ in enumerate(as_completed(marches), 1):
             if tell is not None:
                 tell(done, len(marches))

@@ -15,6 +15,7 @@ from bearingdyn.analysis.overload import warn_of_swings
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, warn_of_strain
 from bearingdyn.application import QUANTITIES, Application
 from bearingdyn.checks import name_list, numbers, one_of, one_speed
+from bearingdyn.material import band_told_once
 from bearingdyn.system import System
 from bearingdyn.units import takes
 
@@ -98,20 +99,21 @@ def unbalance_response(
     response = np.zeros((given.size, len(outputs)), dtype=np.complex128)
     soft, power = layer_names(system), QUANTITIES.index(quantity)
     strain = np.zeros((given.size, len(soft), 1))
-    for k, speed in enumerate(given):
-        if speed > 0.0:
-            omega, turning = np.array([speed]), float(speed)
-            if soft:
-                drive = speed**2 * phase.reshape(1, -1, 1)  # all together make the strain
-                (found,) = softened(state, omega, force, rows, turning, [drive])
-                strain[k], x = found.strain[0], found.each()
-                moduli = moduli_of(system, omega, found.change)
-            else:
-                x, moduli = state.solve(omega, force, rows, turning, None), None
-            bearings = state.dynamic(omega if forces else omega[:0])
-            unit = recovered(wanted, inputs, x, omega, turning, power, bearings, moduli)
-            response[k] = speed**2 * (unit[0] @ phase)
-            swings[k] = speed**2 * (x[0, len(rows) - len(system.B) :] @ phase)
+    with band_told_once([t.material for t in system.layers], given[given > 0.0]):
+        for k, speed in enumerate(given):
+            if speed > 0.0:
+                omega, turning = np.array([speed]), float(speed)
+                if soft:
+                    drive = speed**2 * phase.reshape(1, -1, 1)  # all together make the strain
+                    (found,) = softened(state, omega, force, rows, turning, [drive])
+                    strain[k], x = found.strain[0], found.each()
+                    moduli = moduli_of(system, omega, found.change)
+                else:
+                    x, moduli = state.solve(omega, force, rows, turning, None), None
+                bearings = state.dynamic(omega if forces else omega[:0])
+                unit = recovered(wanted, inputs, x, omega, turning, power, bearings, moduli)
+                response[k] = speed**2 * (unit[0] @ phase)
+                swings[k] = speed**2 * (x[0, len(rows) - len(system.B) :] @ phase)
     if soft:
         warn_of_strain(system, strain)
     if isinstance(source, Equilibrium):

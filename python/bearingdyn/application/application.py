@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -19,8 +21,9 @@ from bearingdyn.application.plan import Plan
 from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, RowSet
 from bearingdyn.checks import named, require, truth
-from bearingdyn.magnitude import plausible
+from bearingdyn.cms import kept_superelement
 from bearingdyn.pictures import picture
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 
@@ -122,7 +125,7 @@ class Application:
         self.plan.check_part(part)
         return self.plan.mass(part)
 
-    def add(self, name: str, part: Part) -> None:
+    def add(self, name: str, part: Part, *, cache: str | os.PathLike[str] | None = None) -> None:
         """Add a part under a name. One object may be added under several names; it is reduced once.
 
         Parameters
@@ -131,11 +134,17 @@ class Application:
             A word without dots, neither "ground" nor "gravity".
         part
             Anything with a method `superelement()`, such as a Shaft, a Layer or a Superelement.
+        cache
+            Folder in which the reduced part is kept by its content, for the next machine, process or day;
+            made where missing. None: it is reduced here.
 
         Raises
         ------
         ValueError
-            If the name is taken, reserved or has a dot, or the part cannot become a superelement.
+            If the name is taken, reserved or has a dot, the part cannot become a superelement, or, with a
+            cache, cannot be told by its content.
+        OSError
+            Where the cache cannot be written.
         """
         plan = self.plan
         plan.check_new("part", name)
@@ -149,7 +158,11 @@ class Application:
         require(ready, f"part {name!r}", part, remedy)
         twin = next((known for known, source in plan.sources.items() if source is part), None)
         # the twin's own, before a temperature was put on it
-        plan.put(name, part, part.superelement() if twin is None else plan.reduced[twin])
+        if twin is not None:
+            made = plan.reduced[twin]
+        else:
+            made = part.superelement() if cache is None else kept_superelement(part, Path(cache))
+        plan.put(name, part, made)
 
     def with_parts(self, parts: Mapping[str, Part]) -> Application:
         """A copy of the machine in which these parts stand instead of those of the same name.

@@ -47,7 +47,7 @@ def rigid_shapes(element: Superelement) -> Array | None:
 
 
 def arm(rows: Array, shapes: Array) -> Array:
-    """Arm of a place in rigid motions, (3,), m, from its part's first interface: θ moves it by θ × arm.
+    """For free motions of a part, a place's arm (3,), m, from its first interface: θ moves it by θ × arm.
 
     Parameters
     ----------

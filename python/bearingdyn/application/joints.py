@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.application.place import Place
 from bearingdyn.bearing import RIGID, BallBearing, LooseFit, RacewaySeries, at_distance, catalogue
 from bearingdyn.checks import require, vector
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.application.channel import GROUND
 from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.checks import nonnegative, positive, real, require, vector
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 

@@ -45,7 +45,7 @@ def summary(plan: Plan) -> str:
 
 
 def loose_motions(plan: Plan) -> list[str]:
-    """Motions that nothing holds, each in words: the summary's last lines.
+    """Summary's last lines: motions that nothing holds, each in words.
 
     Parameters
     ----------

@@ -31,10 +31,10 @@ from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, 
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
 from bearingdyn.checks import nonnegative, number, one_speed, positive, require, vector, whole
-from bearingdyn.magnitude import check_speed_value, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.pictures import picture
+from bearingdyn.plausible_ranges import check_speed_value, plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 

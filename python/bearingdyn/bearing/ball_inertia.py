@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.checks import number, require, vector
-from bearingdyn.magnitude import check_speed_value, plausible
+from bearingdyn.plausible_ranges import check_speed_value, plausible
 from bearingdyn.types import Array
 
 _STEP = 1e-30

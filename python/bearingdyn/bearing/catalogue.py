@@ -21,8 +21,8 @@ from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.designation import Designation, clearance_range, read_designation
 from bearingdyn.bearing.rating.iso_ratings import Ratings, iso_ratings, static_factor
 from bearingdyn.checks import number, positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.notice import PassedOver, warn
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.units import takes
 
 Kind = Literal["deep groove", "angular contact"]

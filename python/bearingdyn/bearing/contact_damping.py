@@ -15,7 +15,7 @@ from bearingdyn.bearing.film_answer import FilmAnswer
 from bearingdyn.bearing.film_thickness import moes_groups
 from bearingdyn.bearing.hertz import PointContact, resultant_deflection_coefficient
 from bearingdyn.checks import nonnegative, number, positive, require, vector
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 

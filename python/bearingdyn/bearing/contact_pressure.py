@@ -7,8 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.magnitude import MAGNITUDES
 from bearingdyn.notice import BearingWarning, warn
+from bearingdyn.plausible_ranges import MAGNITUDES
 from bearingdyn.types import Array
 
 STATIC_PRESSURE = MAGNITUDES["pressure"].usual[1]

@@ -12,7 +12,7 @@ from functools import cached_property
 
 from bearingdyn.bearing.characteristic_frequencies import Frequencies
 from bearingdyn.checks import nonnegative, number, positive, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 CLAMPED = 0.02
 """Of Dw: rings that clamp their balls by so much press them with 4.6 to 4.9 GPa, above ISO 76's 4.2 GPa."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.checks import items, one_of, positive, require, whole
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
@@ -86,7 +86,7 @@ class Waviness:
 
 @dataclass(frozen=True)
 class Pit:
-    """An imperfection at one place: a ball drops into it by min(depth, D/2 − √(D²/4 − (width/2 − |s|)²)).
+    """Imperfection of a race, a pit: a ball drops into it by min(depth, D/2 − √(D²/4 − (width/2 − |s|)²)).
 
     s is the arc from its centre. The drop is continuous, and a ball cannot reach the bottom of a narrow pit.
 

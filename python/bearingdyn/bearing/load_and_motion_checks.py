@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from bearingdyn.magnitude import plausible
 from bearingdyn.notice import BearingWarning, warn
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 

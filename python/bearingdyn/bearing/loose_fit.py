@@ -9,7 +9,7 @@ import numpy as np
 from bearingdyn.bearing.kernel import BearingKernel
 from bearingdyn.bearing.raceway_series import RacewaySeries
 from bearingdyn.checks import nonnegative, positive, require, whole
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Index
 
 _SCALE = 1.0  # m; radial motion alone: no result depends on it

@@ -8,7 +8,7 @@ from typing import Literal
 
 from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent
 from bearingdyn.checks import nonnegative, number, positive, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 _ZERO_CELSIUS = 273.15
 # lg lg(ν + 0.7) at 2 and at 2e7 mm²/s, between which the constant 0.7 holds (ASTM D341)

@@ -20,7 +20,7 @@ from bearingdyn.bearing.load_distribution import load_distribution
 from bearingdyn.bearing.lubricant import Lubricant
 from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.checks import one_of, positive, require, vector
-from bearingdyn.magnitude import check_speed_value, plausible
+from bearingdyn.plausible_ranges import check_speed_value, plausible
 
 FilmLaw = Literal["ehl", "nijenbanning-venner-moes", "hamrock-dowson"]
 Method = Literal["table", "solve"]

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.geometry import CLAMPED
 from bearingdyn.checks import nonnegative, positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.notice import ClampedBalls, warn
+from bearingdyn.plausible_ranges import plausible
 
 _STEEL_EXPANSION = 11.5e-6
 """Thermal expansion of bearing steel, 1/K; handbooks give 11 to 12.5e-6."""

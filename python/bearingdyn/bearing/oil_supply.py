@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bearingdyn.bearing.lubricant import Lubricant
 from bearingdyn.checks import positive, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from bearingdyn.bearing.imperfections import BODIES, Body, Waviness
 from bearingdyn.checks import nonnegative, number, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 
 @dataclass(frozen=True)

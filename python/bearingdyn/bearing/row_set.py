@@ -17,7 +17,7 @@ from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.bearing.load_and_motion_checks import check_load
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
 from bearingdyn.checks import nonnegative, positive, require, vector
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 _MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])

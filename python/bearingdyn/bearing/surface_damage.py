@@ -6,7 +6,7 @@ import math
 
 from bearingdyn.bearing.imperfections import Body, Pit
 from bearingdyn.checks import positive, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 
 def spall(body: Body, angle: float, length: float, depth: float, *, ball: int = 1) -> Pit:

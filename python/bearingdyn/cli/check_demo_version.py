@@ -49,7 +49,7 @@ def _finite(value: Any) -> Any:
 
 
 def run_demo(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The package's own demo as a command: what the layer changes, and the files written."""
+    """The command `bearingdyn demo`: what the layer changes, and the files written."""
     from bearingdyn.demo import demo
 
     folder = str(arguments.out)

@@ -34,7 +34,7 @@ def run_model(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def check_model(arguments: argparse.Namespace) -> tuple[str, int]:
-    """The command `bearingdyn check motor.toml`: reads a model, joins it, and says what it is."""
+    """The command `bearingdyn check motor.toml`: `run` without analyses; joins the model, says what it is."""
     from bearingdyn.model import read_model
     from bearingdyn.system import assemble
 

@@ -10,6 +10,7 @@ from bearingdyn.cms.basis import Basis, basis_of, craig_bampton, inertia_shapes,
 from bearingdyn.cms.coupled_blocks import coupled_blocks
 from bearingdyn.cms.dynamic_stiffness import Dynamics, Transfer
 from bearingdyn.cms.full_model import FullModel, RigidInterface
+from bearingdyn.cms.kept_superelement import kept_superelement
 from bearingdyn.cms.modal_damping import modal_damping
 from bearingdyn.cms.part_march import March, march
 from bearingdyn.cms.raceway import Raceway
@@ -55,6 +56,7 @@ __all__ = [
     "craig_bampton",
     "face_of_nodes",
     "inertia_shapes",
+    "kept_superelement",
     "march",
     "modal_damping",
     "modulus_levels",

@@ -186,7 +186,7 @@ def craig_bampton(
 def modulus_levels(
     materials: Sequence[ComplexModulus], moduli: Sequence[float] | None = None
 ) -> list[list[float]]:
-    """Real shear moduli, Pa, at which the shapes of a basis are taken.
+    """Levels of a basis: real shear moduli, Pa, at which its shapes are taken.
 
     By default there are two levels for each material: its relaxed modulus, for the static state (or, if that
     is zero, the magnitude of G* at the slowest branch), and the magnitude of G* at ω = 1/τ of its fastest

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from bearingdyn.checks import number, numbers, require
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 F_MAX = 20e3  # Hz, the end of what is heard
 

@@ -81,7 +81,7 @@ def sliders_of(app: Application) -> list[Slider]:
 
 
 def turned(app: Application, sliders: Mapping[str, Slider], values: Mapping[str, float]) -> Application:
-    """The machine with its sliders at some values; the machine itself stays as it is.
+    """Sliders turned: the machine at their values; the machine itself stays as it is.
 
     Parameters
     ----------
@@ -182,6 +182,6 @@ def _clearance(app: Application) -> float | None:
 
 
 def place_of_load(app: Application) -> Place | None:
-    """Where the first constant force acts."""
+    """Where the force acts that has a slider: the first constant one."""
     loads = (_first_load(app, k) for k in (1, 2, 0))
     return next((load.where for load in loads if load is not None), None)

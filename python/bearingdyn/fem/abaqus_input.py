@@ -181,7 +181,7 @@ def real(text: str) -> float:
 
 
 def node(line: str) -> tuple[int, tuple[float, float, float]]:
-    """Number and position of a line of *NODE in an Abaqus input file; absent coordinates are zero.
+    """Abaqus input file: number and position of a line of *NODE; absent coordinates are zero.
 
     Raises
     ------

@@ -15,8 +15,8 @@ import numpy as np
 import scipy
 
 from bearingdyn.checks import number, positive
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 
@@ -24,7 +24,7 @@ from bearingdyn.units import takes
 @takes(length="m", d_outer="m", d_inner="m")
 @dataclass(frozen=True)
 class Section:
-    """A section of a beam: a length of shaft of constant circular cross-section.
+    """Section of a beam: a length of constant circular cross-section.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Section:
 
 
 def bending_wavelength(section: Section, material: Elastic, frequency: float) -> float:
-    """Estimate of the length of a free bending wave of a beam.
+    """Beam's free bending wave: its length, estimated.
 
     The shorter of the Euler-Bernoulli wave and the shear wave, between which the Timoshenko beam passes.
 

@@ -71,7 +71,7 @@ def pivots(A: Any) -> Array:
 
 
 def order_of(A: Any) -> Index:
-    """The order in which `Factors` of many matrices of one pattern eliminate, found once.
+    """For factors of many matrices of one pattern, their order of elimination, found once.
 
     Parameters
     ----------

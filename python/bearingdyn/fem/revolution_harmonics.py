@@ -201,7 +201,7 @@ def _make_deviatoric(B: Array) -> None:
 def deviatoric_strains(
     mesh: RevolutionMesh, order: int, components: tuple[int, ...], u: Array
 ) -> tuple[Array, Array]:
-    """Deviatoric strain of a revolution's shapes u (n, k) at 3×3 points of each element, and their volumes.
+    """Harmonics' deviatoric strain: of shapes u (n, k) at 3×3 points of each element, and their volumes.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ def rigid_body_inertia(M: Any, R: Array) -> Array:
 
 
 def rigid_body_residual(K: Any, R: Array) -> float:
-    """How much a stiffness resists rigid motions: the largest of K R over the largest of |K| |R|.
+    """Rigid motion against a stiffness: how much it resists, the largest of K R over the largest of |K| |R|.
 
     Parameters
     ----------

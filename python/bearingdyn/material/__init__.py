@@ -1,7 +1,7 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
 from bearingdyn.material.amplitude import Payne, PayneFit
-from bearingdyn.material.beyond_data import warn_beyond
+from bearingdyn.material.beyond_data import band_told_once, warn_beyond
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
@@ -14,6 +14,7 @@ from bearingdyn.material.identification import fit_dense, fit_maxwell, fit_payne
 from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
+from bearingdyn.material.random_numbers import normals, uniforms
 from bearingdyn.material.reading import (
     ReadingError,
     StrainSweep,
@@ -23,7 +24,7 @@ from bearingdyn.material.reading import (
 )
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shift_laws import WLF, Arrhenius, Joined, RhoT, ShiftTable
-from bearingdyn.material.spread import Spread, normals, uniforms
+from bearingdyn.material.spread import Spread
 from bearingdyn.material.superposition import LIMIT as KK_LIMIT
 from bearingdyn.material.superposition import (
     MasterCurve,
@@ -68,6 +69,7 @@ __all__ = [
     "Suspect",
     "TabulatedModulus",
     "Yeoh",
+    "band_told_once",
     "constant_bulk",
     "doubts",
     "fit_dense",

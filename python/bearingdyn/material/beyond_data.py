@@ -1,13 +1,16 @@
-"""The warning where an answer goes beyond the times that the data of a material speak of."""
+"""Warnings where an answer goes beyond the times or the frequencies that a material's data speak of."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from bearingdyn.material.low_end import SLACK, LowEnd
 from bearingdyn.notice import BeyondData, OutsideBand, warn
+from bearingdyn.types import Array
 
 
 def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, first: str = "") -> None:
@@ -70,6 +73,29 @@ def warn_before(material: Any, time: float, what: str) -> None:
             f"highest frequency of the Maxwell model's band, {band[1]:.4g} Hz, speaks: there it extrapolates",
             OutsideBand,
         )
+
+
+@contextmanager
+def band_told_once(laws: Iterable[Any], omega: Array) -> Iterator[None]:
+    """Warn once of laws asked beyond the band of their data, at ω (any shape), rad/s; not again within.
+
+    Parameters
+    ----------
+    laws
+        Complex moduli; one that stands several times is told once.
+    omega
+        All angular frequencies at which they will be asked, or the ends of their range.
+
+    Warns
+    -----
+    OutsideBand
+        Once for each law, with the whole range.
+    """
+    for law in {id(law): law for law in laws}.values():
+        law.complex_modulus(omega)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideBand)
+        yield
 
 
 def _numbers(material: Any, after: float) -> str:

@@ -10,7 +10,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, positive, real, require, two
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 

@@ -16,7 +16,6 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import number, positive, real, require, two
-from bearingdyn.magnitude import check_density, check_waves, plausible
 from bearingdyn.material.amplitude import Payne, Softening
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.dma import DMAData
@@ -26,6 +25,7 @@ from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
 from bearingdyn.material.superposition import MasterCurve, one_curve
 from bearingdyn.pictures import picture
+from bearingdyn.plausible_ranges import check_density, check_waves, plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 

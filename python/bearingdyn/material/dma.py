@@ -22,7 +22,7 @@ _UNIT = "is the unit right (Pa, kPa, MPa, GPa)? Give units={'storage': ..., 'los
 
 
 class UnitError(ValueError):
-    """A DMA measurement has moduli that no solid has: their unit is wrong."""
+    """DMA data with moduli that no solid has: their unit is wrong."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -263,7 +263,7 @@ class DMAData:
 
 
 def check_range(dma: DMAData) -> None:
-    """Warn of DMA data with moduli that gels, elastomers and polymers do not have: the unit is wrong."""
+    """DMA data whose moduli gels, elastomers and polymers do not have: a warning that the unit is wrong."""
     middle = float(np.median(np.abs(dma.storage)))
     if middle > _HARD or 0 < middle < _SOFT:
         warn(

@@ -12,13 +12,13 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import instance, number, one_of, positive, real, require, two
-from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.fit_report import FitReport
 from bearingdyn.material.log_parameters import logarithms as logarithms_of
 from bearingdyn.material.log_parameters import moved
 from bearingdyn.material.maxwell import Maxwell
-from bearingdyn.material.spread import uniforms
+from bearingdyn.material.random_numbers import uniforms
 from bearingdyn.material.superposition import MasterCurve
+from bearingdyn.plausible_ranges import check_bulk
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 

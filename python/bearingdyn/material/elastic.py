@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bearingdyn.checks import number, positive
-from bearingdyn.magnitude import check_density, check_waves, plausible
 from bearingdyn.pictures import picture
+from bearingdyn.plausible_ranges import check_density, check_waves, plausible
 from bearingdyn.units import takes
 
 

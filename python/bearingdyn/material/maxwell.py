@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import instance, nonnegative, number, positive, real, require, vector
-from bearingdyn.magnitude import check_bulk, check_density, check_waves, plausible
 from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
 from bearingdyn.material.beyond_data import warn_before, warn_beyond
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
@@ -23,6 +22,7 @@ from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict
 from bearingdyn.material.spread import Drawable, Spread
 from bearingdyn.notice import warn
 from bearingdyn.pictures import picture
+from bearingdyn.plausible_ranges import check_bulk, check_density, check_waves, plausible
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 

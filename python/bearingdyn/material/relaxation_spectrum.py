@@ -65,7 +65,7 @@ class Strengths:
 
 
 def solve_strengths(A: Array, b: Array, lower: Array | None = None, upper: Array | None = None) -> Strengths:
-    """Strengths of a spectrum: min ‖A x − b‖, lower ≤ x ≤ upper (0 and ∞ unless given), columns scaled.
+    """Relaxation spectrum's strengths: min ‖A x − b‖, lower ≤ x ≤ upper (0 and ∞ unless given).
 
     A (m, n), b (m,), bounds (n,), lower ≥ 0; where they are equal the strength is fixed.
     """

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn.checks import name_list, nonnegative, one_of, real, require, whole
-from bearingdyn.magnitude import plausible
+from bearingdyn.checks import name_list, nonnegative, real, require
 from bearingdyn.material.log_parameters import moved, place_of
+from bearingdyn.material.random_numbers import normals
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
@@ -269,50 +270,6 @@ class Drawable:
             # what was measured stays measured
             found = replace(warm, band=self.band, low_end=found.low_end)
         return found
-
-
-def normals(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
-    """Standard normal numbers (n, size) for draws from a spread, by a Sobol sequence or at random.
-
-    Parameters
-    ----------
-    n, size
-        Number of draws, and of numbers in each.
-    seed
-        Of the scrambling, or of the random numbers.
-    method
-        "sobol" or "random".
-    """
-    from scipy.special import ndtri
-
-    return np.asarray(ndtri(uniforms(n, size, seed, method)))
-
-
-def uniforms(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
-    """Even numbers (n, size) in (0, 1) for draws from a spread, by a Sobol sequence or at random.
-
-    Parameters
-    ----------
-    n, size
-        Number of draws, and of numbers in each.
-    seed
-        Of the scrambling, or of the random numbers.
-    method
-        "sobol" or "random".
-    """
-    import warnings
-
-    n = whole("n", n, 1)
-    one_of("method", method, ("sobol", "random"))
-    if method == "random":
-        unit = np.random.default_rng(seed).random((n, size))
-    else:
-        from scipy.stats import qmc
-
-        with warnings.catch_warnings():  # of a number that is no power of two
-            warnings.simplefilter("ignore", UserWarning)
-            unit = qmc.Sobol(size, scramble=True, rng=seed).random(n)
-    return np.asarray(np.clip(unit, 2.0**-40, 1.0 - 2.0**-40))
 
 
 class _Parameters:

@@ -61,7 +61,7 @@ def constant_bulk(material: Any) -> float:
 
 
 def is_volume(material: Any) -> bool:
-    """Whether a term of a superelement is one of volume, not of shear.
+    """Volume change against shear: whether a term is one of it.
 
     Parameters
     ----------

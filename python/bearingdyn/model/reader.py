@@ -17,9 +17,9 @@ from bearingdyn.bearing import BallBearing, catalogue
 from bearingdyn.checks import existing, meant, named, number, require
 from bearingdyn.material import Maxwell, fit_maxwell, master_curve, read_dma, sample_dma_path
 from bearingdyn.model.key_lines import Key, key_lines
-from bearingdyn.model.kinds import MATERIALS, Shelf, kinds
 from bearingdyn.model.model import Analysis, Model, analyses
 from bearingdyn.model.notation import grid
+from bearingdyn.model.toml_tables import MATERIALS, Shelf, kinds
 from bearingdyn.model.trouble import Located, Origin, at
 
 FORMAT = 1

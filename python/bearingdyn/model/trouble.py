@@ -14,7 +14,7 @@ from bearingdyn.model.key_lines import Key
 
 @dataclass
 class Origin:
-    """For telling trouble, where the keys of a model stand: the file and line of each."""
+    """For trouble told by line: the file and line of each key of a model."""
 
     file: str
     known: dict[Key, tuple[str, int]] = field(default_factory=dict)

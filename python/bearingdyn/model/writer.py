@@ -23,9 +23,9 @@ from bearingdyn.application import (
 )
 from bearingdyn.checks import instance
 from bearingdyn.material import STEEL
-from bearingdyn.model.kinds import table_of, written
 from bearingdyn.model.model import Analysis, Model
 from bearingdyn.model.reader import FORMAT
+from bearingdyn.model.toml_tables import table_of, written
 from bearingdyn.writing import write_whole
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from bearingdyn.checks import instance, nonnegative, number, positive
 from bearingdyn.fem import Section
-from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.plausible_ranges import check_gyration, plausible
 from bearingdyn.units import takes
 
 

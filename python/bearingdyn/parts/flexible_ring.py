@@ -14,7 +14,6 @@ import scipy
 from bearingdyn.bearing import BallBearing, Waviness
 from bearingdyn.checks import instance, one_of, positive, require, whole
 from bearingdyn.cms import RoundFace, Superelement
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.layer import Layer
@@ -27,6 +26,7 @@ from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
 from bearingdyn.parts.ring_element import gyroscopic, upon_supports, with_folded
 from bearingdyn.parts.ring_section import ring_section
 from bearingdyn.parts.ring_support import RingBed, RingPoints
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.units import takes
 
 F_HEARD = 6e3  # Hz, up to which a ring's receptances are right unless f_max says otherwise

@@ -12,11 +12,11 @@ import numpy as np
 from bearingdyn.checks import instance, named, nonnegative, positive, vector
 from bearingdyn.cms import F_MAX, RoundFace, Superelement, check_damping, check_f_max
 from bearingdyn.fem import block_with_bore
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.profile import Profile, rectangle
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.units import takes
 

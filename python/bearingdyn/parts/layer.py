@@ -16,7 +16,6 @@ from bearingdyn.fem import (
     NoBalance,
     revolution_mesh,
 )
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic, is_volume
 from bearingdyn.notice import VolumeCounts, warn
 from bearingdyn.parts.outline import Outline
@@ -27,6 +26,7 @@ from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.shape_moduli import shape_moduli
 from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
 from bearingdyn.parts.strain import Strain
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 

@@ -15,12 +15,12 @@ from bearingdyn.fem import (
     disc_section,
     quadrilaterals,
 )
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, Hyperelastic
 from bearingdyn.parts.regions import Patch, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import MeshNodes
 from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.units import takes
 
 HALF = math.pi / 4  # half of the angle, rad, of the evenly divided arcs on which it comes to touch

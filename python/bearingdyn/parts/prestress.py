@@ -249,7 +249,7 @@ def squeeze(
     bulk: Sequence[float],
     branches: str = CURRENT,
 ) -> Prestress:
-    """Squeeze a body of revolution: its prestress after rigid faces have moved.
+    """Prestress of a body of revolution after rigid faces have squeezed it.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ class PortShapes:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Order:
-    """One order of a body with a raceway: its matrices, what is held, and its ports.
+    """Order of a raceway's shapes: the body's matrices in it, what is held, and its ports.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def felt(D: Complex, L: Array, faces: int) -> Complex:
 
 
 def misfit(got: Any, wanted: Any, scale: Array) -> float:
-    """Error of a raceway's shapes in what is felt, each entry over the mean size of its two ports."""
+    """How far a raceway's shapes miss what is felt, each entry over the mean size of its two ports."""
     off, size = (float(np.linalg.norm(a / scale, 2)) for a in (got - wanted, wanted))
     return off / max(size, 1.0)
 
@@ -187,7 +187,7 @@ def port_shapes(
 
 
 def lossy(shear: Sequence[complex]) -> Complex:
-    """Moduli for a raceway's shapes, with a loss where nothing has one."""
+    """For a raceway's shapes, moduli with a loss where nothing has one."""
     G = np.asarray(shear, dtype=np.complex128)
     return G if np.abs(G.imag).max() > 0 else G * (1 + 1j * LOSS)
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from bearingdyn.fem import Rectangle
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
+from bearingdyn.plausible_ranges import plausible
 
 LOCKING = 0.45  # Poisson's ratio from which an elastic region counts as rubber, lest its elements lock
 

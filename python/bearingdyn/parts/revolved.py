@@ -39,13 +39,13 @@ from bearingdyn.fem import (
     factorise,
     revolution_mesh,
 )
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic, constant_bulk, volume_of
 from bearingdyn.parts.hoop_stress import hoop_stress_rows
 from bearingdyn.parts.mesh_waves import check_waves
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
 from bearingdyn.parts.profile import Profile
+from bearingdyn.parts.quasi_static_modulus import quasi_static, quasi_static_bulk
 from bearingdyn.parts.raceway_shapes import Order, PortShapes, port_shapes
 from bearingdyn.parts.regions import Patch, Region, is_rubber
 from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_boundaries
@@ -57,8 +57,8 @@ from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.revolved_strain import concentrations, strain_of_motion
 from bearingdyn.parts.shape_moduli import moduli_at, shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
-from bearingdyn.parts.static_modulus import quasi_static, quasi_static_bulk
 from bearingdyn.parts.strain import Strain
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 

@@ -97,7 +97,7 @@ def full_basis(
     families: Sequence[tuple[Harmonic, Array, int, Copies]],
     level: Sequence[float],
 ) -> Basis:
-    """Basis of a body of revolution in the coordinates of its `full_model`.
+    """Full basis of a body of revolution: in the coordinates of its `full_model`.
 
     Parameters
     ----------

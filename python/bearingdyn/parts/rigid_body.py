@@ -10,10 +10,10 @@ import numpy as np
 
 from bearingdyn.checks import instance, nonnegative, positive, vector
 from bearingdyn.cms import RoundFace, Superelement
-from bearingdyn.magnitude import check_gyration, plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, box, carried, cylinder
 from bearingdyn.parts.profile import Profile, mirrored, rectangle
+from bearingdyn.plausible_ranges import check_gyration, plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 

@@ -8,7 +8,6 @@ from functools import cached_property
 
 from bearingdyn.checks import positive
 from bearingdyn.cms import RoundFace, Superelement
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.profile import Profile
@@ -16,6 +15,7 @@ from bearingdyn.parts.regions import Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.revolved_modes import RevolvedModes
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.units import takes
 
 

@@ -25,7 +25,7 @@ def upon_supports(
     side: str = "outside",
     seat: str = "outer",
 ) -> Superelement:
-    """A ring's superelement upon supports: free, between those of one side and their rigid interface."""
+    """Ring element joined to supports: free, between those of one side and their rigid interface."""
     outside = element.raceways[side]
     K, C = held_by(supports, outside.rows, outside.series, radius, width)
     wide = wider(element, 6, "raceway")
@@ -45,7 +45,7 @@ def with_folded(
     f_max: float,
     damping: float,
 ) -> Superelement:
-    """A ring's superelement with folded orders: what those beyond do at the balls, and the race's give.
+    """Ring element with folded orders: what those beyond do at the balls, and the race's give.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def with_folded(
 
 
 def gyroscopic(element: Superelement, seat: str, back: str, polar_inertia: float) -> Array:
-    """Gyroscopic matrix (n, n) of a ring that turns as a rigid body with the tilts of its seat, or of `back`.
+    """Ring element's gyroscopic matrix (n, n): a rigid body with the tilts of its seat, or of `back`.
 
     `back` is the raceway that tells them where nothing seats the ring.
     """
@@ -86,7 +86,7 @@ def gyroscopic(element: Superelement, seat: str, back: str, polar_inertia: float
 
 
 def wider(element: Superelement, count: int, *raceways: str) -> Superelement:
-    """A ring's superelement wider by `count` coordinates, without mass and force, for named raceways."""
+    """Ring element wider by `count` coordinates, without mass and force, for named raceways."""
     none = np.zeros((count, count))
 
     def grown(A: Array) -> Array:

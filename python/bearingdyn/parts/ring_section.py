@@ -22,7 +22,7 @@ def ring_section(
     groove_radius: float | None,
     inner: bool = False,
 ) -> RevolutionMesh:
-    """The mesh of a ring, and of the rubber around it, with lines near the edges of its track.
+    """Section of a ring as a mesh, with the rubber around it, lines near the edges of its track.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ import numpy as np
 
 from bearingdyn.bearing import RacewaySeries
 from bearingdyn.checks import nonnegative, number, positive, two
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 _POINTS = 64  # Gauss points per order and arc of a turn: exact for products of cosines to round-off

@@ -25,11 +25,11 @@ from bearingdyn.cms import (
     project,
 )
 from bearingdyn.fem import Section, assemble_beam, bending_wavelength
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 from bearingdyn.parts.profile import Profile, rectangle
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 from bearingdyn.units import takes
@@ -294,7 +294,7 @@ def _reach(spans: Sequence[tuple[float, float]], yes: Sequence[bool], k: int) ->
 
 
 def spin_generator(n_nodes: int) -> scipy.sparse.csr_matrix:
-    """Spin of a shaft: J (6 n, 6 n) with ẋ = Ω J x when all six-coordinate nodes turn as one body about z."""
+    """Shaft's spin as a matrix: J (6 n, 6 n) with ẋ = Ω J x when all nodes turn as one body about z."""
     one = np.zeros((6, 6))
     one[1, 0] = one[4, 3] = 1.0
     one[0, 1] = one[3, 4] = -1.0

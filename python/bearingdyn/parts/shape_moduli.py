@@ -24,7 +24,7 @@ def shape_moduli(regions: Sequence[Region | Patch], moduli: Sequence[float] | No
 
 
 def moduli_at(regions: Sequence[Region | Patch], omega: float) -> list[complex]:
-    """Shear moduli G*(ω), Pa, of the regions, also beyond the band of a fit; ω in rad/s.
+    """Moduli for shapes: shear moduli G*(ω), Pa, of the regions, also beyond a fit's band; ω in rad/s.
 
     Shapes are asked for at all frequencies: nothing warns here.
     """

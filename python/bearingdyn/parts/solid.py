@@ -41,11 +41,11 @@ from bearingdyn.fem import (
     factorise,
     rigid_motion,
 )
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic, constant_bulk, volume_of
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.quasi_static_modulus import quasi_static
 from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
-from bearingdyn.parts.static_modulus import quasi_static
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 

@@ -9,12 +9,12 @@ import numpy as np
 
 from bearingdyn.checks import nonnegative, one_of, positive, require, vector
 from bearingdyn.fem import box_mesh
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Maxwell
 from bearingdyn.parts.regions import Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import EndFace
 from bearingdyn.parts.solid import Solid
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 _FINE = 1.5  # mesh density of a disc: its factor within 0.02 %

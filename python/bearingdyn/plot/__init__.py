@@ -20,9 +20,9 @@ from bearingdyn.plot.load_distribution import load_distribution
 from bearingdyn.plot.measurement_checks import causality, cole_cole, spectrum_of, van_gurp_palmen
 from bearingdyn.plot.mode_geometry import mode_geometry, mode_scene
 from bearingdyn.plot.mode_shape import mode_shape
+from bearingdyn.plot.notebook_html import as_html
 from bearingdyn.plot.orbit import orbit
 from bearingdyn.plot.orders import order_spectrum, orders
-from bearingdyn.plot.page import as_html
 from bearingdyn.plot.ring_shape import ring_shape
 from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.speed_map import speed_map, speed_waterfall

@@ -50,7 +50,8 @@ def film_map(
     if quantity == "film":
         centre = contact.hc * 1e6
         values, unit, title = contact.film * 1e6, "film, µm", f"Film, {centre:.3g} µm at the centre"
-        levels = np.linspace(contact.hmin * 1e6, RANGE * centre, 25)
+        # hmin is extrapolated from the grids and may lie above this one's
+        levels = np.linspace(min(contact.hmin * 1e6, float(values.min())), RANGE * centre, 25)
     else:
         highest = float(contact.pressure.max()) / 1e9
         values, unit, title = contact.pressure / 1e9, "pressure, GPa", f"Pressure, at most {highest:.3g} GPa"

@@ -184,7 +184,7 @@ def is_result(datasets: object) -> bool:
 
 
 def some(datasets: Mapping[str, Any], name: str = "datasets") -> Mapping[str, Any]:
-    """For a figure's frame, the results it shows, by label; ValueError if there are none, or one without."""
+    """Frame of a figure: the results it shows, by label; ValueError if there are none, or one without."""
     if is_result(datasets):
         raise ValueError(
             f'{name} is a result without a label; give results by label, such as {{"run": result}}'

@@ -137,7 +137,7 @@ def _span(ax: Axes, *grids: Array) -> None:
 
 
 def one_quantity(datasets: Mapping[str, xarray.Dataset]) -> str:
-    """The one quantity of all responses that a figure shows; ValueError where there are several."""
+    """Of frequency responses to plot, the one quantity; ValueError where there are several."""
     quantities = {str(data.attrs["quantity"]) for data in datasets.values()}
     if len(quantities) > 1:
         raise ValueError(f"responses of {sorted(quantities)} do not go into one figure; draw one of each")

@@ -75,7 +75,7 @@ def speed_map(data: xarray.Dataset, channel: str | None = None, ax: Axes | None 
             if here.any():
                 ax.plot(
                     at[here], swing[here], linestyle="none", marker=marker, markersize=5.5,
-                    color=colour(hue_of), label=what, zorder=4,
+                    color=colour(hue_of), label=what.replace("neimark-sacker", "Neimark–Sacker"), zorder=4,
                 )  # fmt: skip
         ax.set_yscale("log")
         ax.set_xlabel(name)

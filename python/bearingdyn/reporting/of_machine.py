@@ -81,7 +81,7 @@ def doubt(material: Any) -> str:
 
 
 def state_html(eq: Equilibrium, speed: float) -> str:
-    """The report's state of a machine at rest: displacements, loads, layers, sag over time, bearings."""
+    """The report's machine at rest: displacements, loads, layers, sag over time, bearings."""
     from bearingdyn.plot import as_html
 
     return as_html(eq) + sag_html(eq) + sheet_html(eq, speed)
@@ -138,7 +138,7 @@ def sheet_html(eq: Equilibrium, speed: float) -> str:
 
 
 def speed_of(results: Mapping[str, Any]) -> float:
-    """The one speed of a report's machine at which results were computed, rad/s; 0 for none, or several."""
+    """For the report of a machine, the one speed of its results, rad/s; 0 for none, or several."""
     speeds = set()
     for data in results.values():
         speed = data.attrs.get("speed")

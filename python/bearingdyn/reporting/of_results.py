@@ -24,7 +24,7 @@ WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
 
 
 def together(results: Results) -> list[tuple[str, Results]]:
-    """A report's results by sections: those under one name before the last "/" stand together."""
+    """Results in sections of a report: those under one name before the last "/" stand together."""
     found: dict[tuple[str, str], dict[str, xarray.Dataset]] = {}
     for name, data in results.items():
         above, _, last = name.rpartition("/")

@@ -247,7 +247,7 @@ def _players(sounds: Mapping[str, str | os.PathLike[str]] | None) -> str:
 
 
 def page_files() -> tuple[str, str]:
-    """Style and script of a page with charts."""
+    """Style and script of the report's page."""
     folder = files("bearingdyn.reporting")
     style, script = (folder.joinpath(name).read_text(encoding="utf-8") for name in ("page.css", "page.js"))
     return style, script

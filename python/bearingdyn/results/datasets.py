@@ -61,7 +61,7 @@ def march_dataset(
     report: Report,
     attrs: Mapping[str, Any] | None = None,
 ) -> xarray.Dataset:
-    """The Dataset of a march: record (time, channel), state, units of the channels, and how it ended.
+    """Dataset of results for a march: record (time, channel), state, units, and how it ended.
 
     Parameters
     ----------

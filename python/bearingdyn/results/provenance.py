@@ -5,21 +5,11 @@ from __future__ import annotations
 import hashlib
 import platform
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 import scipy
 
-
-def _own_version() -> str:
-    try:
-        return version("bearingdyn")
-    except PackageNotFoundError:
-        return "not installed"
-
-
-# found once: it takes milliseconds where many packages are installed
-VERSION = _own_version()
+from bearingdyn.fingerprint import VERSION
 
 
 def versions() -> dict[str, str]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn import runfile
+from bearingdyn import run_file
 from bearingdyn.checks import existing, meant
 from bearingdyn.results.datasets import march_dataset
 from bearingdyn.results.provenance import stamp
@@ -113,7 +113,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
     import xarray
 
     existing(path, "result")
-    if runfile.is_run(path):
+    if run_file.is_run(path):
         return _run_dataset(path)
     try:
         with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
@@ -151,7 +151,7 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
     import h5netcdf
 
     existing(path, "result")
-    if runfile.is_run(path):
+    if run_file.is_run(path):
         return []
     try:
         with h5netcdf.File(path, "r") as file:
@@ -170,13 +170,13 @@ def _holding(group: Any, above: str) -> Iterator[str]:
 
 def _run_dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
     """What a run file holds so far."""
-    facts, chunks, _ = runfile.read(path)
+    facts, chunks, _ = run_file.read(path)
     if not chunks:
         raise ValueError(f"{os.fspath(path)} holds no finished chunk yet")
     state = chunks[-1].state
     rows = np.concatenate([c.rows for c in chunks])
     written = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
-    return march_dataset(facts, rows, state, runfile.report_of(chunks), {"made_at": stamp(written)})
+    return march_dataset(facts, rows, state, run_file.report_of(chunks), {"made_at": stamp(written)})
 
 
 def _check_attributes(what: str, data: Any) -> None:

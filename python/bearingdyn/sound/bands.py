@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import one_of, positive, reals, require
-from bearingdyn.sound.signals import signal
+from bearingdyn.sound.signal_check import signal
 from bearingdyn.types import Array
 
 Fraction = Literal[1, 3]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import one_of, positive, require
-from bearingdyn.sound.signals import signal
+from bearingdyn.sound.signal_check import signal
 from bearingdyn.sound.weighting import Weighting, weighting
 from bearingdyn.types import Array, Complex
 
@@ -15,7 +15,7 @@ SETTLED = 0.2  # s, in which the filters of the bands start
 
 
 def weighted_signal(samples: ArrayLike, rate: float, kind: Weighting = "A") -> Array:
-    """Signal as it is heard: by the A, C or Z weighting, its whole taken as one period.
+    """Hearing a signal: weighted by A, C or Z, its whole taken as one period.
 
     Parameters
     ----------

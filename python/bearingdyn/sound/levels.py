@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import one_of, positive, reals, require
 from bearingdyn.sound.bands import Fraction, band_powers
-from bearingdyn.sound.signals import signal
+from bearingdyn.sound.signal_check import signal
 from bearingdyn.sound.weighting import Weighting, weighting
 from bearingdyn.types import Array
 
@@ -161,7 +161,7 @@ def mean_squares(samples: ArrayLike, rate: float) -> tuple[Array, Array]:
 
 
 def vibration_severity(velocity: ArrayLike, rate: float) -> float:
-    """Level of vibration by ISO 20816 (formerly 10816): rms of a velocity from 10 to 1000 Hz, m/s.
+    """Level of vibration's severity by ISO 20816 (formerly 10816): rms velocity from 10 to 1000 Hz, m/s.
 
     Parameters
     ----------

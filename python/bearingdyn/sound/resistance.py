@@ -230,7 +230,7 @@ def _ways(radiators: Radiators, microphones: Array, k: float) -> Complex:
 
 
 def heard(octave: Octave, radiators: Radiators, f: Array, microphones: Array, sound_speed: float) -> Complex:
-    """Pressure at microphones beside the radiation resistance: per unit of velocity, (f, p, n), Pa s/m.
+    """Resistance's neighbour: pressure at microphones per unit of velocity, (f, p, n), Pa s/m.
 
     Parameters
     ----------

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import existing, items, number, one_of, positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.notice import ClippedSound, warn
-from bearingdyn.sound.signals import signal
+from bearingdyn.plausible_ranges import plausible
+from bearingdyn.sound.signal_check import signal
 from bearingdyn.types import Array
 from bearingdyn.writing import check_target, write_whole
 

@@ -18,7 +18,7 @@ Parameters: TypeAlias = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Case:
-    """One case of a study: its parameters, and its values or the error that kept it from them.
+    """A case, one of many: its parameters, and its values or the error that kept it from them.
 
     values is empty where error is set; error is the exception's kind and message.
     """
@@ -148,7 +148,7 @@ def checked(cases: Iterable[Parameters]) -> list[dict[str, Any]]:
 
 
 def label(value: Any) -> float | int | bool | str:
-    """Label of a parameter of a case: a number or text itself, else its class and a hash."""
+    """Cases' label of a parameter: a number or text itself, else its class and a hash."""
     if _kind(value) != "object":
         return value  # type: ignore[no-any-return]
     return f"{type(value).__name__} {fingerprint.fingerprint(value)[:8]}"

@@ -10,9 +10,10 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bearingdyn.checks import number, positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Doubts, Maxwell, uniforms
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
+from bearingdyn.study.cases import label
 from bearingdyn.types import Array
 
 
@@ -252,3 +253,12 @@ def draw(
     """
     box = Box(parameters)
     return box.cases(uniforms(n, box.size, seed, method))
+
+
+# ends the message about a draw that cannot be computed
+IMPOSSIBLE = "the draw is impossible: narrow the distribution, or cut it with low= and high="
+
+
+def said_of(drawn: Mapping[str, Any]) -> str:
+    """The parameters of a draw from distributions in one line, for messages."""
+    return ", ".join(f"{name} = {label(value)}" for name, value in drawn.items())

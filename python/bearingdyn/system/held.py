@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from bearingdyn.application import COMPONENTS, Place
+from bearingdyn.system.layer_static_modulus import static_modulus
 from bearingdyn.system.natural_modes import natural
-from bearingdyn.system.static_modulus import static_modulus
 from bearingdyn.system.system import TEST_SPRING, System
 from bearingdyn.types import Array
 

@@ -40,7 +40,7 @@ def softening_factor(term: Viscoelastic, part: str) -> tuple[Array, Array | None
 
 
 def marched_layer(layer: LayerTerm, memory: float | None) -> tuple[Any, ...]:
-    """A layer as a march takes it: L, strengths and times of its branches, and how it softens."""
+    """Softening layer as a march takes it: L, strengths and times of its branches, and how it softens."""
     if layer.strain is None:
         return layer.L, np.asarray(layer.material.G), np.asarray(layer.material.tau)
     if memory is None:

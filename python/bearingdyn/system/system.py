@@ -18,11 +18,11 @@ from bearingdyn.application import COMPONENTS, Channel
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import meant
 from bearingdyn.cms import coupled_blocks
-from bearingdyn.magnitude import check_speed_value, plausible
+from bearingdyn.plausible_ranges import check_speed_value, plausible
+from bearingdyn.system.layer_static_modulus import Modulus, static_modulus
 from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.raceway_channels import raceway_row
 from bearingdyn.system.softening_layer import marched_layer
-from bearingdyn.system.static_modulus import Modulus, static_modulus
 from bearingdyn.system.system_matrix_check import check_matrix
 from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
 from bearingdyn.types import Array, Index

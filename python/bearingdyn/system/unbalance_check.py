@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bearingdyn.application import Plan, Unbalance
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 
 
 def check_unbalance(plan: Plan) -> None:

@@ -18,7 +18,7 @@ GRAZING = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """Force g (n,), N, and tangents K, C (n, n) of a bearing on its coefficients; approach u (Z,) of its
+    """Contact force g (n,), N, of a bearing and its tangents K, C (n, n); approach u (Z,) of its
     balls, m."""
 
     g: Complex

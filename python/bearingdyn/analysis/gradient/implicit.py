@@ -42,7 +42,7 @@ def coefficient_slope(system: System, change: Change) -> Array:
 
 
 def check_differentiable(eq: Equilibrium) -> None:
-    """Refuse what has no derivative here.
+    """Check that implicit derivatives exist here; refuse what has none.
 
     Parameters
     ----------

@@ -208,13 +208,13 @@ def _spring(system: System, path: str, place: str, word: str, component: str) ->
 
 
 def shear_names(material: Maxwell) -> list[str]:
-    """Names of a Maxwell model's parameters for a gradient."""
+    """Parameters of a gradient that are a Maxwell model's: their names."""
     n = material.G.size
     return ["G0", *(f"G{k + 1}" for k in range(n)), *(f"tau{k + 1}" for k in range(n)), "eta0"]
 
 
 def modulus_slope(material: Maxwell, name: str, s: Any) -> Any:
-    """∂G*/∂(parameter) at s = iω, rad/s, or any complex rate, of any shape."""
+    """A gradient's ∂G*/∂(parameter) at s = iω, rad/s, or any complex rate, of any shape."""
     s = np.asarray(s, dtype=np.complex128)
     if name == "G0":
         return np.ones_like(s)

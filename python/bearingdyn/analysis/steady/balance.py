@@ -214,13 +214,13 @@ class _Packed:
 
 @lru_cache(maxsize=8)
 def packed(system: System) -> tuple[_Packed, ...]:
-    """For a harmonic balance, kernels of a system's bearings, packed once for many calls."""
+    """Kernels of the bearings for a harmonic balance, packed once for many calls."""
     return tuple(_Packed(term.kernel().packed()) for term in system.bearings)
 
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Harmonic balance linearised: P⁻¹ J at a motion, times vectors; P has the mean tangent alone.
+    """Balance of harmonics, linearised at a motion: P⁻¹ J times vectors; P has the mean tangent alone.
 
     Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's
     imaginary part is kept at zero.
@@ -285,7 +285,7 @@ def unflat(vector: Array, balance: Balance) -> Complex:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A motion found by harmonic balance, and how well it balances.
+    """Result of a harmonic balance: a motion, and how well it balances.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from bearingdyn.analysis.core_channels import channel_of
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
 from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, follow, locate
 from bearingdyn.analysis.steady.problem import Problem
@@ -57,7 +57,7 @@ class Family(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Speeds:
-    """Branches of steady motions over speed: one system, its speed the parameter."""
+    """Branches over speed: the family whose parameter is the speed of one system."""
 
     problem: Problem
 
@@ -160,7 +160,7 @@ SAMPLES, PER_LINE = 96, 4
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """One point of a branch, as it is kept."""
+    """One point on one of the branches of a map: speed, motion and stability."""
 
     point: Point
     stability: Stability | None
@@ -201,7 +201,7 @@ def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
 
 
 class Tracer:
-    """Follows one branch of steady motions and marks what happens on it."""
+    """Traces branches, one at a time, and marks what happens on it."""
 
     def __init__(
         self,
@@ -328,7 +328,7 @@ class Tracer:
 
 
 def divided(balance: Balance, passages: int) -> Balance:
-    """For branches of doubled period, the balance of motions that repeat after so many passages only."""
+    """For branches of doubled period: the balance of what repeats after so many passages only."""
     if passages == 1:
         return balance
     bases = balance.bases
@@ -368,7 +368,7 @@ def _beyond(state: Stability, name: str) -> float:
 
 
 def known(branches: Sequence[Branch], passages: int, parameter: float, z: Complex) -> bool:
-    """Whether a motion lies on a branch, between two of its points."""
+    """Whether a motion lies on one of the branches, between two of its points."""
     size = float(np.linalg.norm(z[1:])) + 1e-4 * float(np.linalg.norm(z[0]))
     for branch in branches:
         if branch.passages != passages:
@@ -397,7 +397,7 @@ class Job:
 
 
 def sweeps(task: Task) -> list[Job]:
-    """The two searches for branches that begin at the ends of the range."""
+    """Branches from both ends of the range: the jobs that search for them."""
     return [
         Job("sweep", task.high, -1.0, origin="coasting down"),
         Job("sweep", task.low, 1.0, origin="running up"),
@@ -405,7 +405,7 @@ def sweeps(task: Task) -> list[Job]:
 
 
 def states(task: Task) -> list[Job]:
-    """Searches for branches that begin within the range, from several states."""
+    """Branches from several states within the range: the jobs that search for them."""
     places = np.linspace(task.low, task.high, PLACES + 2)[1:-1].tolist()
     return [Job("state", p, push=push, origin="another state") for p in places for push in (0.0, *PUSHES)]
 
@@ -413,7 +413,7 @@ def states(task: Task) -> list[Job]:
 def done(
     task: Task, job: Job, others: Sequence[Branch], flip: tuple[int, Mark] | None = None, tell: Tell = None
 ) -> list[Branch]:
-    """The branches that a job finds and that are not known from others."""
+    """Branches that one job finds and that are not known from others."""
     if job.kind == "sweep":
         return _sweep(task, others, job, tell)
     if job.kind == "state":

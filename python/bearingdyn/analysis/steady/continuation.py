@@ -200,7 +200,7 @@ class Solver(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Products:
-    """A continuation's solver for many lines: by products with the derivative."""
+    """In a continuation's step, the solver for many lines: by products with the derivative."""
 
     curve: Curve
     linear: Linearised
@@ -228,7 +228,7 @@ class Products:
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """A continuation's solver for few lines: the derivative with its border in triangles."""
+    """In a continuation's step, the solver for few lines: the derivative with its border in triangles."""
 
     curve: Curve
     factored: Factored

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from bearingdyn import core
-from bearingdyn.analysis.core_channels import CoreChannel
 from bearingdyn.analysis.dissipation import sinks
+from bearingdyn.analysis.recordable_channels import CoreChannel
 from bearingdyn.analysis.steady.balance import Balance, Found, Pressed
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.types import Array, Complex

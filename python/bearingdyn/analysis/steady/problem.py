@@ -103,7 +103,7 @@ class Problem:
 
 
 def motion_of(field: str, problem: Problem, result: xarray.Dataset) -> tuple[Index, Complex]:
-    """An earlier steady motion as the start of a problem: index and amplitudes; ValueError for another's."""
+    """For a problem of a steady motion, an earlier one to start from: index, amplitudes; else ValueError."""
     require("motion" in result, field, sorted(map(str, result)), "give a result of steady_state")
     index, z = np.asarray(result["index"].values, dtype=np.intp), np.asarray(result["motion"].values)
     names = [b.name for b in problem.bases.bases]

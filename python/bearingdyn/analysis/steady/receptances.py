@@ -84,7 +84,7 @@ class Poles:
 
 
 def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
-    """Dynamic stiffness D (f, n, n), inverse of the receptances, of a system without its bearings."""
+    """Receptances' inverse, the dynamic stiffness D (f, n, n) of a system without its bearings."""
     D = (
         (block.K + speed * block.N)
         + 1j * omega[:, None, None] * (block.C + speed * block.G)

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 import os
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.march_state import system_hash
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance
 from bearingdyn.analysis.steady.borne import PUSH, pushed, warn_of_motions
 from bearingdyn.analysis.steady.branch_files import BranchFiles
@@ -35,7 +33,7 @@ from bearingdyn.analysis.steady.motion import MOTIONS
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_speed, require, vector, whole
-from bearingdyn.notice import OutsideBand
+from bearingdyn.material import band_told_once
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
@@ -133,7 +131,7 @@ def speed_map(
     problem.system.check_speed(high)
     family = Speeds(problem)
     task = _task(family, record, low, high, harmonics, points, 1e-6)
-    with _band_told_once(task):
+    with band_told_once(*_asked(task)):
         branches = _branches(task, doublings, several, store, executor, progress)
     warn_of_motions(_motions(task, branches, "at {:.6g} rad/s"))
     return _dataset(task, branches, "speed", "rad/s", {**state_of(problem.source)})
@@ -191,7 +189,7 @@ def parameter_map(
     require(speed != 0.0, "speed", speed, "at rest nothing passes; give the speed of the shaft in rad/s")
     family = Made(make, speed)
     task = _task(family, record, low, high, harmonics, points, MADE_SLOPE)
-    with _band_told_once(task):
+    with band_told_once(*_asked(task)):
         branches = _branches(task, doublings, several, store, executor, progress)
     warn_of_motions(_motions(task, branches, "at the value {:.6g}"))
     return _dataset(task, branches, "parameter", "", {"speed": speed})
@@ -244,20 +242,14 @@ def _task(
     return task
 
 
-@contextmanager
-def _band_told_once(task: Task) -> Iterator[None]:
-    """Say once, for the whole map, where laws of layers are asked outside of their band."""
+def _asked(task: Task) -> tuple[list[Any], Array]:
+    """Laws of the layers, and the ends of the range of ω, rad/s, at which a map asks them."""
     ends = []
     for parameter in (task.low, task.high):
         problem, speed = task.family.at(parameter)
         base = np.abs(problem.bases.frequencies(speed))
         ends += [float(base.min()), task.harmonics * float(base.max())]
-    laws = {id(t.material): t.material for t in problem.system.layers}
-    for law in laws.values():
-        law.complex_modulus(np.array([min(ends), max(ends)]))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideBand)
-        yield
+    return [t.material for t in problem.system.layers], np.array([min(ends), max(ends)])
 
 
 def _branches(

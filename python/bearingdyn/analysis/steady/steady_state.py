@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn import core
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import Contacts
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced
@@ -209,7 +209,7 @@ def _found(
 def stability_of(
     problem: Problem, balance: Balance, found: Found, model: FirstOrder | None = None, samples: int = SAMPLES
 ) -> Stability | None:
-    """Multipliers of a steady state with one base; None for several."""
+    """For `steady_state`: the multipliers of a motion with one base; None for several."""
     if len(problem.bases.bases) != 1 or not problem.system.bearings:
         return None
     model = model or first_order(problem, balance)
@@ -224,7 +224,7 @@ def stability_of(
 
 
 def first_order(problem: Problem, balance: Balance) -> FirstOrder:
-    """The structure as a steady state's stability needs it, for speeds up to the balance's."""
+    """For `steady_state`: the structure in first order, as stability needs it, up to the balance's speed."""
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))

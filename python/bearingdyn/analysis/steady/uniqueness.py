@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from bearingdyn.analysis.core_channels import channel_of
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Found, newton
 from bearingdyn.analysis.steady.branches import Branch, Speeds, Task, done, sweeps
 from bearingdyn.analysis.steady.motion import Motion

@@ -26,7 +26,7 @@ class _HasFigures(Protocol):
 
 
 class Figured:
-    """Something with `figures`, each of them also by its name."""
+    """Something that shows its figures: each of them also by its name."""
 
     @property
     def Hc(self: _HasFigures) -> float:

@@ -76,7 +76,7 @@ class Linearised:
 def gmres(
     multiply: Any, precondition: Any, right: NDArray[Any], tolerance: float, limit: int = 200
 ) -> tuple[NDArray[Any], int]:
-    """Solution of the linearised equations by GMRES (Y. Saad, M. H. Schultz 1986), and its iterations.
+    """For the linearised film, a solution by GMRES (Y. Saad, M. H. Schultz 1986), and its iterations.
 
     Raises ArithmeticError if `limit` iterations do not reach |residual| ≤ tolerance |right|.
     """

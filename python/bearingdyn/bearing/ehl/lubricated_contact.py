@@ -161,7 +161,7 @@ def solve(
     inlet: float | None = None,
     accuracy: float = 0.01,
 ) -> SolvedContact:
-    """Film of a lubricated contact in SI units under a load, and its answer to a small harmonic approach.
+    """Lubricated contact in SI units under a load, solved: film, and answer to a small harmonic approach.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def solve(
 def look_up(
     contact: PointContact, lubricant: Lubricant, F: float, us: float, temperature: float
 ) -> LubricatedContact:
-    """A lubricated contact in SI units under a load, looked up in the table in microseconds.
+    """Lubricated contact in SI units under a load, from the table in microseconds.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ _NO_PIEZO = 1e-6  # L at which the formula of the film is that of an isoviscous 
 
 @dataclass(frozen=True)
 class Lookup(Figured):
-    """Figures of a contact looked up in the table, and its answer over frequency."""
+    """Result of a table lookup: figures of a contact, and its answer over frequency."""
 
     M: float
     L: float
@@ -135,7 +135,7 @@ def table_ends(D: float) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def loads_between(D: float) -> tuple[float, float]:
-    """Least and largest M that can be looked up in the table for D."""
+    """Range of M for a table lookup at D."""
     log_D = math.log(D)
     low, high = _pieces().ends[0]
     # x is linear in ln M

@@ -29,7 +29,7 @@ from typing import Literal, NamedTuple
 
 from bearingdyn.bearing.rating.iso_ratings import radial_and_axial, warn_of_overload
 from bearingdyn.checks import nonnegative, one_of, positive, require
-from bearingdyn.magnitude import check_speed_value, plausible
+from bearingdyn.plausible_ranges import check_speed_value, plausible
 
 FrictionModel = Literal["palmgren", "four-term"]
 Supply = Literal["oil mist", "oil bath", "oil jet", "grease"]

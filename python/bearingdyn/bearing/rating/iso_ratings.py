@@ -16,9 +16,9 @@ import numpy as np
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.hertz import race_contact
 from bearingdyn.checks import nonnegative, positive, require, whole
-from bearingdyn.magnitude import plausible
 from bearingdyn.material import Elastic
 from bearingdyn.notice import BearingWarning, UnusualMagnitude, warn
+from bearingdyn.plausible_ranges import plausible
 
 STATIC_STEEL = Elastic(207e9, 0.3, 7850.0)
 """Steel of the ratings of ISO 76."""

@@ -29,7 +29,7 @@ class Races(NamedTuple):
 
 
 def ratings_of(bearing: BallBearing) -> Ratings:
-    """Ratings of a bearing for its life: C by ISO 281 and C0 by ISO 76, N.
+    """For the life of a bearing, its ratings C by ISO 281 and C0 by ISO 76, N.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def with_arm(bearing: BallBearing, arm: Arm) -> BallBearing:
 
 
 def loads_under(bearing: BallBearing, load: ArrayLike, *, arm: Arm = "mean", angle: float = 0.0) -> Array:
-    """For the life of one load, ball loads (Z,), N, in the equilibrium under it, (6,), N and N m.
+    """For the life under one load (6,), N and N m: loads of the balls (Z,), N, in its equilibrium.
 
     Parameters
     ----------

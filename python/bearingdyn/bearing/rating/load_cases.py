@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY
 from bearingdyn.bearing.rating.iso_ratings import check_given
 from bearingdyn.bearing.rating.life import Arm, race_capacities, ratings_of, with_arm
 from bearingdyn.checks import instance, number, real
+from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.types import Array
 
 
@@ -77,6 +79,11 @@ def load_cases(
     ArithmeticError
         For the first load without an equilibrium.
 
+    Warns
+    -----
+    BearingWarning
+        Once, where contact pressures are above 4.2 GPa (ISO 76): names the worst case and counts the others.
+
     Examples
     --------
     >>> import numpy as np
@@ -118,11 +125,20 @@ def load_cases(
     q = np.column_stack([z[:, 0], z[:, 1], z[:, 2], z[:, 4] / R, -z[:, 3] / R, np.zeros(len(z))])
     peak = Q.max(axis=1, initial=0.0)
     pressure = max(c.pressure(1.0) for c in (held.inner_contact, held.outer_contact)) * np.cbrt(peak)
+    over = np.flatnonzero(pressure > STATIC_PRESSURE)
+    if over.size:
+        worst = int(pressure.argmax())
+        more = f", and {over.size - 1} more cases above it" if over.size > 1 else ""
+        warn(
+            f"loads[{worst}] is {f[worst].tolist()}: {pressure[worst] / 1e9:.3g} GPa in its worst contact, "
+            f"over 4.2 GPa (ISO 76){more}; the bearing's static radial rating is {held.static_rating:.3g} N",
+            BearingWarning,
+        )
     return LoadCases(q, Q, pressure, lives(held, Q, Q, rating))
 
 
 def lives(bearing: BallBearing, inner: Array, outer: Array, C: float) -> Array:
-    """Lives (m,) of many load cases, million revolutions, from the loads of the balls (m, Z), N.
+    """Load cases' lives (m,), million revolutions, from the loads of the balls (m, Z), N.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from bearingdyn.bearing.rating.iso_ratings import warn_of_overload
 from bearingdyn.checks import meant, nonnegative, number, positive, require
-from bearingdyn.magnitude import check_speed_value, plausible
+from bearingdyn.plausible_ranges import check_speed_value, plausible
 
 LEAST_KAPPA = 0.1
 """Viscosity ratio below which ISO 281 knows no a_ISO."""
@@ -224,7 +224,7 @@ def modified_life(
 
 
 def in_hours(revolutions: float, speed: float) -> float:
-    """Modified or basic life in hours, from million revolutions and a speed in rad/s; inf at rest.
+    """Modified life in hours, from million revolutions and a speed in rad/s; inf at rest.
 
     Parameters
     ----------
@@ -238,7 +238,7 @@ def in_hours(revolutions: float, speed: float) -> float:
 
 
 class Phase(NamedTuple):
-    """One phase of a duty cycle, for its equivalent modified life."""
+    """A phase of a duty cycle, for the modified life of the whole."""
 
     share: float
     """Of the time, 0 to 1."""

@@ -22,7 +22,7 @@ CURRENT, SEPARABLE = "current", "separable"
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Deformed:
-    """Deformed state of m elements with q integration points each, and what one step of it needs.
+    """Deformed elements (m) with q integration points each, and what one step needs of them.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ LEAST_VOLUME = 0.05  # ratio of areas or volumes at a point below which a trial 
 
 
 class State(Protocol):
-    """A static state at finite strain: a deformed body."""
+    """What a static balance asks of a body at finite strain."""
 
     @property
     def volume_ratio(self) -> float:

@@ -108,7 +108,7 @@ def _entries(path: Path) -> tuple[Index | None, Index, Array]:
 
 
 def read_nodes(path: str | Path) -> dict[int, tuple[float, float, float]]:
-    """Read the positions in all *NODE blocks of an input file of Abaqus or CalculiX (.inp).
+    """Matrix files of Abaqus or CalculiX: the positions in all *NODE blocks of their input file (.inp).
 
     *INCLUDE is followed.
 

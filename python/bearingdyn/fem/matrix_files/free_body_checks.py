@@ -93,7 +93,7 @@ def check_matrices(
 def checked_files(
     files: Sequence[str | Path], K: Any, M: Any, points: Points | None, **check: Any
 ) -> FEMatrices:
-    """Check what was read from files, as `check_matrices` does; its errors name the files."""
+    """Check matrices that files gave, a free body's, as `check_matrices` does; errors name the files."""
     try:
         return check_matrices(K, M, points, **check)
     except ValueError as error:

@@ -35,7 +35,7 @@ _NO_LETTER = re.compile(rb"(?<=[\d.])(?=[+-])")  # Fortran leaves the letter out
 
 @dataclass(frozen=True)
 class Form:
-    """What each line of a text table is.
+    """Text table of matrices: what each of its lines is.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ SIDES = {
 
 @dataclass
 class NumberSet:
-    """A set of an Abaqus assembly: numbers, alone and from first to last; other sets (instance, name)."""
+    """Abaqus assembly's set of numbers, alone and from first to last; other sets as (instance, name)."""
 
     numbers: list[int] = field(default_factory=list)
     ranges: dict[range, None] = field(default_factory=dict)

@@ -66,7 +66,7 @@ def finished(
     drop_unconnected: bool,
     largest: float,
 ) -> SolidMesh:
-    """A raw mesh finished: in m, second-order and checked; the arguments are those of `read_mesh`."""
+    """A raw mesh made into a SolidMesh: in m, second-order and checked."""
     positive("scale", scale, "it must be the length of the file's unit in m, as 1e-3 for mm")
     points = scale * raw.points
     if not raw.cells:

@@ -13,7 +13,7 @@ from bearingdyn.fem.mesh_files.nastran import read_bdf
 from bearingdyn.fem.mesh_files.raw_mesh import finished
 from bearingdyn.fem.mesh_files.vtk import read_with_meshio
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
-from bearingdyn.magnitude import LARGEST_BODY
+from bearingdyn.plausible_ranges import LARGEST_BODY
 
 READERS = {".inp": read_inp, ".bdf": read_bdf, ".nas": read_bdf, ".unv": read_unv}
 OTHERS = {".dat": "Nastran or Ansys", ".fem": "OptiStruct", ".med": "Salome", ".cdb": "Ansys"}

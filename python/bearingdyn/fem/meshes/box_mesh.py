@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.fem.meshes.patches import with_kind
 from bearingdyn.fem.meshes.solid_element import HEX20
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, second_order
-from bearingdyn.magnitude import plausible
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 SIDES = ("x-", "x+", "y-", "y+", "z-", "z+")

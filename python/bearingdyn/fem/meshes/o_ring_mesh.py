@@ -23,7 +23,7 @@ def o_ring_mesh(
     around: int = 24,
     element: str = "hex27",
 ) -> SolidMesh:
-    """An O-ring about z, or a segment of it, at rest between a shaft and a bore.
+    """Mesh of an O-ring about z, or a segment of it, at rest between a shaft and a bore.
 
     Surfaces: "inner" and "outer", the bands; of a segment also "start" and "end".
 

@@ -119,7 +119,7 @@ FACE_INTERPOLATION = {6: "ElementTriP2", 8: "ElementQuadS2", 9: "ElementQuad2"}
 
 
 def by_size(faces: Index) -> list[tuple[Index, int]]:
-    """Faces of solid elements parted into triangles and quadrilaterals.
+    """Solid elements' faces parted into triangles and quadrilaterals.
 
     Parameters
     ----------

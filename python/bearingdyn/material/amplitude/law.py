@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import number, positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.material.amplitude.report import PayneFit
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.checks import named, positive, require, two
-from bearingdyn.magnitude import check_bulk
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification.bounds import Limits
@@ -33,6 +32,7 @@ from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shear_from_tension import shear_modulus
 from bearingdyn.material.superposition import MasterCurve, one_curve
 from bearingdyn.notice import CoarseModel, TensionAsShear, warn
+from bearingdyn.plausible_ranges import check_bulk
 from bearingdyn.types import Array
 
 _MOST = 20  # branches tried by n = "auto"
@@ -182,7 +182,7 @@ def fit_dense(
     density: float,
     per_decade: int = 12,
 ) -> Maxwell:
-    """Dense relaxation spectrum of a master curve: spring and branches at times equispaced in the logarithm.
+    """Fit of a master curve by a dense spectrum: spring, branches at times equispaced in the logarithm.
 
     Non-negative least squares of the deviations of G′ and tan δ, to first order; branches without strength
     are left out. No Maxwell model with non-negative strengths does much better; `fit` says how well, without

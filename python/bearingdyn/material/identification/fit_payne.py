@@ -11,7 +11,8 @@ import scipy
 
 from bearingdyn.checks import positive
 from bearingdyn.material.amplitude import Payne, PayneFit
-from bearingdyn.material.reading import StrainSweep, in_shear, read_strain_sweep
+from bearingdyn.material.reading import StrainSweep, read_strain_sweep
+from bearingdyn.notice import TensionAsShear, warn
 from bearingdyn.types import Array, Complex
 
 _RISE = 0.01  # of G′ from a smaller strain to a larger one: noise of an instrument, and no more
@@ -79,7 +80,7 @@ def fit_payne(
         sweep = read_strain_sweep(sweep, mode)  # type: ignore[arg-type]
     gamma_r = positive("strain_of_isotherms", strain_of_isotherms, "it must be a fraction, as 0.0015")
     sweep.check_area(area)
-    sweep = in_shear(sweep)
+    sweep = _in_shear(sweep)
     low = 0.0 if lowest_trusted is None else positive("lowest_trusted", lowest_trusted)
     keep = sweep.strain >= low * (1 - 1e-9)
     gamma, G = sweep.strain[keep], (sweep.storage + 1j * sweep.loss)[keep]
@@ -239,3 +240,15 @@ def _open_range(found: Any, fall: float, freedom: int) -> tuple[float, float, _F
     over = np.flatnonzero(costs[k:] > limit)
     high = np.inf if over.size == 0 else edge(float(values[k + over[0]]), float(values[k + over[0] - 1]))
     return low, high, laws[k]
+
+
+def _in_shear(sweep: StrainSweep) -> StrainSweep:
+    """The strain sweep in shear; a warning says so where it was in tension."""
+    if sweep.mode == "tension":
+        warn(
+            f"{sweep.source}: a strain sweep in tension is turned into shear by G* = E*/3 and γ = √3 ε: "
+            f"strain of {100 * sweep.strain[0]:.3g} to {100 * sweep.strain[-1]:.3g} % becomes "
+            f"{100 * np.sqrt(3) * sweep.strain[0]:.3g} to {100 * np.sqrt(3) * sweep.strain[-1]:.3g} %",
+            TensionAsShear,
+        )
+    return sweep.to_shear()

@@ -78,7 +78,7 @@ def fit_relaxation(
 
 
 def warn_of_fewer(n: int | Literal["auto"], found: int) -> None:
-    """Warn that a fit has fewer branches than the n asked for.
+    """Warn of a fit, to relaxation data or others, that has fewer branches than the n asked for.
 
     Warns
     -----

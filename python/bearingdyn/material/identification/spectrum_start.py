@@ -60,7 +60,7 @@ def merged_spectrum(points: Points, limits: Limits) -> tuple[Array, Array]:
 
 
 def most_useful(points: Points, fit: Polished, limits: Limits) -> tuple[float, Array, Array]:
-    """Start with one more term: what a polished fit would gain by a branch, spring or dashpot more.
+    """Spectrum to start from, one term more: what a polished fit would gain by a branch, spring or dashpot.
 
     The gain is a share of the sum of squares, to first order, the fit's own parameters following; zero
     where no addition lowers it.

@@ -7,13 +7,12 @@ A file passes through once: `source` makes numbered rows of it, `block` finds th
 from bearingdyn.material.reading.errors import HeaderError, ReadingError
 from bearingdyn.material.reading.read_dma import read_dma
 from bearingdyn.material.reading.sample_dma import sample_dma_path
-from bearingdyn.material.reading.strain_sweep import StrainSweep, in_shear, read_strain_sweep
+from bearingdyn.material.reading.strain_sweep import StrainSweep, read_strain_sweep
 
 __all__ = [
     "HeaderError",
     "ReadingError",
     "StrainSweep",
-    "in_shear",
     "read_dma",
     "read_strain_sweep",
     "sample_dma_path",

@@ -273,7 +273,7 @@ def names_shear(text: str) -> bool:
 
 
 def number_of(cell: str) -> float:
-    """The number in a cell of a column, decimal comma or point; ValueError if there is none."""
+    """Column cells: the number in one, decimal comma or point; ValueError if there is none."""
     text = cell.strip().strip('"').replace("−", "-")
     if "," in text and "." not in text:
         text = text.replace(",", ".")
@@ -287,7 +287,7 @@ def number_of(cell: str) -> float:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell of a column holds a number."""
+    """Column cells: whether one holds a number."""
     try:
         number_of(cell)
     except ValueError:

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.checks import number, require
-from bearingdyn.magnitude import SOFTEST
 from bearingdyn.material.dma import DMAData, Mode, UnitError, check_range
 from bearingdyn.material.isotherms import first_unsorted, group_isotherms
 from bearingdyn.material.reading.errors import ReadingError
@@ -21,6 +20,7 @@ from bearingdyn.material.reading.source import read_source, source_of
 from bearingdyn.material.reading.table import NO_LETTER, Table, read_table
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.notice import AssumedMeaning, UnlikelyModulus, warn
+from bearingdyn.plausible_ranges import SOFTEST
 from bearingdyn.types import Index
 
 _AMPLITUDE = 1.5  # ratio of two strains that are not meant to be the same

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import positive, require
-from bearingdyn.magnitude import plausible
 from bearingdyn.material.dma import Mode
 from bearingdyn.material.reading.block import Block, cell_at
 from bearingdyn.material.reading.columns import is_number, number_of, title_of
@@ -19,7 +18,8 @@ from bearingdyn.material.reading.errors import ReadingError
 from bearingdyn.material.reading.request import Request
 from bearingdyn.material.reading.source import Row, read_source, source_of
 from bearingdyn.material.reading.table import TableReader
-from bearingdyn.notice import AssumedMeaning, TensionAsShear, warn
+from bearingdyn.notice import AssumedMeaning, warn
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
@@ -291,15 +291,3 @@ def _column(
         return np.array(values) * (1e-2 if percent else 1.0) * half
     named = re.split(r"[\s_\[(]+", text.rstrip(")]"))[-1].lower() if not unit else unit.lower()
     return np.array(values) * _FORCE_UNITS.get(named if named in _FORCE_UNITS else "", 1.0)
-
-
-def in_shear(sweep: StrainSweep) -> StrainSweep:
-    """The strain sweep in shear; a warning says so where it was in tension."""
-    if sweep.mode == "tension":
-        warn(
-            f"{sweep.source}: a strain sweep in tension is turned into shear by G* = E*/3 and γ = √3 ε: "
-            f"strain of {100 * sweep.strain[0]:.3g} to {100 * sweep.strain[-1]:.3g} % becomes "
-            f"{100 * np.sqrt(3) * sweep.strain[0]:.3g} to {100 * np.sqrt(3) * sweep.strain[-1]:.3g} %",
-            TensionAsShear,
-        )
-    return sweep.to_shear()

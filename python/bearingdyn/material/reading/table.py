@@ -407,7 +407,7 @@ class TableReader:
 
 
 def read_table(sources: Iterable[Source], request: Request) -> Table:
-    """Read the table of the first sheet that has one; if none has, the error of the last."""
+    """Table of the first sheet that has one, read; if none has, the error of the last."""
     sheets = list(sources)
     last: ReadingError | None = None
     for k, source in enumerate(sheets):

@@ -148,7 +148,7 @@ def _median(ratio: Array) -> float:
 
 
 def summary(found: tuple[Suspect, ...]) -> str:
-    """How many points fail Kramers' and Kronig's relations and why, in words."""
+    """Kramers' and Kronig's relations in words: how many points fail, and why."""
     parts = []
     for reason in ("negative modulus", "fixture resonance"):
         those = [s for s in found if s.reason == reason]

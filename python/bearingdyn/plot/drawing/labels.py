@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.application import GROUND, Place
-from bearingdyn.plot.drawing.machine import Machine
+from bearingdyn.plot.drawing.shown_machine import Machine
 from bearingdyn.plot.drawing.words import designation
 from bearingdyn.types import Array
 

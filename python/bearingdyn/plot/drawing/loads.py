@@ -17,7 +17,7 @@ from bearingdyn.application import (
     SampledLoad,
     Unbalance,
 )
-from bearingdyn.plot.drawing.machine import Machine
+from bearingdyn.plot.drawing.shown_machine import Machine
 from bearingdyn.types import Array
 from bearingdyn.units import PREFIXES
 
@@ -43,7 +43,7 @@ def value(x: float, unit: str) -> str:
 
 
 def course(load: Load) -> str:
-    """What a load's value is multiplied by in time, in words."""
+    """Words beside a drawn load: what its value is multiplied by in time."""
     if isinstance(load, HarmonicLoad):
         return f" cos at {load.frequency:g} Hz"
     if isinstance(load, SampledLoad):

@@ -10,7 +10,7 @@ import numpy as np
 from bearingdyn.application import Application
 from bearingdyn.parts import Outlined
 from bearingdyn.plot.arguments import figure, one
-from bearingdyn.plot.drawing.machine import placed
+from bearingdyn.plot.drawing.shown_machine import placed
 from bearingdyn.types import Array
 
 

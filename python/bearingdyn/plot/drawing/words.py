@@ -15,8 +15,8 @@ Row = tuple[str, str, str]
 
 
 def designation(bearing: BallBearing) -> tuple[str, bool]:
-    """The designation of the catalogue's bearing in this envelope, "" where there is none; and whether the
-    balls are the catalogue's too."""
+    """Words for a drawn bearing: the catalogue's designation in this envelope, "" where there is none; and
+    whether the balls are the catalogue's too."""
     angular = bearing.contact_angle is not None
     same = {
         name: (entry.Z, entry.Dw, entry.Dpw, entry.contact_angle)

@@ -17,7 +17,7 @@ CoreChannel: TypeAlias = tuple[int, Array | None, int, int]
 
 
 def channel_of(system: System, name: str) -> tuple[CoreChannel, str]:
-    """A channel by its name as the core numbers channels: kind, row, bearing and index; and its unit.
+    """A recordable channel by its name, as the core numbers them: kind, row, bearing, index; and its unit.
 
     Raises
     ------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def recorded(result: object) -> None:
-    """Check recorded channels, what `transient` returned; ValueError for anything else."""
+    """Check the record of a march, what `transient` returned; ValueError for anything else."""
     table("result", result, ["record", "channel", "time"], "transient")
 
 
@@ -28,10 +28,10 @@ def signal_of(result: xarray.Dataset, channel: str) -> Array:
 
 
 def unit_of(result: xarray.Dataset, channel: str) -> str:
-    """Unit of a recorded channel."""
+    """Unit of a channel in a march's record."""
     return str(result["unit"].sel(channel=channel).item())
 
 
 def sampling_time(result: xarray.Dataset) -> float:
-    """Time between two samples of recorded channels, s."""
+    """Time between two samples of a march's record, s."""
     return float(result.attrs["dt"]) * int(result.attrs["decimate"])

@@ -25,7 +25,7 @@ from bearingdyn.material import (
 )
 from bearingdyn.plot.drawing.bearing_section import draw_bearing
 from bearingdyn.plot.drawing.loads import course, value
-from bearingdyn.plot.drawing.sheet import draw
+from bearingdyn.plot.drawing.machine_drawing import draw
 from bearingdyn.plot.drawing.words import bearing_words, parts_list
 from bearingdyn.plot.frame import finish, style
 from bearingdyn.units import mm
@@ -293,7 +293,7 @@ def elastic_html(material: Elastic) -> str:
 
 
 def master_html(curve: MasterCurve) -> str:
-    """The page of a master curve: its points, the law of its shifts, and what is doubted of it."""
+    """A master curve in a notebook: its points, the law of its shifts, and what is doubted of it."""
     with style():
         figure, ax = _figure(5.6, 2.8)
         ax.loglog(curve.frequency, curve.storage / 1e6, ".", markersize=3, label="storage")

@@ -27,7 +27,7 @@ LEFT_OUT = {("Maxwell", "fit"), ("Payne", "fit")}
 
 @lru_cache(maxsize=1)
 def kinds() -> dict[str, type]:
-    """All kinds of things that may stand in a model file, by name: the dataclasses made public."""
+    """Kinds of tables in a model file's TOML, by name: the dataclasses made public."""
     found = {}
     for room in ROOMS:
         for name in room.__all__:
@@ -144,7 +144,7 @@ class Shelf:
 
 
 def dotted_last(key: Key) -> str:
-    """The last word of a model file's key that names a kind, for a message."""
+    """Last word of a TOML table's dotted key, for a message."""
     return next((str(k) for k in reversed(key) if isinstance(k, str)), "it")
 
 
@@ -153,7 +153,7 @@ def _tupled(value: Any) -> Any:
 
 
 def written(value: Any, name_of: Callable[[Any], str], field: str = "value") -> Any:
-    """An object of one of the kinds as TOML's own values; a material becomes its name.
+    """TOML tables' value of an object; a material becomes its name.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def written(value: Any, name_of: Callable[[Any], str], field: str = "value") -> 
 def table_of(
     value: Any, name_of: Callable[[Any], str], field: str, expected: str | None = None
 ) -> dict[str, Any]:
-    """An object as a table of its kind in a model file: its type, and fields not at their default."""
+    """TOML table made of an object: its type, and fields not at their default."""
     name = type(value).__name__
     if kinds().get(name) is not type(value):
         raise ValueError(

@@ -13,7 +13,7 @@ from bearingdyn.plot.arguments import figure, one
 from bearingdyn.plot.drawing.bearing_section import draw_bearing, fine
 from bearingdyn.plot.drawing.labels import TEXT, axes_glyph, balloons, dimensions, place_names
 from bearingdyn.plot.drawing.loads import draw_load
-from bearingdyn.plot.drawing.machine import Machine, machine, surface
+from bearingdyn.plot.drawing.shown_machine import Machine, machine, surface
 from bearingdyn.plot.drawing.supports import damper, ground, spring
 from bearingdyn.plot.drawing.words import parts_list
 from bearingdyn.plot.frame import style
