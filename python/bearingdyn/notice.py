@@ -397,6 +397,16 @@ class ClippedSound(Notice):
     """
 
 
+class OilAtOtherSpeed(Notice):
+    """Notice class: a lubricated bearing is asked at another speed than that of its films.
+
+    When: a march, a response, modes or a steady motion at a speed, not zero, that is more than 25 % above or
+    below that of a bearing's `lubrication`; films and the damping of contacts are constants of that speed.
+
+    Remedy: `lubrication=OilSupply(..., speed=)` of the speed asked; for a range of speeds, one of each.
+    """
+
+
 class ChangedFunction(Notice):
     """Notice class: processes of a study computed another function than the one at hand.
 
