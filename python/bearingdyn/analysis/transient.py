@@ -19,7 +19,7 @@ from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.step_size import step_error_made
 from bearingdyn.application import Application
-from bearingdyn.checks import instance, items, name_list, named, number, one_speed, whole
+from bearingdyn.checks import instance, items, name_list, named, number, one_speed, truth, whole
 from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import Contacts, System
@@ -208,6 +208,8 @@ def transient(
         )
     if resume is not None and (places or motion is not None):
         raise ValueError("resume and initial both set the state at the start; give one of them")
+    filter, audit = truth("filter", filter), truth("audit", audit)
+    check_step, check_unique = truth("check_step", check_step), truth("check_unique", check_unique)
     speed = one_speed(speed, rpm)
     if isinstance(source, Application):
         source = equilibrium(source)

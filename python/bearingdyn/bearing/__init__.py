@@ -27,6 +27,7 @@ from bearingdyn.bearing.half_space import footprint_profile, half_space_orders
 from bearingdyn.bearing.hertz import PointContact, contact_modulus, resultant_deflection_coefficient
 from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness
 from bearingdyn.bearing.kernel import BearingKernel
+from bearingdyn.bearing.load_and_motion_checks import warn_of_lean
 from bearingdyn.bearing.load_distribution import LoadDistribution, load_distribution
 from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Lubricant, Walther
@@ -150,6 +151,7 @@ __all__ = [
     "samples_off",
     "shoulder",
     "spall",
+    "warn_of_lean",
     "waviness_lines",
     "without_spin",
 ]
