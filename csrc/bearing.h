@@ -12,8 +12,11 @@ struct bd_bearing {
     const double *spacing_cos, *spacing_sin; /* (balls) of 2 pi j/Z */
     const double *absent;              /* (balls) 0, or a gap no ball closes in padding lanes */
     const double *wave_cos, *wave_sin; /* (n_waves x balls) of order * 2 pi j/Z */
-    /* (BD_FILM_CELLS x BD_FILM_POWERS) c in a cell of the film law, by rising powers of the share of the cell; or NULL */
+    /* (BD_FILM_CELLS x BD_FILM_POWERS) c, or b, in a cell of the film's laws, by rising powers of the share of the cell;
+     * or NULL */
     const double *film;
+    size_t echo; /* of its films in a state's echoes */
+    int weight;  /* of its first echo in bd_work.echoes */
 };
 
 enum { BD_FILM_POWERS = 4 };
@@ -37,7 +40,14 @@ struct bd_bearing_work {
     /* (balls) a ball at the jump of its force (grazing.h): its place, the force in the jump, and what moves it */
     double *place, *inside, *pull;
     bool holds; /* whether the three count */
+    bool led;   /* whether the basis is another bearing's, which turns it (abreast.c) */
+    /* (balls) of the carried law: eta without the rate at the step's end, and b ddelta/dt there */
+    double *carried, *pressed;
+    double fresh; /* eta per b ddelta/dt at the step's end; 1 where all has been so for long */
 };
+
+/* Whether a contact has a table over w. */
+bool bd_has_film(const bd_contact *contact);
 
 /* Doubles of the constant arrays (spacing and absent), and their fill. */
 size_t bd_bearing_constants(const bd_bearing_data *data);
@@ -45,6 +55,10 @@ void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *
 
 /* Carve a work out of bd_bearing_work_size doubles, zeroed. */
 void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, double *memory);
+
+/* Takes the basis from another bearing whose balls stand alike, or (NULL) its own again. */
+void bd_bearing_lead(const bd_bearing *bearing, bd_bearing_work *work,
+                     const bd_bearing_work *leader);
 
 /* Whether a bearing has no waves, pits or unequal balls; its shifts are then zero for ever. */
 bool bd_bearing_perfect(const bd_bearing *bearing);

@@ -1,6 +1,6 @@
 /* kernels.h - inside the core: the hot loops, once per instruction set.
  *
- * ehl.c, balls.c, step.c, exact.c, receptance.c, join.c and changed_layers.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
+ * ehl.c, balls.c, step.c, abreast_step.c, abreast_bearings.c, exact.c, receptance.c, join.c and changed_layers.c are compiled with BD_ISA (a name) and BD_WIDTH (doubles per register); their
  * functions carry the name as a suffix, and each set ends in one table of pointers. Nothing else of
  * the core depends on the instruction set. */
 #ifndef BD_KERNELS_H
@@ -59,6 +59,16 @@ typedef struct bd_kernels {
     int (*exact_commit)(const bd_model *model, bd_work *work, bd_state *state);
     void (*exact_shares)(const bd_model *model, const bd_exact *exact, const double *g,
                          double *shares);
+    /* abreast_step.c: predict and observe of marches side by side; then, as the halves of commit, what becomes of them
+     * (returned: a bit for each case that would not be finite), and that as the states */
+    void (*abreast_predict)(bd_abreast *abreast);
+    unsigned (*abreast_complete)(bd_abreast *abreast);
+    void (*abreast_commit)(bd_abreast *abreast);
+    /* abreast_bearings.c: forces of cases (bits) by the inverse that each has, in up to patience + 1 evaluations.
+     * Returned: bits of those that were found; of them the residual and the evaluations */
+    unsigned (*abreast_find)(bd_abreast *abreast, unsigned cases, int patience,
+                             const double *tolerance, double *residual, int *iterations);
+    void (*abreast_keep_peaks)(bd_abreast *abreast);
 } bd_kernels;
 
 /* The kernels of an instruction set, or NULL where this build or machine lacks it. */

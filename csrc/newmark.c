@@ -13,6 +13,7 @@
 #include "kernels.h"
 #include "loads.h"
 #include "newton.h"
+#include "record.h"
 #include "softening.h"
 #include "state.h"
 
@@ -30,14 +31,12 @@ static const double slow = 0.1;
 static bd_status solve_step(const bd_model *model, bd_work *work, bd_state *state,
                             bd_report *report)
 {
-    const size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
+    const size_t n = (size_t)model->n_padded;
     const bool bearings = model->n_bearings > 0;
     const bool factored_here = work->reference == work->turn.speed;
     double before = INFINITY;
 
-    /* Newton starts from the parabola through the last three forces */
-    for (size_t k = 0; k < m; k++)
-        work->guess[k] = 3.0 * (state->g[k] - state->g_before[k]) + state->g_before[m + k];
+    bd_guess_bearings(model, work, state);
     if (!work->drift) {
         if (!bearings)
             return BD_OK;
@@ -69,51 +68,6 @@ static bd_status solve_step(const bd_model *model, bd_work *work, bd_state *stat
 
 /* ---------------------------------------------------------------- march */
 
-static void record_row(const bd_model *model, const bd_work *work, bd_state *state, double *row)
-{
-    const double *const motion[] = {state->x, state->v, state->a};
-    if (work->exact && work->exact->physical)
-        bd_exact_motion(model, work, state);
-    for (int c = 0; c < model->n_channels; c++) {
-        const bd_channel *channel = &model->channels[c];
-        double value = 0.0;
-        switch (channel->kind) {
-        case BD_CHANNEL_DISPLACEMENT:
-        case BD_CHANNEL_VELOCITY:
-        case BD_CHANNEL_ACCELERATION:
-            if (work->exact) {
-                value = bd_exact_row(model, work, state, c);
-                break;
-            }
-            for (int i = 0; i < model->n_padded; i++)
-                value += channel->row[i] * motion[channel->kind][i];
-            break;
-        case BD_CHANNEL_FORCE:
-            value = state->g[model->bearing_slot[channel->bearing] + channel->index];
-            break;
-        case BD_CHANNEL_BALL:
-            value = work->bearings[channel->bearing].force[channel->index];
-            break;
-        case BD_CHANNEL_LOADED:
-            for (int j = 0; j < model->bearings[channel->bearing].data.n_balls; j++)
-                value += work->bearings[channel->bearing].force[j] > 0.0 ? 1.0 : 0.0;
-            break;
-        case BD_CHANNEL_CONTACT_LOSS:
-            value = bd_contact_loss(&model->bearings[channel->bearing].data,
-                                    &work->bearings[channel->bearing]);
-            break;
-        case BD_CHANNEL_BRANCH_LOSS:
-            value = bd_branch_loss(&model->layers[channel->index], state) +
-                    bd_softening_loss(&model->layers[channel->index], state);
-            break;
-        case BD_CHANNEL_STRAIN:
-            value = bd_softening_strain(&model->layers[channel->index], state);
-            break;
-        }
-        row[c] = value;
-    }
-}
-
 double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double *flat, bool anew)
 {
     bd_state state = bd_state_view(model, flat);
@@ -128,29 +82,6 @@ double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double
     clock->reference_set = true;
     bd_clock_keep(&state);
     return clock->reference;
-}
-
-/* A step in which a bearing runs off its shoulder; the first of them is kept. */
-static void count_open_sides(const bd_model *model, const bd_work *work, double t,
-                             bd_report *report)
-{
-    int b = 0;
-    while (b < model->n_bearings && !bd_bearing_runs_off(&model->bearings[b], &work->bearings[b]))
-        b++;
-    if (b == model->n_bearings)
-        return;
-    if (report->open_steps++ == 0) {
-        report->open_t = t;
-        report->open_bearing = b;
-    }
-}
-
-double bd_peak_load(const bd_model *model, const bd_work *work, int bearing)
-{
-    double largest = 0.0;
-    for (int j = 0; j < model->bearings[bearing].data.n_balls; j++)
-        largest = fmax(largest, work->bearings[bearing].peak[j]);
-    return largest;
 }
 
 long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work, double *flat,
@@ -193,6 +124,7 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         /* the bearings, on their own few numbers */
         if (model->n_bearings > 0)
             bd_turn_bearings(model, work);
+        bd_echoes_trial(model, work, &state);
         report->status = solve_step(model, work, &state, report);
         if (report->status != BD_OK)
             break;
@@ -204,9 +136,10 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
             break;
         }
         state.clock.steps++;
+        bd_echoes_commit(model, work, &state);
         if (model->n_softening > 0)
             bd_softening_step(model, work, &state);
-        count_open_sides(model, work, t, report);
+        bd_count_open_sides(model, work, t, report);
         for (int b = 0; b < model->n_bearings; b++)
             work->kernels->keep_peaks(&model->bearings[b], &work->bearings[b]);
         if (scheme->audit && work->exact)
@@ -215,7 +148,7 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
             bd_energy_step(model, work, &state);
 
         if (state.clock.steps % decimate == 0) {
-            record_row(model, work, &state, record + rows * model->n_channels);
+            bd_record_row(model, work, &state, record + rows * model->n_channels);
             rows++;
         }
     }

@@ -13,8 +13,6 @@
 #include "grazing.h"
 #include "kernels.h"
 
-/* A frozen Newton matrix that needs more evaluations than this is replaced. */
-enum { PATIENCE = 3 };
 /* From here on corrections are halved; where a ball hops across the jump of its force, balls are held instead. */
 enum { GRAZING = 10 };
 /* Corrections with held balls: so many in which all that must move do, then one ball at a time (the first, which
@@ -28,7 +26,8 @@ void bd_turn_bearings(const bd_model *model, bd_work *work)
     for (int b = 0; b < model->n_bearings; b++) {
         const bd_bearing *bearing = &model->bearings[b];
         const double psi = bearing->data.angle0 + bearing->data.cage_ratio * work->turn.angle;
-        work->kernels->turn(bearing, &work->bearings[b], psi);
+        if (!work->bearings[b].led)
+            work->kernels->turn(bearing, &work->bearings[b], psi);
         if (!bd_bearing_perfect(bearing)) {
             const double cage_speed = bearing->data.cage_ratio * work->turn.speed;
             const bd_bodies stand = bd_bearing_bodies(&bearing->data, psi, work->turn.angle);
@@ -50,6 +49,13 @@ void bd_force_bearings(const bd_model *model, bd_work *work)
             bd_soften_closing(&model->bearings[b].data, work->scheme.dt, &work->bearings[b],
                               (size_t)model->bearings[b].coefs, work->force + at);
     }
+}
+
+void bd_guess_bearings(const bd_model *model, bd_work *work, const bd_state *state)
+{
+    const size_t m = (size_t)model->coefs;
+    for (size_t k = 0; k < m; k++)
+        work->guess[k] = 3.0 * (state->g[k] - state->g_before[k]) + state->g_before[m + k];
 }
 
 /* Newton's matrix I + (beta dt^2 K + gamma dt C) W at the last evaluation, inverted.
@@ -195,7 +201,7 @@ static bd_status iterate(const bd_model *model, bd_work *work, bd_state *state, 
                 measure(model, work, &residual, &scale);
             }
         }
-        if (!converged && (!fresh || iteration >= PATIENCE)) {
+        if (!converged && (!fresh || iteration >= BD_PATIENCE)) {
             if (refresh(model, work)) {
                 report->bearing = worst_bearing(model, work);
                 return BD_SINGULAR;

@@ -1,4 +1,5 @@
 /* The linear algebra of one step; the order of the calls is in newmark.c. */
+#include "abreast.h"
 #include "balls.h"
 #include "changed_layers.h"
 #include "dense.h"
@@ -276,4 +277,9 @@ const bd_kernels BD_NAMED(bd_kernels) = {
     .exact_predict = BD_NAMED(bd_exact_predict),
     .exact_commit = BD_NAMED(bd_exact_commit),
     .exact_shares = BD_NAMED(bd_exact_shares),
+    .abreast_predict = BD_NAMED(bd_abreast_predict),
+    .abreast_complete = BD_NAMED(bd_abreast_complete),
+    .abreast_commit = BD_NAMED(bd_abreast_commit),
+    .abreast_find = BD_NAMED(bd_abreast_find),
+    .abreast_keep_peaks = BD_NAMED(bd_abreast_keep_peaks),
 };

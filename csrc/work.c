@@ -72,10 +72,12 @@ bd_work *bd_work_create(const bd_model *model)
     size_t bytes = (total + BD_LANES) * sizeof(double);
     work->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
     work->diagonal = calloc((size_t)model->n_blocks, sizeof *work->diagonal);
-    work->step_at = calloc((size_t)model->n_blocks, sizeof *work->step_at);
+    work->step_at = calloc((size_t)model->n_blocks + 1, sizeof *work->step_at);
     work->weights = calloc((size_t)model->branches + 1, sizeof *work->weights);
+    work->echoes = calloc((size_t)model->n_echoes + 1, sizeof *work->echoes);
     work->bearings = calloc((size_t)model->n_bearings + 1, sizeof *work->bearings);
-    if (!work->memory || !work->diagonal || !work->step_at || !work->weights || !work->bearings) {
+    if (!work->memory || !work->diagonal || !work->step_at || !work->weights || !work->echoes ||
+        !work->bearings) {
         bd_work_free(work);
         return NULL;
     }
@@ -95,6 +97,7 @@ bd_work *bd_work_create(const bd_model *model)
         work->step_at[b] = at;
         at += step_columns(model, &model->blocks[b]) * (size_t)model->blocks[b].padded;
     }
+    work->step_at[model->n_blocks] = at;
     return work;
 }
 
@@ -106,6 +109,7 @@ void bd_work_free(bd_work *work)
     free(work->step_at);
     free(work->diagonal);
     free(work->weights);
+    free(work->echoes);
     free(work->bearings);
     bd_profile_free(&work->profile);
     free(work->drift);
@@ -355,6 +359,7 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
             work->weights[layer->branch + i] =
                 bd_maxwell_weights(scheme->dt, layer->tau[i], layer->modulus[i]);
     }
+    bd_echoes_prepare(model, work);
     status = factor_blocks(model, lapack, false, work);
     if (status == BD_OK)
         join_bearings(model, work);

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "echoes.h"
 #include "model.h"
 #include "profile.h"
 
@@ -27,7 +28,7 @@ struct bd_work {
                        * C' = C + C_ve + speed G; where M and K' are diagonal, the first column is
                        * -K'/(M + beta dt^2 K') and the rest of the first n go unused */
     bool *diagonal;  /* (n_blocks) whether they are */
-    size_t *step_at; /* (n_blocks) where a block's columns start */
+    size_t *step_at; /* (n_blocks) where a block's columns start, and their end */
     double *SB;      /* S^-1 B^T: a column per padded coefficient */
     double *SP;      /* S^-1 p: two columns per load (cosine, sine) */
     double *W;       /* B S^-1 B^T: a column per padded coefficient */
@@ -35,6 +36,7 @@ struct bd_work {
         W_rate; /* of an exact step, where W is of z alone and both hold what in_x and in_v are for */
     bd_exact *exact;            /* or NULL */
     bd_branch_weights *weights; /* (branches) layer by layer */
+    bd_echo_weights *echoes;    /* (n_echoes) bearing by bearing */
 
     /* vectors of a step, padded */
     double *x, *v, *a;       /* predictor; a without the bearings, then with */

@@ -34,6 +34,7 @@ def make() -> None:
     drawn = (
         pictures.drawing,
         pictures.squeezed,
+        pictures.stiffness,
         pictures.ring,
         pictures.sound,
         pictures.steady,
@@ -45,6 +46,7 @@ def make() -> None:
     pictures.gallery(HERE / "gallery.md", STATIC)
     contact_figure.maps(STATIC / "contact_maps.png")
     contact_figure.damping(STATIC / "contact_damping.svg")
+    contact_figure.in_time(STATIC / "films_in_time.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import math
 import re
+import warnings
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -27,6 +31,30 @@ def squeezed(path: Path) -> None:
         ring = bd.Layer(r_inner=0.020, r_outer=0.024, width=0.012, material=rubber, recess=recess)
         bd.plot.squeezed_section(ring.assembled(squeeze=squeeze, inside=how, outside=how), ax=ax)
     figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def stiffness(path: Path) -> None:
+    """The page on how stiff a rubber is: effects by size, and the law of softening with its sweep."""
+    text = (Path(__file__).parent / "guide" / "stiffness.md").read_text("utf-8")
+    names: dict[str, Any] = {"__name__": "stiffness"}
+    with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for code in re.findall(r"^```python\n(.*?)^```$", text, re.S | re.M):
+            exec(compile(code, "stiffness.md", "exec"), names)
+    figure, axes = plt.subplots(2, 2, figsize=(11, 7.6), layout="constrained")
+    rows = names["ordered"][::-1]
+    for k, (_, low, high) in enumerate(rows):
+        axes[0, 0].barh(k, 100 * (high - low), left=100 * low, color=bd.plot.frame.COLOURS[0])
+    axes[0, 0].set_yticks(range(len(rows)), [name for name, _, _ in rows])
+    axes[0, 0].axvline(0.0, color="0.3", linewidth=0.8)
+    axes[0, 0].set_xlabel("change of the stiffness, %")
+    axes[0, 0].set_title("What one does not know, by size", loc="left", fontsize=10)
+    bd.plot.strain_softening(names["law"], ax=axes[0, 1])
+    bd.plot.layer_strain(names["layer"], names["motion"], ax=axes[1, 0])
+    bd.plot.frequency_response(names["levels"], "mass.centre.x", "mass.centre.x", ax=axes[1, 1])
+    axes[1, 1].set_title("A mass on the layer, by level", loc="left", fontsize=10, pad=20)
+    figure.savefig(path, dpi=100)
     plt.close(figure)
 
 

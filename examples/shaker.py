@@ -23,6 +23,7 @@ at 0.1 g.
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import math
 import sys
@@ -143,21 +144,54 @@ def measurement(grams: int, level: str = "0.1g") -> Measurement:
     return read_run(path, DATA / f"shaker_{grams}g.json", f"{grams} g")
 
 
+COLUMNS = ("freq_hz", "base_accel_ms2", "base_phase_rad", "mass_accel_ms2", "mass_phase_rad")
+DIMENSIONS = {
+    "mass": "mass_kg",
+    "discs": "mass_disks",
+    "width": "mass_width",
+    "thickness": "thickness_m",
+    "inner": "inner_diameter_m",
+    "outer": "outer_diameter_m",
+}
+
+
 def read_run(path: Path, rig_path: Path, name: str = "run") -> Measurement:
-    """A run of the shaker, and the rig it was of."""
-    said = json.loads(rig_path.read_text(encoding="utf-8"))
-    table = np.genfromtxt(path, delimiter=",", skip_header=1, usecols=range(1, 6))
-    frequency, base, base_phase, mass, mass_phase = table.T
+    """A run of the shaker, and the rig it was of; ValueError naming what is missing or makes no sense."""
+    try:
+        said = json.loads(rig_path.read_text(encoding="utf-8-sig"))
+        size = {k: float(said[key]) for k, key in DIMENSIONS.items()}
+        temperature = float(said["temperature"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(
+            f"{rig_path}: {error}; a rig has the numbers {[*DIMENSIONS.values(), 'temperature']}"
+        ) from None
+    if not all(v > 0 for v in size.values()) or not size["inner"] < size["outer"]:
+        raise ValueError(f"{rig_path}: {size}; masses and lengths must be positive, inner below outer, SI")
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file))
+    lacking = [c for c in COLUMNS if not rows or c not in rows[0]]
+    if lacking:
+        raise ValueError(f"{path}: no column {', '.join(lacking)}; a run has {', '.join(COLUMNS)}")
+    try:
+        table = np.array([[float(row[c]) for c in COLUMNS] for row in rows])
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{path}: {error}; every row has a number in {', '.join(COLUMNS)}") from None
+    frequency, base, base_phase, mass, mass_phase = table[np.argsort(table[:, 0], kind="stable")].T
+    good = np.isfinite(table).all() and frequency[0] > 0 and base.min() > 0 and mass.min() >= 0
+    if not (good and len(table) >= 3):
+        raise ValueError(
+            f"{path}: a run needs three frequencies above zero, all finite, and accelerations above zero"
+        )
     rig = Rig(
-        mass=said["mass_kg"],
-        discs=said["mass_disks"],
-        width=said["mass_width"],
-        thickness=said["thickness_m"],
-        r_inner=said["inner_diameter_m"] / 2,
-        r_outer=said["outer_diameter_m"] / 2,
+        mass=size["mass"],
+        discs=size["discs"],
+        width=size["width"],
+        thickness=size["thickness"],
+        r_inner=size["inner"] / 2,
+        r_outer=size["outer"] / 2,
     )
     response = mass / base * np.exp(1j * (mass_phase - base_phase))
-    return Measurement(name, frequency, response, base, rig, said["temperature"])
+    return Measurement(name, frequency, response, base, rig, temperature)
 
 
 @cache
@@ -550,7 +584,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for path in (given.run, given.rig, given.dma):
             if not path.exists():
                 parser.error(f"{path}: no such file")
-        found = answer(read_run(given.run, given.rig), given.dma)
+        if not DATA.exists():
+            parser.error(f"the strain sweep and the runs at 0.1 g are not here: {DATA}")
+        try:
+            found = answer(read_run(given.run, given.rig), given.dma)
+        except ValueError as error:
+            parser.error(str(error))
         print(as_json(found))
         return 0
     if not DATA.exists():

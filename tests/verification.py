@@ -39,6 +39,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Materials from measurements": materials.measured,
     "Lubricant": contacts.lubricant,
     "Lubricated contact": ehl.lubricated_contact,
+    "Films in time": ehl.films_in_time,
     "Hertz contact": contacts.hertz,
     "Bearings of ISO/TS 16281": contacts.iso,
     "Load distribution": contacts.load_distribution,

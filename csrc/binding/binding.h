@@ -137,6 +137,11 @@ extern const char bd_py_changed_layers_doc[];
 PyObject *bd_py_bearing_along(PyObject *module, PyObject *args);
 extern const char bd_py_bearing_along_doc[];
 
+/* ---------------------------------------------------------------- abreast.c */
+
+PyObject *bd_py_march_abreast(PyObject *module, PyObject *argument);
+extern const char bd_py_march_abreast_doc[];
+
 /* ---------------------------------------------------------------- model.c, march.c, harmonic.c: Model */
 
 extern PyType_Spec bd_py_model_spec;

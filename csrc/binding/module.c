@@ -81,6 +81,7 @@ static PyMethodDef module_methods[] = {
     {"check_scheme", bd_py_check_scheme, METH_O, bd_py_check_scheme_doc},
     {"changed_layers", bd_py_changed_layers, METH_VARARGS, bd_py_changed_layers_doc},
     {"helmholtz", bd_py_helmholtz, METH_VARARGS, bd_py_helmholtz_doc},
+    {"march_abreast", bd_py_march_abreast, METH_O, bd_py_march_abreast_doc},
     {"status_text", status_text, METH_VARARGS, status_text_doc},
     {NULL, NULL, 0, NULL},
 };

@@ -112,4 +112,19 @@ def helmholtz(
     NDArray[np.complex128],
     NDArray[np.complex128],
 ]: ...
+def march_abreast(
+    calls: Sequence[
+        tuple[
+            Model,
+            _Array,
+            int,
+            int,
+            dict[str, object],
+            bool,
+            Callable[[int, int], object] | None,
+            dict[str, _Array] | None,
+        ]
+    ],
+    /,
+) -> list[tuple[_Array, _Array, dict[str, Any]]]: ...
 def status_text(status: int, /) -> str: ...

@@ -54,10 +54,10 @@ class OpenSideWarning(Notice):
 
     The motion computed from then on is that of a bearing with two shoulders.
 
-    When: a march, a steady motion or a map in which a ball that carries (1 % of the largest ball load) stood
-    beyond the bottom of its groove, on the open side, or in which all that carry stood on the bottom, no
-    axial load pressing them onto the shoulder. The bearing, the first time and the number of steps are
-    named, or the speed and the share of the time.
+    When: a motion given to a `BallBearing`, a march, a steady motion or a map in which a ball that carries
+    (1 % of the largest ball load) stood beyond the bottom of its groove, on the open side, or in which all
+    that carry stood on the bottom, no axial load pressing them onto the shoulder. The bearing, the first time
+    and the number of steps are named, or the speed and the share of the time.
 
     Remedy: more preload, or the bearing hung the other way round, `bearing.mirrored()`; with shoulders on
     both sides it has `open_side=None`.
@@ -80,8 +80,9 @@ class BearingWarning(Notice):
 
     When: a contact pressure exceeds 4.2 GPa (ISO 76), the static rating, in an equilibrium, in any step of a
     march, in a steady motion or a map, or in a response to unbalance or of a given amplitude, the balls
-    pressed as the rings then move; in a sheet also where a shoulder cuts a contact ellipse, or a bearing
-    carries nothing.
+    pressed as the rings then move; a load exceeds the static rating that friction or a life is asked with;
+    the rings lean against each other by more than .01 rad in an equilibrium, or under a load or motion given;
+    in a sheet also where a shoulder cuts a contact ellipse, or a bearing carries nothing.
 
     Remedy: check the load's unit; a larger bearing, less load, or a higher shoulder.
     """
@@ -198,9 +199,21 @@ class UnevenShifts(Notice):
     """Notice class: shifts of neighbouring isotherms zigzag, or rise with temperature, as no polymer's do.
 
     When: a step of `master_curve`'s shifts, per kelvin, is below half the smaller, or above twice the
-    larger, of its neighbours by 0.15 decade or more, or has the other sign.
+    larger, of its neighbours by 0.15 decade or more, or has the other sign; or the isotherms, shifted, leave
+    a gap of more than 0.3 decade.
 
-    Remedy: look at the isotherms named; leave one out, give its shift by hand, or measure again.
+    Remedy: look at the isotherms named; leave one out, give its shift by hand, or measure again, in between
+    or over a wider range of frequency.
+    """
+
+
+class OddPoints(Notice):
+    """Notice class: single moduli of a measurement stand off the curve of all others.
+
+    When: after `master_curve` has superposed them, G′ or G″ of a point deviates from one causal spectrum by
+    more than 10 %, and ten times the scatter of the others.
+
+    Remedy: look at the points named; measure them again, or leave them out by `dma.take` or `dma.select`.
     """
 
 
@@ -249,20 +262,22 @@ class AssumedMeaning(Notice):
 
     When: `read_dma` finds no unit for a frequency or a temperature, an angular frequency in a unit of
     frequency, moduli of which only the words around them tell shear from tension, or a temperature only in
-    the file's name; or when the first of several sheets that hold a table is read.
+    the file's name; or when the first of several sheets that hold a table is read; when `read_strain_sweep`
+    finds no unit for a strain.
 
     Remedy: say it: `units={...}`, `mode=...`, `temperature=...`, `step=...`; the text names the argument.
     """
 
 
 class LeftOut(Notice):
-    """Notice class: something of a measurement is not used.
+    """Notice class: something of a file or measurement is not used.
 
     When: `read_dma` leaves out rows that are not valid or stand behind the table; `master_curve` leaves out
-    points that no passive material could give, such as a resonance of the fixture.
+    points that no passive material could give, such as a resonance of the fixture; `read_mesh` leaves out
+    beams, masses, springs and other elements without volume.
 
     Remedy: look at the rows or points named; `clean=False` keeps what is positive, `dma.select` leaves out
-    more.
+    more. Add masses and springs of a mesh to the application (`RigidBody`, `Application.spring`).
     """
 
 
@@ -270,7 +285,7 @@ class UnlikelyModulus(Notice):
     """Notice class: a measured modulus is far from what gels, elastomers and polymers have; a wrong unit.
 
     When: the median of the storage moduli that `read_dma` read lies outside 100 Pa to 20 GPa, or no storage
-    modulus is as large as a rubber's.
+    modulus is as large as a rubber's; or a relaxation modulus rises with time by more than 10 %.
 
     Remedy: give the unit of the columns: `units={"storage": "MPa", "loss": "MPa"}`.
     """
@@ -379,6 +394,48 @@ class ClippedSound(Notice):
     When: `write_wav(bits=16, full_scale=...)` gets a pressure above the full scale.
 
     Remedy: the full scale that the text names, or `bits=32`.
+    """
+
+
+class OilAtOtherSpeed(Notice):
+    """Notice class: a lubricated bearing is asked at another speed than that of its films.
+
+    When: a march, a response, modes or a steady motion at a speed, not zero, that is more than 25 % above or
+    below that of a bearing's `lubrication`; films and the damping of contacts are constants of that speed.
+
+    Remedy: `lubrication=OilSupply(..., speed=)` of the speed asked; for a range of speeds, one of each.
+    """
+
+
+class ChangedFunction(Notice):
+    """Notice class: processes of a study computed another function than the one at hand.
+
+    When: `study.sweep` sends a function to other processes, which import its module afresh, and a global
+    value, default or attribute that it uses was changed after the import here.
+
+    Remedy: pass what changes as a parameter of the cases; or give an executor of threads.
+    """
+
+
+class UnprovenOptimum(Notice):
+    """Notice class: an optimiser's best design misses the conditions of an optimum.
+
+    When: `study.optimise` or `study.front` ends where the scaled objective's gradient, after the limits that
+    are reached, is more than 5 % of the steepest on the way: the function is noisy, jumps, or its slopes are
+    wrong.
+
+    Remedy: more starts; smoother values (a tighter tolerance inside the function, the same mesh for all
+    designs), slopes of the function's own, or a study by `study.sobol` where it is not smooth.
+    """
+
+
+class CutHarmonics(Notice):
+    """Notice class: a steady motion wants more harmonics than it was given.
+
+    When: the harmonics next above the last of a `steady_state` would add more than 2 % of a channel's largest
+    line; or, of several base frequencies, a line above the last that would be 2 % of the bearings' largest.
+
+    Remedy: more `harmonics`; a pit or a ball that loses contact needs many.
     """
 
 

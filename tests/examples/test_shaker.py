@@ -386,3 +386,51 @@ def test_a_run_needs_its_rig(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         shaker.main(["--json", "--run", "none.csv", "--rig", "none.json"])
     assert "no such file" in capsys.readouterr().err
+
+
+RIG_SAID = {
+    "mass_kg": 0.25, "mass_disks": 0.0148, "thickness_m": 0.006, "outer_diameter_m": 0.0335,
+    "inner_diameter_m": 0.0118, "mass_width": 0.02, "temperature": 21.0,
+}  # fmt: skip
+
+
+def made_run(tmp_path: Path, rows: list[str], **rig: object) -> tuple[Path, Path]:
+    run, path = tmp_path / "run.csv", tmp_path / "rig.json"
+    run.write_text("\n".join([",".join(shaker.COLUMNS), *rows]), encoding="utf-8")
+    path.write_text(json.dumps({k: v for k, v in {**RIG_SAID, **rig}.items() if v is not None}))
+    return run, path
+
+
+def test_a_run_is_read_by_the_names_of_its_columns(tmp_path: Path) -> None:
+    """In any order, with others between, falling in frequency, with a byte order mark."""
+    run, rig = made_run(tmp_path, [])
+    lines = ["mass_phase_rad,note,freq_hz,mass_accel_ms2,base_accel_ms2,base_phase_rad"]
+    lines += [f"-0.5,x,{f},{2 * f},{f},0.25" for f in (300, 200, 100)]
+    run.write_text("\ufeff" + "\n".join(lines), encoding="utf-8")
+    found = shaker.read_run(run, rig)
+    assert found.frequency.tolist() == [100.0, 200.0, 300.0]
+    assert found.base.tolist() == [100.0, 200.0, 300.0]
+    assert found.response == pytest.approx(np.full(3, 2 * np.exp(-0.75j)))
+    assert (found.rig.r_outer, found.temperature) == (0.01675, 21.0)
+
+
+@pytest.mark.parametrize(
+    ("rows", "rig", "message"),
+    [
+        (["100,1,0,1,0"] * 2, {}, "three frequencies above zero"),
+        (["100,1,0,1,0", "200,1,0,nan,0", "300,1,0,1,0"], {}, "finite"),
+        (["0,1,0,1,0", "200,1,0,1,0", "300,1,0,1,0"], {}, "above zero"),
+        (["100,0,0,1,0", "200,1,0,1,0", "300,1,0,1,0"], {}, "accelerations above zero"),
+        (["100,1,0,x,0", "200,1,0,1,0", "300,1,0,1,0"], {}, "could not convert string to float: 'x'"),
+        (["100,1,0", "200,1,0,1,0", "300,1,0,1,0"], {}, "every row has a number"),
+        (["100,1,0,1,0"] * 3, {"mass_kg": None}, "'mass_kg'; a rig has the numbers"),
+        (["100,1,0,1,0"] * 3, {"mass_kg": "heavy"}, "could not convert"),
+        (["100,1,0,1,0"] * 3, {"inner_diameter_m": 0.04}, "inner below outer"),
+        (["100,1,0,1,0"] * 3, {"thickness_m": -0.006}, "must be positive"),
+    ],
+)
+def test_a_run_that_makes_no_sense_is_named(
+    tmp_path: Path, rows: list[str], rig: dict[str, object], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        shaker.read_run(*made_run(tmp_path, rows, **rig))

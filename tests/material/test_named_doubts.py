@@ -161,3 +161,59 @@ def test_wrong_intervals_and_answers_are_named():
         bd.doubts(PLAIN, K=(1e9, 3e9)).varied(level=1.0)
     with pytest.raises(ValueError, match="K = 1e\\+09 it must be finite"):
         bd.study.doubt_effects(bd.doubts(PLAIN, K=(1e9, 3e9)), lambda m: np.nan if m.K < 2e9 else 1.0)
+
+
+UNKNOWN = bd.doubts(
+    FITTED, K=(1e9, 3e9), specimen=(1.0, 1 / 0.967), temperature=(-2.0, 2.0), level=(0.9, 1.1)
+)
+
+
+def _on_a_rig(material):
+    app = bd.Application()
+    app.add("layer", bd.Layer(0.020, 0.024, 0.012, material))
+    app.ground("layer.outer")
+    app.free("layer.inner")
+    return app
+
+
+def test_a_rubber_carries_its_doubts_through_json_and_a_model_file_bit_for_bit(tmp_path):
+    kept = UNKNOWN.carried()
+    assert kept == FITTED  # nothing that an answer hangs on
+    bd.write_model(_on_a_rig(kept), tmp_path / "m.toml")
+    read = bd.read_model(tmp_path / "m.toml").materials["rubber"]
+    for again in (bd.Maxwell.from_json(kept.to_json()), read):
+        assert again.doubts == kept.doubts == UNKNOWN.sources
+        assert bd.doubts(again).sources == UNKNOWN.sources  # found again without fit and curve
+        for mine, other in zip(UNKNOWN.draws(8), bd.doubts(again).draws(8), strict=True):
+            assert mine == other
+    # twice written, the same text
+    bd.write_model(_on_a_rig(read), tmp_path / "n.toml")
+    assert (tmp_path / "n.toml").read_text() == (tmp_path / "m.toml").read_text()
+
+
+def test_what_is_given_anew_stands_before_what_is_carried():
+    kept = bd.doubts(PLAIN, K=(1e9, 3e9), specimen=(1.0, 1.05)).carried()
+    assert bd.doubts(kept, K=(1.5e9, 2.5e9)).ranges() == {"K": (1.5e9, 2.5e9), "specimen": (1.0, 1.05)}
+    assert bd.doubts(kept).varied(specimen=1.05).doubts == ()
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: replace(PLAIN, doubts=("K",)), r"Maxwell\.doubts is 'K'"),
+        (lambda: replace(PLAIN, doubts=2 * bd.doubts(PLAIN, K=(1e9, 3e9)).sources), r"each may stand once"),
+        (
+            lambda: bd.doubts(replace(bd.doubts(PLAIN, K=(1e9, 3e9)).carried(), K=1.8e9)),
+            r"nominal K of a doubt is 2000000000\.0; the material that carries it has another K",
+        ),
+        (
+            lambda: bd.Maxwell.from_json(
+                bd.doubts(PLAIN, K=(1e9, 3e9)).carried().to_json().replace("1000000000.0", "5e9")
+            ),
+            r"low ≤ nominal ≤ high",
+        ),
+    ],
+)
+def test_doubts_that_do_not_fit_their_rubber_are_refused(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()

@@ -16,6 +16,9 @@ from bearingdyn.bearing import Lubricant, Pair, Walther, ehl, load_distribution
 
 BALL = bd.BallBearing(9, 7.94e-3, 39.04e-3, 0.52, 0.53, clearance=10e-6)
 RUBBER = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
+STRAIN = np.geomspace(1e-3, 2e-2, 12)
+LAW = bd.Payne(D=2.0344e6, gamma_c=3.588e-3, m=0.4817, Lm=0.1663e6, gamma_l=3.132e-3)
+SWEEP = bd.StrainSweep(STRAIN, 3e6 + LAW.storage(STRAIN), 3e5 + LAW.loss(STRAIN), 10.0)
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +71,9 @@ def good() -> dict[str, dict[str, object]]:
         },
         "isotherms": {"dma": dma},
         "layer_stiffness": {"layers": {"a": bd.Layer(0.02, 0.024, 0.015, RUBBER)}, "frequency": frequency},
+        "layer_strain": {
+            "layer": bd.Layer(0.02, 0.024, 0.015, RUBBER, refinement=0.5), "relative": (1e-5, 0, 0, 0, 0, 0),
+        },
         "load_distribution": {"distributions": {"a": load_distribution(BALL, (0, -2e-5, 0, 0, 0, 0))}},
         "master": {"curve": curve},
         "mode_geometry": {"source": eq, "found": found, "mode": 0},
@@ -82,6 +88,7 @@ def good() -> dict[str, dict[str, object]]:
         "spectrum_of": {"materials": {"a": RUBBER}},
         "speed_map": {"data": steady},
         "speed_waterfall": {"data": steady},
+        "strain_softening": {"law": bd.fit_payne(SWEEP, strain_of_isotherms=1.5e-3, lowest_trusted=1e-3)},
         "time": {"datasets": {"a": run}},
         "trade_off": {"study": study, "x": "m", "y": "n"},
         "unbalance_response": {"datasets": {"a": bd.unbalance_response(app, [10.0, 20.0], [y])}, "output": y},

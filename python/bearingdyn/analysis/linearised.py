@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.static_balance import HOLD
 from bearingdyn.application import COMPONENTS, Application
 from bearingdyn.checks import one_of
-from bearingdyn.system import System, natural, system_of
+from bearingdyn.system import Contacts, System, natural, system_of
 from bearingdyn.types import Array, Complex
 
 # N/m: a bearing below it holds nothing; κ^(2/3) F^(1/3) of one ball under 1e-9 N is some 1e4 N/m
@@ -39,12 +38,15 @@ class Linear:
         rows: Array,
         speed: float,
         progress: core.Progress | None = None,
+        modulus: Complex | None = None,
     ) -> Complex:
-        """Motions rows (k, n) under forces (i, n) e^{iωt}, (f, k, i); paper (20)."""
+        """Motions rows (k, n) under forces (i, n) e^{iωt}, (f, k, i); paper (20).
+
+        modulus: of `moduli`, where it is known already.
+        """
         system = self.system
-        modulus = np.ones((omega.size, len(system.layers)), dtype=np.complex128)
-        for k, layer in enumerate(system.layers):
-            modulus[:, k] = layer.material.complex_modulus(omega)
+        if modulus is None:
+            modulus = self.moduli(omega)
         # η0 sits in G*(ω) here, so C is the structure's own
         moving = omega > 0
         if moving.all():
@@ -55,6 +57,17 @@ class Linear:
                 held = system if omega[part][0] > 0 else self.held_at_rest(modulus[part][0], force)
                 x[part] = self._respond(held, omega[part], modulus[part], force, rows, speed, progress)
         return x
+
+    def moduli(self, omega: Array) -> Complex:
+        """G* or K* (f, layers) of the layers' materials at omega (f,), rad/s, Pa; of each material once."""
+        of: dict[int, Complex] = {}
+        for layer in self.system.layers:
+            if id(layer.material) not in of:
+                of[id(layer.material)] = np.asarray(layer.material.complex_modulus(omega))
+        found = np.ones((omega.size, len(self.system.layers)), dtype=np.complex128)
+        for k, layer in enumerate(self.system.layers):
+            found[:, k] = of[id(layer.material)]
+        return found
 
     def _respond(
         self,
@@ -134,9 +147,6 @@ def _freedom(system: System, motion: Array, idle: list[str]) -> str:
         f"dynamic stiffness is singular); ask from above 0 Hz on, leave that input out, or hold it, as by "
         f'app.ground("{name}", stiffness=[{spring}])'
     )
-
-
-Contacts: TypeAlias = Literal["film", "viscous"]
 
 
 def linear(source: Equilibrium | Application | System, contacts: Contacts = "film") -> Linear:

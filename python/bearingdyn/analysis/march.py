@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core, fingerprint, run_file
+from bearingdyn.analysis.abreast import GATHERING
 from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
@@ -27,7 +28,7 @@ from bearingdyn.notice import NothingPushes, OpenSideWarning, warn
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.progress import part_of
 from bearingdyn.results import inputs_of
-from bearingdyn.system import System, system_of
+from bearingdyn.system import Contacts, System, system_of
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -67,6 +68,8 @@ class March:
         One of METHODS.
     pressed
         Whether a ball is pressed where the march starts, or that is not known.
+    contacts
+        How lubricated contacts answer.
     """
 
     system: System
@@ -81,6 +84,7 @@ class March:
     memory: float | None = None
     method: str = "newmark"
     pressed: bool = True
+    contacts: Contacts = "viscous"
 
     @classmethod
     def of(
@@ -98,6 +102,7 @@ class March:
         memory: float | None = None,
         method: str = "newmark",
         least_steps: int = 0,
+        contacts: Contacts = "viscous",
     ) -> March:
         """Prepare a march from an equilibrium, an application (its equilibrium is found) or a system at zero.
 
@@ -122,6 +127,7 @@ class March:
             )
         drive = drive_of(speed)
         one_of("method", method, METHODS)
+        one_of("contacts", contacts, ("film", "viscous"))
         if scheme is not None:
             instance("scheme", scheme, core.Scheme, "it must be a bd.Scheme(...)")
         if isinstance(source, Application):
@@ -142,6 +148,11 @@ class March:
         )
         fastest = float(np.abs(drive[1]).max()) if isinstance(drive, tuple) else drive
         system.check_speed(fastest)
+        if contacts == "film" and not any(term.has_films for term in system.bearings):
+            raise ValueError(
+                "contacts is 'film', and no bearing runs on films; give one BallBearing(..., "
+                "lubrication=OilSupply(...)), or contacts='viscous'"
+            )
         if method == "exact":
             drive = _exact_speed(system, drive)
         warn_if_coarse(system, fastest, dt)
@@ -159,12 +170,13 @@ class March:
             memory=memory_of(system, drive, memory),
             method=method,
             pressed=not isinstance(source, Equilibrium) or source.presses,
+            contacts=contacts,
             **counts,
         )
 
     def model(self, channels: list[CoreChannel]) -> core.Model:
         """The core's model, with these channels."""
-        return self.modal.model(channels, memory=self.memory)
+        return self.modal.model(channels, memory=self.memory, contacts=self.contacts)
 
     @property
     def total(self) -> int:
@@ -221,9 +233,30 @@ class March:
         return self._modes.step(self.stepping.dt)
 
     def _core_march(self, model: core.Model, state: Array, steps: int, every: int, **how: Any) -> CoreMarch:
-        """The core's march by this method."""
+        """The core's march by this method, side by side with others where a gathering says so."""
         modes = None if self.method == "newmark" else self._step
-        return core.march(model, state, self.stepping, steps, every, modes=modes, **how)
+        gathering = GATHERING.get()
+        if gathering is None:
+            return core.march(model, state, self.stepping, steps, every, modes=modes, **how)
+        call = core.MarchCall(model, state, self.stepping, steps, every, modes=modes, **how)
+        return gathering.march(call, self._structure)
+
+    @cached_property
+    def _structure(self) -> str | None:
+        """Fingerprint of what marches that go side by side share; None for one that goes by itself."""
+        system = self.modal
+        turns = np.ptp(self.stepping.profile[1]) > 0 or len(self.stepping.profile[1]) > 1
+        if self.method != "newmark" or self.memory is not None or self.stepping.audit or turns:
+            return None
+        return fingerprint.fingerprint(
+            {
+                "matrices": (system.M, system.C, system.G, system.K, system.N),
+                "layers": [(term.L, term.material.G, term.material.tau) for term in system.layers],
+                "bearings": [bearing.B.shape for bearing in system.bearings],
+                "loads": len(system.loads),
+                "stepping": self.stepping,
+            }
+        )
 
     def step_error(self, model: core.Model, state: Array) -> Array:
         """Error of each channel that the step size leaves behind a state, (channels,): `step_error`."""
@@ -274,7 +307,7 @@ class March:
         remedy = "resume a result of this application, or start anew with `initial`"
         if size != own_size:
             raise ValueError(f"{another}: it has {size} numbers, and this one has {own_size}; {remedy}")
-        theirs, own = result.attrs.get("system_hash"), system_hash(self.modal)
+        theirs, own = result.attrs.get("system_hash"), system_hash(self.modal, self.contacts)
         if theirs is None:  # written before results said it: its channels must at least exist here
             for name in result["channel"].values:
                 try:
@@ -303,8 +336,9 @@ class March:
             "settle": self.settle,
             "steps": self.steps,
             "inputs": self.system.inputs,
-            "system_hash": system_hash(self.modal),
+            "system_hash": system_hash(self.modal, self.contacts),
             **({} if self.method == "newmark" else {"method": self.method}),
+            **({} if self.contacts == "viscous" else {"contacts": self.contacts}),
         }
 
     def digest(self, state: Array) -> str:
@@ -314,7 +348,7 @@ class March:
         """
         return fingerprint.fingerprint(
             {
-                "system": system_hash(self.modal),
+                "system": system_hash(self.modal, self.contacts),
                 "stepping": self.stepping,
                 "state": state,
                 **({} if self.memory is None else {"memory": self.memory}),

@@ -10,13 +10,15 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
-from bearingdyn.bearing import STATIC_PRESSURE, BallBearing
+from bearingdyn.bearing import STATIC_PRESSURE, BallBearing, BearingKernel
 from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.system import BearingTerm
-from bearingdyn.types import Complex
+from bearingdyn.types import Array, Complex
 
 SAMPLES = 24
 """Moments of a cycle at which the balls of a linear response are looked at."""
+TOGETHER = 64
+"""Swings whose moments are computed at once, the widest first."""
 
 
 def warn_of_overload(march: March, report: core.Report) -> None:
@@ -55,20 +57,49 @@ def warn_of_swings(eq: Equilibrium, swings: Complex, places: Sequence[str]) -> N
     BearingWarning
         As `warn_of_overload`; the heaviest ball of each bearing.
     """
-    turns = np.exp(2j * math.pi * np.arange(SAMPLES) / SAMPLES)
     at = 0
     for term in eq.system.bearings:
-        rest, kernel = eq.bearings[term.name].z, term.kernel()
+        rest, bearing = eq.bearings[term.name].z, term.bearing
         own = swings[:, at : at + len(rest)]
         at += len(rest)
-        z = rest + (own[:, None, :] * turns[:, None]).real.reshape(-1, len(rest))
-        angle = np.zeros((len(z), 4))
-        angle[:, 0] = kernel.angle0
-        along = core.bearing_along(kernel, z, np.zeros_like(z), angle, np.zeros(4), tangents=False)
-        peaks = along.loads.reshape(len(swings), -1).max(axis=1, initial=0.0)
-        if peaks.size:
-            worst = int(np.argmax(peaks))
-            warn_of_peak(term, float(peaks[worst]), places[worst])
+        if isinstance(bearing, BallBearing) and len(own):
+            peak, worst = _worst(term.kernel(), bearing.static_ball_load, rest, own)
+            warn_of_peak(term, peak, places[worst])
+
+
+def _worst(kernel: BearingKernel, limit: float, rest: Array, swings: Complex) -> tuple[float, int]:
+    """Largest load of a ball, N, and which swing (k, n) about `rest` brings it; any below the limit.
+
+    A ball comes nearer by no more than its raceways move, so that most swings need no look at their moments.
+    """
+    approach = _approach(kernel, float(_loads(kernel, rest[None]).max(initial=0.0)))
+    radial, axial = (np.abs(swings[:, kernel.axial == way]).sum(axis=1) for way in (0, 1))
+    reach = approach + np.hypot(radial, axial)
+    peak, worst = 0.0, 0
+    turns = np.exp(2j * math.pi * np.arange(SAMPLES) / SAMPLES)[:, None]
+    order = np.argsort(-reach, kind="stable")
+    for some in np.split(order, range(TOGETHER, len(order), TOGETHER)):
+        some = some[reach[some] >= _approach(kernel, max(limit, peak))]
+        if not some.size:
+            break
+        z = rest + (swings[some][:, None] * turns).real
+        peaks = _loads(kernel, z.reshape(-1, len(rest))).reshape(len(some), -1).max(axis=1)
+        if peaks.max() > peak:
+            peak, worst = float(peaks.max()), int(some[np.argmax(peaks)])
+    return peak, worst
+
+
+def _loads(kernel: BearingKernel, z: Array) -> Array:
+    """Loads of the balls (s, Z), N, at coefficients z (s, n) of the raceways that do not move."""
+    angle = np.zeros((len(z), 4))
+    angle[:, 0] = kernel.angle0
+    still = np.zeros_like(z)
+    return core.bearing_along(kernel, z, still, angle, np.zeros(4), tangents=False).loads
+
+
+def _approach(kernel: BearingKernel, load: float) -> float:
+    """How far the raceways press into a ball that bears a load, N, with its film, m."""
+    return float((load / kernel.kappa) ** (2 / 3) + kernel.give * load)
 
 
 def warn_of_peak(term: BearingTerm, peak: float, where: str) -> None:

@@ -51,13 +51,13 @@ class Softened:
         (f, k, c) motions of the rows asked for.
     strain
         (f, l, c) the strain that counts.
-    change
-        (f, l, c) G* less that of the isotherms, Pa.
+    modulus
+        (f, l, c) G* at that strain, Pa.
     """
 
     x: Complex
     strain: Array
-    change: Complex
+    modulus: Complex
     _linear: _Linear
     _loss: Complex
 
@@ -114,16 +114,18 @@ def softened(
     system = state.system
     soft = [system.layers[k] for k in softening_layers(system)]
     own = np.vstack([layer.L.T for layer in soft])
-    x = state.solve(omega, np.vstack([force, own]), np.vstack([rows, own]), speed, tell)
+    modulus = state.moduli(omega)
+    x = state.solve(omega, np.vstack([force, own]), np.vstack([rows, own]), speed, tell, modulus)
     k, i = len(rows), len(force)
     of = _Linear(x[:, :k, :i], x[:, :k, i:], x[:, k:, :i], x[:, k:, i:])
     ranks = [layer.L.shape[1] for layer in soft]
+    linear = modulus[:, softening_layers(system), None]
     found, near = [], None
     for drive in drives:
         y, strain, change, near = _strains(omega, of.R, of.seen @ drive, soft, ranks, near)
         loss = np.repeat(2 * change, ranks, axis=1)  # (f, r, c)
         moved = of.direct @ drive - np.einsum("fkr,frc->fkc", of.by_layers, loss * y)
-        found.append(Softened(moved, strain, change, of, loss))
+        found.append(Softened(moved, strain, linear + change, of, loss))
     return found
 
 
@@ -266,15 +268,14 @@ def warn_of_strain(system: System, strain: Array) -> None:
             )
 
 
-def moduli_of(system: System, omega: Array, change: Complex) -> dict[tuple[str, int], Complex]:
+def moduli_of(system: System, modulus: Complex) -> dict[tuple[str, int], Complex]:
     """In an analysis with softening, G* (f, c), Pa, of each rubber that softens, by part and place in it."""
     found, seen, number = {}, dict[str, int](), 0
     for layer in system.layers:
         place = seen.get(layer.part, 0)
         seen[layer.part] = place + 1
         if layer.strain is not None:
-            linear = np.asarray(layer.material.complex_modulus(omega))
-            found[layer.part, place] = linear[:, None] + change[:, number]
+            found[layer.part, place] = modulus[:, number]
             number += 1
     return found
 

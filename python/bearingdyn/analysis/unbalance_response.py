@@ -107,7 +107,7 @@ def unbalance_response(
                     drive = speed**2 * phase.reshape(1, -1, 1)  # all together make the strain
                     (found,) = softened(state, omega, force, rows, turning, [drive])
                     strain[k], x = found.strain[0], found.each()
-                    moduli = moduli_of(system, omega, found.change)
+                    moduli = moduli_of(system, found.modulus)
                 else:
                     x, moduli = state.solve(omega, force, rows, turning, None), None
                 bearings = state.dynamic(omega if forces else omega[:0])

@@ -20,12 +20,14 @@ from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_p
 from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.film_answer import AnswerUnderLoads, FilmAnswer
+from bearingdyn.bearing.film_memory import FilmMemory, carried
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.half_space import footprint_profile, half_space_orders
 from bearingdyn.bearing.hertz import PointContact, contact_modulus, resultant_deflection_coefficient
 from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness
 from bearingdyn.bearing.kernel import BearingKernel
+from bearingdyn.bearing.load_and_motion_checks import warn_of_lean
 from bearingdyn.bearing.load_distribution import LoadDistribution, load_distribution
 from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Lubricant, Walther
@@ -78,6 +80,7 @@ __all__ = [
     "Film",
     "FilmAnswer",
     "FilmDamping",
+    "FilmMemory",
     "Frequencies",
     "Friction",
     "FrictionModel",
@@ -110,6 +113,7 @@ __all__ = [
     "Waviness",
     "WavinessSpectrum",
     "at_distance",
+    "carried",
     "catalogue",
     "check_bearing_pressure",
     "clearance_range",
@@ -147,6 +151,7 @@ __all__ = [
     "samples_off",
     "shoulder",
     "spall",
+    "warn_of_lean",
     "waviness_lines",
     "without_spin",
 ]

@@ -88,7 +88,7 @@ def kept_superelement(part: Reducible, folder: str | Path) -> Superelement:
     else:
         made, doubts = _unpacked(held, laws), json.loads(str(held["doubts"]))
     for category, text in doubts:  # of the reduction, whether made now or before
-        notice.warn(text, getattr(notice, category, UserWarning))
+        notice.warn(text, getattr(notice, category, notice.Notice))
     return made
 
 
@@ -178,4 +178,5 @@ def _unpacked(held: Mapping[str, Any], laws: list[Any]) -> Superelement:
 
 def _face(told: Mapping[str, Any]) -> RoundFace:
     """Pairs are lists in JSON."""
-    return RoundFace(**{name: tuple(v) if isinstance(v, list) else v for name, v in told.items()})
+    values: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in told.items()}
+    return RoundFace(**values)

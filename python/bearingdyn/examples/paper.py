@@ -93,8 +93,8 @@ def _outer_ring(sleeve: float) -> RigidBody:
     if not sleeve:
         return ring
     around = RigidBody.ring(OUTER_6305[1], sleeve, OUTER_6305[2])
-    inertia = tuple(a + b for a, b in zip(ring.inertia, around.inertia, strict=True))
-    return RigidBody(ring.mass + around.mass, inertia, measures=OUTER_6305)
+    across, _, about = (a + b for a, b in zip(ring.inertia, around.inertia, strict=True))
+    return RigidBody(ring.mass + around.mass, (across, across, about), measures=OUTER_6305)
 
 
 def plain_6305() -> BallBearing:

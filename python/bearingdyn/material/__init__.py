@@ -5,7 +5,8 @@ from bearingdyn.material.beyond_data import band_told_once, warn_beyond
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
-from bearingdyn.material.doubts import Doubt, Doubts, doubts
+from bearingdyn.material.doubt import Doubt
+from bearingdyn.material.doubts import Doubts, doubts
 from bearingdyn.material.elastic import STEEL, Elastic
 from bearingdyn.material.export import to_abaqus_frequency, to_abaqus_prony, to_ansys, to_calculix
 from bearingdyn.material.fit_report import FitReport, OutsideBand

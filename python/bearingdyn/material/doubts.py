@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import instance, number, one_of, positive, real, require, two
+from bearingdyn.checks import instance, number, positive, real, require, two
+from bearingdyn.material.doubt import SIGMA, Doubt
 from bearingdyn.material.fit_report import FitReport
 from bearingdyn.material.log_parameters import logarithms as logarithms_of
 from bearingdyn.material.log_parameters import moved
@@ -22,63 +21,9 @@ from bearingdyn.plausible_ranges import check_bulk
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
-_SIGMA = 2.0  # standard deviations from the nominal value to the ends of a normal source
 _LATE = 100.0  # times the reach, at which a modulus relaxes that the data leave open: 1 % loss at their end
 _GRID = 40  # frequencies of a band at which a fit's doubt is weighed
 _SMALL = 1e-5  # of a logarithm, for a slope
-
-
-@dataclass(frozen=True)
-class Doubt:
-    """One of the doubts about a rubber: a thing that is not known, and how far it may be off.
-
-    Parameters
-    ----------
-    name
-        "level", "specimen", "K", "temperature", "relaxed", "fit" or "loss".
-    nominal
-        Its value in the material as it is.
-    low, high
-        Ends of the interval: of kind "interval" the value lies anywhere between; of kind "normal" they are
-        two standard deviations away.
-    source
-        Where the interval comes from, in words.
-    kind
-        "interval" or "normal".
-    unit
-        "1" for factors.
-    """
-
-    name: str
-    nominal: float
-    low: float
-    high: float
-    source: str
-    kind: Literal["interval", "normal"] = "interval"
-    unit: str = "1"
-
-    def __post_init__(self) -> None:
-        one_of("Doubt.kind", self.kind, ("interval", "normal"))
-        for name in ("nominal", "low", "high"):
-            number(f"Doubt.{name}", getattr(self, name))
-        remedy = f"low ≤ nominal ≤ high must hold, and low < high; nominal is {self.nominal:g}"
-        require(
-            self.low <= self.nominal <= self.high and self.low < self.high,
-            f"doubt {self.name!r}",
-            (self.low, self.high),
-            remedy,
-        )
-
-    def quantile(self, u: ArrayLike) -> Array:
-        """Value below which it lies with probability u, 0 < u < 1, any shape."""
-        p = real(u)
-        require(bool(np.all((p > 0) & (p < 1))), "u", u, "it must lie between 0 and 1")
-        if self.kind == "interval":
-            return np.asarray(self.low + (self.high - self.low) * p)
-        z = scipy.special.ndtri(p) / _SIGMA
-        return np.asarray(
-            self.nominal + np.where(z < 0, self.nominal - self.low, self.high - self.nominal) * z
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +81,7 @@ class Doubts:
             For an unknown name, or a value that is not finite.
         """
         given = {self[name].name: number(name, value) for name, value in values.items()}
-        m = self.material
+        m = replace(self.material, doubts=())
         if given.get("loss", 1.0) != 1.0:
             assert m.band is not None  # a fit has one
             middle = 2 * math.pi * math.sqrt(m.band[0] * m.band[1])
@@ -166,6 +111,10 @@ class Doubts:
         require(point.shape == (len(self),), "u", u, f"it must be ({len(self)},): one for each of {[*self]}")
         return self.varied(**{d.name: float(d.quantile(x)) for d, x in zip(self.sources, point, strict=True)})
 
+    def carried(self) -> Maxwell:
+        """The rubber as it is, with its doubts (`Maxwell.doubts`), so that a file of it keeps them."""
+        return replace(self.material, doubts=self.sources)
+
     def draws(self, n: int, seed: int = 0) -> list[Maxwell]:
         """n rubbers drawn from all doubts at once, by a scrambled Sobol sequence, the same for one seed."""
         return [self.drawn(u) for u in uniforms(n, len(self), seed)]
@@ -189,6 +138,7 @@ def doubts(
     material
         Its fit gives the doubts "fit" and "loss": factors on |G*| and on tan δ in its band, by its bootstrap
         or covariance, as normal sources. Its low end gives "relaxed": the factors on G0 that its data allow.
+        Doubts that it carries (`Doubts.carried`) stand, unless the same is given or found anew.
     master
         The curve it was fitted to. Runs that disagree give "level": from the stiffest to the softest of them.
     level
@@ -244,9 +194,9 @@ def doubts(
     if temperature is not None:
         require(material.law is not None, "temperature", temperature, "the material has no shift law")
     given("temperature", temperature, 0.0, "°C")
-    if relaxed is None:
+    if relaxed is None and not any(d.name == "relaxed" for d in material.doubts):
         found += _long_times(material, positive("after", after, "it must be a positive time, s"))
-    else:
+    elif relaxed is not None:
         require(material.G0 > 0, "relaxed", relaxed, "the material has no relaxed modulus")
         given("relaxed", relaxed, 1.0)
         high = 1.0 + float(material.G.sum()) / material.G0
@@ -254,6 +204,14 @@ def doubts(
         require(found[-1].low >= 0, "relaxed", relaxed, "a factor on G0 is 0 or more")
     if material.fit is not None and material.fit.names:
         found += _fitted(material, material.fit)
+    known = {d.name for d in found}
+    for carried in material.doubts:
+        if carried.name in known:
+            continue
+        if carried.name == "K":
+            remedy = f"the material that carries it has another K, {material.K:g} Pa: give K=(low, high)"
+            require(carried.nominal == material.K, "nominal K of a doubt", carried.nominal, remedy)
+        found.append(carried)
     remedy = "nothing is in doubt: give its master curve, or intervals such as K=(1e9, 3e9)"
     require(bool(found), "material", material, remedy)
     return Doubts(material, tuple(found))
@@ -264,7 +222,7 @@ def _long_times(m: Maxwell, after: float) -> list[Doubt]:
     end = m.low_end
     if end is None or not m.G0 > 0:
         return []
-    value = float(m.relaxation(after))
+    value = float(m.relaxation(after, doubt=False))
     low, high = end.bounds(after, value)
     # a spring may be what the data do not see relax; of a plateau they see all
     late = m.G.sum() if end.plateau else m.G[m.tau >= end.reach].sum()
@@ -323,7 +281,7 @@ def _fitted(m: Maxwell, fit: FitReport) -> list[Doubt]:
         deviation = np.sqrt(np.maximum(np.einsum("fp,pq,fq->f", J, fit.covariance, J), 0.0))
         words = "scatter of the points about the fit"
     names = ("fit", "loss") if m.G0 > 0 and m.G.any() else ("fit",)
-    wide = np.exp(_SIGMA * np.sqrt(np.mean(deviation.reshape(2, -1) ** 2, axis=1))).tolist()
+    wide = np.exp(SIGMA * np.sqrt(np.mean(deviation.reshape(2, -1) ** 2, axis=1))).tolist()
     return [
         Doubt(name, 1.0, 1.0 / w, w, words, "normal") for name, w in zip(names, wide, strict=False) if w > 1.0
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -12,8 +13,10 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import instance, nonnegative, number, positive, real, require, vector
 from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
+from bearingdyn.material.beyond_data import warn_before, warn_beyond
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.creep import creep_compliance
+from bearingdyn.material.doubt import Doubt
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.retuning import Retunable
@@ -48,7 +51,7 @@ class Maxwell(Retunable, Softening, Drawable):
 
     Relaxation modulus G_rel(t) = G0 + Σ G_i exp(−t/τ_i), with a dashpot η0 in parallel (paper eqs 6, 7).
     G0 is the relaxed modulus, reached as t → ∞ (the paper calls it instantaneous: theory, §1).
-    Two materials are equal if they agree in everything but `band`, `fit`, `low_end` and `spread`.
+    Two materials are equal if they agree in everything but `band`, `fit`, `low_end`, `spread` and `doubts`.
 
     Parameters
     ----------
@@ -87,6 +90,8 @@ class Maxwell(Retunable, Softening, Drawable):
     spread
         How far the parameters may be off; that of the fit unless given. It goes along to another temperature,
         modulus or loss factor, whose factors count as exact; see `with_spread` and `draws`.
+    doubts
+        What else is not known of it, as `bd.doubts(...).carried()` gives it; no answer depends on it.
 
     Raises
     ------
@@ -119,6 +124,7 @@ class Maxwell(Retunable, Softening, Drawable):
     payne: Payne | None = field(repr=False)
     bulk: BulkRelaxation | None = field(repr=False)
     spread: Spread | None = field(repr=False)
+    doubts: tuple[Doubt, ...] = field(repr=False)
 
     def _repr_html_(self) -> str:
         return str(picture("as_html", self))
@@ -156,6 +162,7 @@ class Maxwell(Retunable, Softening, Drawable):
         payne: Payne | None = None,
         bulk: BulkRelaxation | None = None,
         spread: Spread | None = None,
+        doubts: Sequence[Doubt] = (),
     ) -> None:
         instance("Maxwell.bulk", bulk, (BulkRelaxation, type(None)), "give a bd.BulkRelaxation, or None")
         instance("Maxwell.fit", fit, (FitReport, type(None)), "it must be the report of a fit, or None")
@@ -171,6 +178,8 @@ class Maxwell(Retunable, Softening, Drawable):
         instance("Maxwell.spread", spread, (Spread, type(None)), "it must be a bd.material.Spread, or None")
         if spread is None and fit is not None:
             spread = Spread.of(fit)
+        for doubt in doubts:
+            instance("Maxwell.doubts", doubt, Doubt, "give those of bd.doubts(...)")
         edges = band if band is None else vector("Maxwell.band", band, (2,), "lowest and highest, in Hz")
         if temperature is None and law is not None:
             temperature = law.T_ref
@@ -190,6 +199,7 @@ class Maxwell(Retunable, Softening, Drawable):
             "payne": payne,
             "bulk": bulk,
             "spread": spread,
+            "doubts": tuple(doubts),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -227,6 +237,8 @@ class Maxwell(Retunable, Softening, Drawable):
         check_waves("Maxwell.K", self.K, self.density)
         if self.temperature is not None:
             plausible("temperature", "Maxwell.temperature", self.temperature, "it must be finite, °C")
+        about = [d.name for d in self.doubts]
+        require(len(set(about)) == len(about), "Maxwell.doubts", about, "each may stand once")
         if self.band is not None and not 0 < self.band[0] < self.band[1] < math.inf:
             raise ValueError(f"Maxwell.band is {self.band!r} Hz; it must be a lower and a higher frequency")
         if self.payne is not None:
@@ -322,6 +334,14 @@ class Maxwell(Retunable, Softening, Drawable):
                 OutsideBand,
             )
 
+    def _warn_of_times(self, t: Array, what: str) -> None:
+        """Warn of times, s, about which the data say nothing: longer by the low end, shorter by the band."""
+        if t.size == 0:
+            return
+        warn_beyond([("the material", self)], float(t.max()), what)
+        if t[t > 0].size:
+            warn_before(self, float(t[t > 0].min()), f"{what} of the material")
+
     def bulk_modulus(self, omega: ArrayLike) -> Complex:
         """Complex bulk modulus K*(ω), Pa, at ω rad/s, any shape; K everywhere without `bulk`."""
         if self.bulk is None:
@@ -338,19 +358,35 @@ class Maxwell(Retunable, Softening, Drawable):
         """The loss factor under its other name, :meth:`loss_factor`."""
         return self.loss_factor(omega)
 
-    def relaxation(self, t: ArrayLike) -> Array:
+    def relaxation(self, t: ArrayLike, *, doubt: bool = True) -> Array:
         """Relaxation modulus G_rel(t), Pa, at times t ≥ 0, s, any shape (paper eq. 6).
 
         The dashpot adds an impulse η0·δ(t) at t = 0, which is left out.
+
+        Parameters
+        ----------
+        t
+            Times, s; 0 gives the instantaneous modulus.
+        doubt
+            Warn of times that the data do not reach.
 
         Raises
         ------
         ValueError
             If a time is negative.
+
+        Warns
+        -----
+        BeyondData
+            For times longer than the data of a fit, or the band of a model that has one, speak of.
+        OutsideBand
+            For times shorter than that band.
         """
         t = np.asarray(t, dtype=np.float64)
         if not np.all(t >= 0):
             raise ValueError("t: a relaxation modulus exists for times t >= 0 s only")
+        if doubt:
+            self._warn_of_times(t, "the relaxation modulus")
         return np.asarray(self.G0 + np.exp(-t[..., None] / self.tau) @ self.G)
 
     def creep(self, t: ArrayLike) -> Array:
@@ -363,7 +399,15 @@ class Maxwell(Retunable, Softening, Drawable):
         ------
         ValueError
             If a time is negative.
+
+        Warns
+        -----
+        BeyondData, OutsideBand
+            As `relaxation`.
         """
+        times = np.asarray(t, dtype=np.float64)
+        if np.all(times >= 0):
+            self._warn_of_times(times, "the creep compliance")
         return creep_compliance(self.G0, self.G, self.tau, self.eta0, t)
 
     def spectrum(self) -> tuple[Array, Array]:
@@ -486,6 +530,8 @@ class Maxwell(Retunable, Softening, Drawable):
             data["bulk"] = {name: list(v) for name, v in vars(self.bulk).items()}
         if self.spread is not None:
             data["spread"] = self.spread.told_as
+        if self.doubts:
+            data["doubts"] = [dict(vars(d)) for d in self.doubts]
         return json.dumps(data, indent=1)
 
     @classmethod
@@ -511,6 +557,7 @@ class Maxwell(Retunable, Softening, Drawable):
                 "payne",
                 "bulk",
                 "spread",
+                "doubts",
             }
         )
         if unknown:
@@ -521,7 +568,9 @@ class Maxwell(Retunable, Softening, Drawable):
         softens = data.pop("payne", None)
         relaxes = data.pop("bulk", None)
         spread = data.pop("spread", None)
+        about = data.pop("doubts", [])
         try:
+            data["doubts"] = tuple(Doubt(**d) for d in about)
             if relaxes is not None:
                 data["bulk"] = BulkRelaxation(**relaxes)
             if spread is not None:

@@ -16,6 +16,7 @@ from bearingdyn.plot.film_map import film_map
 from bearingdyn.plot.frequency_response import frequency_response
 from bearingdyn.plot.isotherms import isotherms, master, shifts
 from bearingdyn.plot.layer_stiffness import layer_stiffness
+from bearingdyn.plot.layer_strain import layer_strain
 from bearingdyn.plot.load_distribution import load_distribution
 from bearingdyn.plot.measurement_checks import causality, cole_cole, spectrum_of, van_gurp_palmen
 from bearingdyn.plot.mode_geometry import mode_geometry, mode_scene
@@ -27,6 +28,7 @@ from bearingdyn.plot.ring_shape import ring_shape
 from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.speed_map import speed_map, speed_waterfall
 from bearingdyn.plot.squeezed_section import squeezed_section
+from bearingdyn.plot.strain_softening import strain_softening
 from bearingdyn.plot.time_traces import time
 from bearingdyn.plot.trade_off import trade_off
 from bearingdyn.plot.unbalance_response import unbalance_response
@@ -47,6 +49,7 @@ __all__ = [
     "frequency_response",
     "isotherms",
     "layer_stiffness",
+    "layer_strain",
     "load_distribution",
     "master",
     "mode_geometry",
@@ -63,6 +66,7 @@ __all__ = [
     "speed_map",
     "speed_waterfall",
     "squeezed_section",
+    "strain_softening",
     "time",
     "trade_off",
     "unbalance_response",

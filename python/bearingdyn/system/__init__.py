@@ -6,10 +6,11 @@ from bearingdyn.system.matrix_factor import factor
 from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.system import System
 from bearingdyn.system.system_of import system_of
-from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
+from bearingdyn.system.terms import BearingTerm, Contacts, LayerTerm, LoadTerm, PartTerm, SpringTerm
 
 __all__ = [
     "BearingTerm",
+    "Contacts",
     "LayerTerm",
     "LoadTerm",
     "Modulus",

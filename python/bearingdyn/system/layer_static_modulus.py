@@ -20,7 +20,7 @@ def static_modulus(layer: LayerTerm, modulus: Modulus) -> float:
             f"domain need a Maxwell model: fit one with fit_maxwell"
         )
     if isinstance(modulus, float):
-        return float(layer.material.relaxation(modulus))
+        return float(layer.material.relaxation(modulus, doubt=False))
     if modulus == "relaxed":
         return float(layer.material.G0)
     if modulus == "instantaneous":
