@@ -298,7 +298,7 @@ def _doubt_oil(name: str, bearing: BallBearing, speed: float) -> None:
     if oil is not None and speed != 0.0 and not 1 / APART <= abs(speed / oil.speed) <= APART:
         warn(
             f"bearing {name!r} has the films and the damping of {abs(oil.speed):.4g} rad/s, of its "
-            f"lubrication=, and is asked at a speed more than {APART - 1:.0%} off: films go as speed to the power 0.67; "
-            "give lubrication=OilSupply(..., speed=) of the speed asked",
+            f"lubrication=, and is asked at a speed more than {APART - 1:.0%} off: films go as speed to the "
+            "power 0.67; give lubrication=OilSupply(..., speed=) of the speed asked",
             OilAtOtherSpeed,
         )
