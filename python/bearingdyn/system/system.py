@@ -15,7 +15,7 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Channel
-from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing import BallBearing, FilmDamping
 from bearingdyn.checks import meant
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.notice import OilAtOtherSpeed, warn
@@ -25,7 +25,7 @@ from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.raceway_channels import raceway_row
 from bearingdyn.system.softening_layer import marched_layer
 from bearingdyn.system.system_matrix_check import check_matrix
-from bearingdyn.system.terms import BearingTerm, Contacts, LayerTerm, LoadTerm, PartTerm, SpringTerm
+from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
 from bearingdyn.types import Array, Index
 
 # a speed over that of an oil supply, from which its films are doubted: the film's change is 16 %
@@ -254,7 +254,6 @@ class System:
         channels: list[tuple[int, Array | None, int, int]],
         relaxed: bool = True,
         memory: float | None = None,
-        contacts: Contacts = "viscous",
     ) -> core.Model:
         """The core's model.
 
@@ -267,13 +266,11 @@ class System:
             harmonic response: the whole deviatoric stiffness is left to a modulus given per frequency.
         memory
             Time, s, over which layers that soften remember their amplitude; needed for their march.
-        contacts
-            Whether films answer as viscous dampers, or remember.
 
         Raises
         ------
         ValueError
-            Without a memory that is needed, and as `BearingTerm.kernel`.
+            Without a memory that is needed.
         """
         C = self.viscous() if relaxed else self.C
         K = self.stiffness(self.marched_moduli()) if relaxed else self.K
@@ -286,7 +283,7 @@ class System:
             K=K,
             N=self.N,
             layers=layers,
-            bearings=[(t.kernel(contacts).packed(), t.B) for t in self.bearings],
+            bearings=[(t.kernel().packed(), t.B) for t in self.bearings],
             loads=[(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels=channels,
         )
@@ -294,11 +291,17 @@ class System:
 
 def _doubt_oil(name: str, bearing: BallBearing, speed: float) -> None:
     """Warn of films and damping that were found at another speed, rad/s (OilAtOtherSpeed)."""
-    oil = bearing.lubrication
-    if oil is not None and speed != 0.0 and not 1 / APART <= abs(speed / oil.speed) <= APART:
+    damping = bearing.damping
+    inner, outer = bearing.ring_speeds
+    if not isinstance(damping, FilmDamping) or damping.answer is None or speed == 0.0 or inner == outer:
+        return
+    # the speed of entrainment was that of the loaded angle, whose cosine matters little here
+    gamma = bearing.geometry.gamma
+    known = damping.answer.us / (bearing.Dpw / 2 * abs(inner - outer) * (1 - gamma**2))
+    if not 1 / APART <= abs(speed) / known <= APART:
         warn(
-            f"bearing {name!r} has the films and the damping of {abs(oil.speed):.4g} rad/s, of its "
-            f"lubrication=, and is asked at a speed more than {APART - 1:.0%} off: films go as speed to the "
-            "power 0.67; give lubrication=OilSupply(..., speed=) of the speed asked",
+            f"bearing {name!r} has the films and the damping of {known:.3g} rad/s, of its lubrication, and "
+            f"is asked at a speed more than {APART - 1:.0%} off: films go as speed to the power 0.67; give "
+            "lubrication=OilSupply(..., speed=) of the speed asked",
             OilAtOtherSpeed,
         )
