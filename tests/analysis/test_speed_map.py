@@ -131,6 +131,44 @@ def test_the_upper_branch_ends_where_the_reference_page_says() -> None:
     assert data["located_within"].values[lone].max() / RPM < 0.3
 
 
+def test_an_interval_between_neimark_sacker_points_is_one_that_marches_leave_turning() -> None:
+    """With 6 µm a side, from 4149 to 4317 rpm: a pair of multipliers is outside, and marches have that pair."""
+    eq = equilibrium(rotors.held_jis_rotor(6e-6))
+    data = speed_map(
+        eq, speeds=(4080 * RPM, 4380 * RPM), record=RECORD, **{**QUICK, "harmonics": 24, "points": 12}
+    )
+    ends = events(data, "neimark-sacker")
+    assert len(ends) == 2
+    assert 4080 < ends[1] < 4230 < ends[0] < 4380
+    rpm, stable = data["speed"].values / RPM, data["stable"].values == 1
+    inside = (rpm > ends[1] + 1) & (rpm < ends[0] - 1)
+    assert not stable[inside].any()
+    assert stable[(rpm < ends[1] - 1) | (rpm > ends[0] + 1)].all()
+
+    at = 4230 * RPM
+    found = steady_state(eq, speed=at, harmonics=24, record=RECORD)
+    steps, passages = 512, 110
+    passage = 2 * math.pi / float(np.abs(found["frequency"].values[1]) * 2 * math.pi)
+    run = transient(
+        eq,
+        speed=at,
+        dt=passage / steps,
+        steps=steps * passages,
+        decimate=steps,
+        filter=False,
+        record=RECORD,
+        initial=found,
+    )
+    # one pair μ, μ*: d(n + 2) = 2 Re μ d(n + 1) - |μ|² d(n), of differences, which know no mean
+    d = np.diff(run["record"].values, axis=0)
+    d = d[(np.abs(d).max(axis=1) > 3e-12).argmax() :]
+    d = d[: (np.abs(d).max(axis=1) > 1e-8).argmax()]
+    assert len(d) > 20
+    before = np.stack([d[1:-1].ravel(), d[:-2].ravel()], axis=1)
+    _, square = np.linalg.lstsq(before, d[2:].ravel(), rcond=None)[0]
+    assert math.log(-square) / 2 == pytest.approx(math.log(found.attrs["multiplier"]), rel=0.05)
+
+
 def test_folds_that_crowd_are_known_to_what_they_span() -> None:
     events = ["", "fold", "", "fold", "fold", "flip", "fold", "failed"]
     found = within(events, [500.0, 400.0, 400.2, 400.3, 400.1, 600.0, 700.0, 710.0], 1e-3)
