@@ -132,7 +132,7 @@ def test_the_upper_branch_ends_where_the_reference_page_says() -> None:
 
 
 def test_an_interval_between_neimark_sacker_points_is_one_that_marches_leave_turning() -> None:
-    """With 6 µm a side, from 4149 to 4317 rpm: a pair of multipliers is outside, and marches have that pair."""
+    """With 6 µm a side, from 4149 to 4317 rpm: a pair of multipliers is outside; marches have that pair."""
     eq = equilibrium(rotors.held_jis_rotor(6e-6))
     data = speed_map(
         eq, speeds=(4080 * RPM, 4380 * RPM), record=RECORD, **{**QUICK, "harmonics": 24, "points": 12}
