@@ -25,7 +25,7 @@ from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.raceway_channels import raceway_row
 from bearingdyn.system.softening_layer import marched_layer
 from bearingdyn.system.system_matrix_check import check_matrix
-from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
+from bearingdyn.system.terms import BearingTerm, Contacts, LayerTerm, LoadTerm, PartTerm, SpringTerm
 from bearingdyn.types import Array, Index
 
 # a speed over that of an oil supply, from which its films are doubted: the film's change is 16 %
@@ -254,6 +254,7 @@ class System:
         channels: list[tuple[int, Array | None, int, int]],
         relaxed: bool = True,
         memory: float | None = None,
+        contacts: Contacts = "viscous",
     ) -> core.Model:
         """The core's model.
 
@@ -266,11 +267,13 @@ class System:
             harmonic response: the whole deviatoric stiffness is left to a modulus given per frequency.
         memory
             Time, s, over which layers that soften remember their amplitude; needed for their march.
+        contacts
+            Whether films answer as viscous dampers, or remember.
 
         Raises
         ------
         ValueError
-            Without a memory that is needed.
+            Without a memory that is needed, and as `BearingTerm.kernel`.
         """
         C = self.viscous() if relaxed else self.C
         K = self.stiffness(self.marched_moduli()) if relaxed else self.K
@@ -283,7 +286,7 @@ class System:
             K=K,
             N=self.N,
             layers=layers,
-            bearings=[(t.kernel().packed(), t.B) for t in self.bearings],
+            bearings=[(t.kernel(contacts).packed(), t.B) for t in self.bearings],
             loads=[(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels=channels,
         )
