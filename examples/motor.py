@@ -291,9 +291,12 @@ def sweep(eq: bd.Equilibrium, progress: Callable[[int, int], object] | None = No
         try:
             # lines beyond the band that the rubber was measured for say nothing
             lines = min(SWEPT, int(BAND[1] / (ball_pass() * speed / SPEED)))
-            motion = bd.steady_state(
-                eq, speed=speed, record=VELOCITIES, harmonics=lines, start=motion, stability=False
-            )
+            with warnings.catch_warnings():
+                # so that those left out are left out on purpose
+                warnings.simplefilter("ignore", bd.notice.CutHarmonics)
+                motion = bd.steady_state(
+                    eq, speed=speed, record=VELOCITIES, harmonics=lines, start=motion, stability=False
+                )
         except bd.SolverError:
             motion = None  # ended in a fold: the next begins from the equilibrium
             continue
