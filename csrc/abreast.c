@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "echoes.h"
 #include "kernels.h"
 #include "loads.h"
 #include "newton.h"
