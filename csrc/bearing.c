@@ -21,6 +21,12 @@ bool bd_has_film(const bd_contact *contact)
     return contact->law == BD_DAMPING_FILM || contact->law == BD_DAMPING_CARRIED;
 }
 
+size_t bd_echoes_size(const bd_bearing_data *data)
+{
+    const size_t n = (size_t)data->contact.n_echoes;
+    return n > 0 ? (1 + 2 * n) * (size_t)BD_PADDED(data->n_balls) : 0;
+}
+
 size_t bd_bearing_constants(const bd_bearing_data *data)
 {
     const bool film = bd_has_film(&data->contact);

@@ -49,6 +49,10 @@ struct bd_bearing_work {
 /* Whether a contact has a table over w. */
 bool bd_has_film(const bd_contact *contact);
 
+/* Doubles that a state keeps of its films: p = b ddelta/dt, then of each echo the real and imaginary parts of q, ball by
+ * ball; 0 where none is carried. */
+size_t bd_echoes_size(const bd_bearing_data *data);
+
 /* Doubles of the constant arrays (spacing and absent), and their fill. */
 size_t bd_bearing_constants(const bd_bearing_data *data);
 void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *constants);

@@ -137,6 +137,15 @@ typedef struct bd_echo {
         strength[2]; /* 1/s, real and imaginary part; of a pair of two its first, doubled */
 } bd_echo;
 
+/* Weights of one echo for one step, complex: q(n+1) = decay q(n) + old p(n) + now p(n+1), p = b ddelta/dt. */
+typedef struct bd_echo_weights {
+    double decay[2], old[2], now[2];
+} bd_echo_weights;
+
+/* Given:    dt > 0; an echo whose decay has a positive real part
+ * Returned: the weights, exact for p linear in the step, to 2e-14 of the larger for any decay dt */
+bd_echo_weights bd_echo_step(const bd_echo *echo, double dt);
+
 typedef struct bd_contact {
     double kappa, h0; /* N/m^1.5; sum of both films, m */
     double give;      /* compliance of the ring beyond Hertz at a ball of its own, m/N */

@@ -1,66 +1,7 @@
 /* What the oil carries through a contact: echoes of the approach that fade as the film passes, as trial and commit. */
 #include "echoes.h"
 
-#include <complex.h>
 #include <string.h>
-
-#include "work.h"
-
-typedef double complex number;
-
-static number from_parts(const double *parts)
-{
-    return parts[0] + parts[1] * I;
-}
-
-static void to_parts(number value, double *parts)
-{
-    parts[0] = creal(value);
-    parts[1] = cimag(value);
-}
-
-/* Below this size of z the closed forms lose digits, so series are summed, whose last term is then below 1e-17. */
-static const double series_limit = 0.5;
-enum { SERIES_TERMS = 14 };
-
-bd_echo_weights bd_echo_step(const bd_echo *echo, double dt)
-{
-    const number z = -dt * from_parts(echo->decay);
-    number mean, late; /* integrals of exp(z (1 - t)) and t exp(z (1 - t)) over 0 ... 1 */
-    if (cabs(z) < series_limit) {
-        number term = 1.0; /* z^k / (k+1)! */
-        mean = late = 0.0;
-        for (int k = 0; k < SERIES_TERMS; k++) {
-            mean += term;
-            late += term / (double)(k + 2);
-            term *= z / (double)(k + 2);
-        }
-    } else {
-        mean = (cexp(z) - 1.0) / z;
-        late = (mean - 1.0) / z;
-    }
-    bd_echo_weights weights;
-    to_parts(cexp(z), weights.decay);
-    to_parts(dt * (mean - late), weights.old);
-    to_parts(dt * late, weights.now);
-    return weights;
-}
-
-size_t bd_echoes_size(const bd_bearing_data *data)
-{
-    const size_t n = (size_t)data->contact.n_echoes;
-    return n > 0 ? (1 + 2 * n) * (size_t)BD_PADDED(data->n_balls) : 0;
-}
-
-void bd_echoes_prepare(const bd_model *model, bd_work *work)
-{
-    for (int b = 0; b < model->n_bearings; b++) {
-        const bd_bearing *bearing = &model->bearings[b];
-        for (int i = 0; i < bearing->data.contact.n_echoes; i++)
-            work->echoes[bearing->weight + i] =
-                bd_echo_step(&bearing->data.contact.echoes[i], work->scheme.dt);
-    }
-}
 
 void bd_echoes_forget(const bd_model *model, bd_work *work)
 {
@@ -83,8 +24,9 @@ void bd_echoes_begin(const bd_model *model, const bd_work *work, bd_state *state
         double *q = state->echoes + bearing->echo + balls;
         memcpy(q - balls, pressed, balls * sizeof *pressed);
         for (int i = 0; i < contact->n_echoes; i++, q += 2 * balls) {
-            double slow[2];
-            to_parts(1.0 / from_parts(contact->echoes[i].decay), slow);
+            /* 1/decay */
+            const double *d = contact->echoes[i].decay, size = d[0] * d[0] + d[1] * d[1];
+            const double slow[2] = {d[0] / size, -d[1] / size};
             for (size_t j = 0; j < balls; j++) {
                 q[j] = slow[0] * pressed[j];
                 q[balls + j] = slow[1] * pressed[j];

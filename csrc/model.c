@@ -1,7 +1,5 @@
 #include "model.h"
 
-#include "echoes.h"
-
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "echoes.h"
 #include "energy.h"
 #include "exact.h"
 #include "kernels.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dense.h"
+#include "echoes.h"
 #include "energy.h"
 #include "loads.h"
 #include "newton.h"

@@ -344,6 +344,16 @@ static void join_bearings(const bd_model *model, bd_work *work)
         }
 }
 
+void bd_echoes_prepare(const bd_model *model, bd_work *work)
+{
+    for (int b = 0; b < model->n_bearings; b++) {
+        const bd_bearing *bearing = &model->bearings[b];
+        for (int i = 0; i < bearing->data.contact.n_echoes; i++)
+            work->echoes[bearing->weight + i] =
+                bd_echo_step(&bearing->data.contact.echoes[i], work->scheme.dt);
+    }
+}
+
 bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                      double reference_speed, bd_work *work)
 {

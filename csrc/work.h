@@ -4,7 +4,6 @@
 
 #include <stdbool.h>
 
-#include "echoes.h"
 #include "model.h"
 #include "profile.h"
 
@@ -54,6 +53,9 @@ struct bd_work {
         *a_drift; /* (n_padded) a at the reference speed; what the departure from it adds */
     bd_bearing_work *bearings;
 };
+
+/* Takes the weights of every echo for the step of work's scheme. */
+void bd_echoes_prepare(const bd_model *model, bd_work *work);
 
 /* Takes over a scheme, copies its speed and chooses its kernels; BD_BAD_VALUE where it is not valid, or not on this
  * machine. */

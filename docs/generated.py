@@ -37,6 +37,8 @@ def make() -> None:
         pictures.stiffness,
         pictures.ring,
         pictures.sound,
+        pictures.sound_paths,
+        pictures.sound_intensity,
         pictures.steady,
         pictures.report,
     )

@@ -87,6 +87,37 @@ def sound(path: Path) -> None:
     plt.close(figure)
 
 
+def sound_paths(path: Path) -> None:
+    """The guide's page on sound: two plates, one with a layer, and the bearings their sound takes."""
+    found = bd.sound_contributions(
+        _two_plates(), np.geomspace(250.0, 1200.0, 300), "shaft.middle.y", ["left.outside", "right.outside"]
+    )
+    ax = bd.plot.sound_contributions(found)
+    ax.figure.savefig(path, dpi=110)
+    plt.close(ax.figure)
+
+
+def sound_intensity(path: Path) -> None:
+    """The guide's page on sound: where on the softly borne plate the sound leaves."""
+    found = bd.sound_intensity(_two_plates(), 700.0, "shaft.middle.y", ["left.outside"])
+    ax = bd.plot.sound_intensity(found)
+    ax.view_init(elev=20.0, azim=-35.0)
+    ax.figure.savefig(path, dpi=110)
+    plt.close(ax.figure)
+
+
+def _two_plates() -> bd.Equilibrium:
+    """The machine of the guide's page on sound, as its block builds it."""
+    page = (Path(__file__).parent / "guide" / "sound.md").read_text(encoding="utf-8")
+    block = next(b for b in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "machine = " in b)
+    housing = bd.Housing(0.16, 0.20, 0.03, 0.078, bore_height=0.12, damping=0.01, f_max=3000.0)
+    names: dict[str, object] = {"bd": bd, "housing": housing}
+    exec(block[: block.index("outside = ")], names)
+    eq = names["eq"]
+    assert isinstance(eq, bd.Equilibrium)
+    return eq
+
+
 def steady(path: Path) -> None:
     """The rotor of the guide's page on steady motions: its branches over speed."""
     app = bd.Application()

@@ -169,6 +169,8 @@ PUBLIC = {
     },
     "sound": {
         "sound": (
+            "sound_contributions",
+            "sound_intensity",
             "sound_power",
             "write_wav",
         ),

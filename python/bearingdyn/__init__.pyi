@@ -155,6 +155,8 @@ from bearingdyn.results import (
     open_result,
     save,
 )
+from bearingdyn.sound import sound_contributions as sound_contributions
+from bearingdyn.sound import sound_intensity as sound_intensity
 from bearingdyn.sound import sound_power as sound_power
 from bearingdyn.sound import write_wav as write_wav
 
@@ -278,6 +280,8 @@ __all__ = [
     "shaft_angle",
     "sheet_html",
     "sheet_text",
+    "sound_contributions",
+    "sound_intensity",
     "sound_power",
     "specimen_factor",
     "spectrum",

@@ -2,8 +2,8 @@
 #include <complex.h>
 #include <math.h>
 
+#include "bearingdyn.h"
 #include "check.h"
-#include "echoes.h"
 #include "systems.h"
 
 /* Integrals of exp(z (1 - t)) and t exp(z (1 - t)) over 0 ... 1. Of the series all terms are summed in long double,

@@ -531,3 +531,11 @@ def test_what_a_model_is_asked_is_a_list_of_analyses(wrong):
     app.add("mass", bd.RigidBody(2.0, (1e-3, 1e-3, 1e-3)))
     with pytest.raises(ValueError, match=r"analyses(\[0\])? is .*; it must be a"):
         bd.Model(app, wrong)
+
+
+def test_a_model_that_an_editor_saved_with_a_mark_of_its_encoding_is_read(tmp_path):
+    """Windows writes EF BB BF, and ends lines with CR LF."""
+    path = tmp_path / "m.toml"
+    plain = examples.model_path("pump").read_text(encoding="utf-8")
+    path.write_bytes(b"\xef\xbb\xbf" + plain.replace("\n", "\r\n").encode())
+    assert set(bd.read_model(path).application.names()) == set(examples.pump().names())

@@ -39,6 +39,11 @@ def good() -> dict[str, dict[str, object]]:
     study = xarray.Dataset({"m": ("case", [1.0, 2.0]), "n": ("case", [2.0, 1.0])})
     ball = bd.catalogue.bearing("6305", clearance=10e-6)
     ring = bd.FlexibleRing.of(ball, outside=bd.RingBed(1e11), f_max=0.0)
+    plate = bd.Application()
+    plate.add("plate", bd.Housing(0.1, 0.1, 0.03, 0.04, f_max=0.0).superelement())
+    plate.ground("plate.feet")
+    plate.free("plate.bore")
+    heard = (plate, 500.0, "plate.bore.y", ["plate.outside"])
     solved = ehl.solve(BALL.inner_contact, oil, 100.0, 5.9, 60.0, accuracy=0.1)
     steady = xarray.Dataset(
         {
@@ -84,6 +89,8 @@ def good() -> dict[str, dict[str, object]]:
         "ring_shape": {"bearing": bd.FlexibleBearing(ball, ring), "load": (0, -300.0, 0, 0, 0, 0)},
         "scene": {"app": app},
         "shifts": {"curve": curve},
+        "sound_contributions": {"data": bd.sound_contributions(*heard, element_size=0.02)},
+        "sound_intensity": {"data": bd.sound_intensity(*heard, element_size=0.02)},
         "spectrum": {"datasets": {"a": bd.spectrum(run, y)}},
         "spectrum_of": {"materials": {"a": RUBBER}},
         "speed_map": {"data": steady},

@@ -138,7 +138,7 @@ def test_warnings_come_before_the_work(app, monkeypatch: pytest.MonkeyPatch) -> 
         raise KeyboardInterrupt
 
     ask = (["housing.bore.z"], ["housing.outside"])
-    monkeypatch.setattr("bearingdyn.sound.power.solved_octave", stop)
+    monkeypatch.setattr("bearingdyn.sound.radiating_parts.solved_octave", stop)
     with pytest.warns(BeyondModes, match="f_max = 3000 Hz"), pytest.raises(KeyboardInterrupt):
         bd.sound_power(app, [4000.0], *ask)
     with pytest.warns(CoarsePanels, match="element_size is 50 mm"), pytest.raises(KeyboardInterrupt):

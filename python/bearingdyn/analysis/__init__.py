@@ -11,7 +11,7 @@ from bearingdyn.analysis.equivalent_radiated_power import radiated_power
 from bearingdyn.analysis.frequency_response import frequencies, frequency_response
 from bearingdyn.analysis.gradient import Gradient, gradient
 from bearingdyn.analysis.inputs_outputs import Input
-from bearingdyn.analysis.linearised import linear
+from bearingdyn.analysis.linearised import Linear, linear
 from bearingdyn.analysis.loaded_cage import cage_ratios, with_loaded_cages
 from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surfaces
 from bearingdyn.analysis.modes import modes
@@ -44,6 +44,7 @@ __all__ = [
     "Equilibrium",
     "Gradient",
     "Input",
+    "Linear",
     "MovedSurface",
     "OperatingPoint",
     "StateSpace",

@@ -19,6 +19,7 @@ from bearingdyn.bearing import (
     Lubricant,
     Phase,
     Supply,
+    check_given,
     contamination_factor,
     equivalent_life,
     equivalent_load,
@@ -32,8 +33,7 @@ from bearingdyn.bearing import (
     reliability_factor,
 )
 from bearingdyn.bearing import catalogue as listed
-from bearingdyn.bearing.rating import check_given
-from bearingdyn.bearing.rating import lives as lives_of
+from bearingdyn.bearing import lives as lives_of
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
 from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.parts import RigidBody

@@ -44,6 +44,13 @@ class Input:
         """Whether it is a moment."""
         return Channel.parse(self.name).is_rotation
 
+    def rate(self, omega: Array) -> Complex:
+        """Velocity over motion x of the system under it, (f,) at omega (f,): iω, or (iω)² for the ground.
+
+        A unit of the ground's is one of its velocity; x is what one of its acceleration, iω, drives.
+        """
+        return np.asarray((1j * omega) ** (1 if self.axis is None else 2))
+
     @classmethod
     def of(cls, system: System, name: str) -> Input:
         """An input by its channel.

@@ -67,9 +67,7 @@ def part_velocities(
     omega = 2 * np.pi * frequency
     with told(progress, "frequency") as tell:
         x = state.solve(omega, force, rows, speed, tell)
-    rate = 1j * omega
-    # per unit force the velocity is iω x; per unit velocity of the ground, whose acceleration is iω, iω iω x
-    factor = np.stack([rate ** (1 if i.axis is None else 2) for i in inputs], axis=1)[:, None]
+    factor = np.stack([i.rate(omega) for i in inputs], axis=1)[:, None]
     moved, at = [], 0
     for term in parts:
         velocity = x[:, at : at + len(term.place)] * factor

@@ -25,6 +25,8 @@ from bearingdyn.plot.notebook_html import as_html
 from bearingdyn.plot.orbit import orbit
 from bearingdyn.plot.orders import order_spectrum, orders
 from bearingdyn.plot.ring_shape import ring_shape
+from bearingdyn.plot.sound_contributions import sound_contributions
+from bearingdyn.plot.sound_intensity import sound_intensity
 from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.speed_map import speed_map, speed_waterfall
 from bearingdyn.plot.squeezed_section import squeezed_section
@@ -61,6 +63,8 @@ __all__ = [
     "ring_shape",
     "scene",
     "shifts",
+    "sound_contributions",
+    "sound_intensity",
     "spectrum",
     "spectrum_of",
     "speed_map",

@@ -1,8 +1,10 @@
 """Noise, as it is heard: sound radiated by surfaces, its levels, and signals to listen to."""
 
 from bearingdyn.sound.bands import band_filter, band_powers, bands, filtered_bands
+from bearingdyn.sound.contributions import sound_contributions
 from bearingdyn.sound.field import box_positions, far_field, far_power, hemisphere_positions, pressure_at
 from bearingdyn.sound.hearing import loudness, pressure_signal, weighted_signal
+from bearingdyn.sound.intensity import panel_forces, sound_intensity
 from bearingdyn.sound.levels import (
     band_levels,
     crest_factor,
@@ -35,11 +37,14 @@ __all__ = [
     "level",
     "loudness",
     "mean_squares",
+    "panel_forces",
     "pressure_at",
     "pressure_signal",
     "radiated_power",
     "read_wav",
     "solve",
+    "sound_contributions",
+    "sound_intensity",
     "sound_power",
     "total",
     "vibration_severity",

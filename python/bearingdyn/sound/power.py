@@ -4,29 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.analysis import (
-    Equilibrium,
-    Input,
-    frequencies,
-    linear,
-    part_velocities,
-    state_of,
-    surface_of,
-)
-from bearingdyn.application import Application, arm
-from bearingdyn.checks import name_list, number, one_speed, positive, real, require
-from bearingdyn.notice import BeyondModes, CoarsePanels, warn
+from bearingdyn.analysis import Equilibrium, Input, frequencies, linear, part_velocities, state_of
+from bearingdyn.application import Application
+from bearingdyn.checks import name_list, number, one_speed, real, require
 from bearingdyn.progress import Progress, told
-from bearingdyn.sound.radiation import DENSITY, PANELS, SOUND_SPEED
-from bearingdyn.sound.radiators import Radiators
-from bearingdyn.sound.resistance import heard, octaves, solved_octave
-from bearingdyn.system import PartTerm, System
+from bearingdyn.sound.radiating_parts import RadiatingParts
+from bearingdyn.sound.radiation import DENSITY, SOUND_SPEED
+from bearingdyn.sound.resistance import heard
+from bearingdyn.system import System
 from bearingdyn.types import Array
 from bearingdyn.units import takes
 
@@ -106,29 +96,27 @@ def sound_power(
     A. J. Burton, G. F. Miller, Proc. R. Soc. Lond. A 323 (1971) 201.
     """
     f = frequencies(frequency)
-    inputs, surfaces = name_list("inputs", inputs, least=1), name_list("surfaces", surfaces, "surfaces", 1)
-    density, sound_speed = positive("density", density), positive("sound_speed", sound_speed)
-    if element_size is not None:
-        element_size = positive("element_size", element_size, "it must be a positive length in m")
+    inputs = name_list("inputs", inputs, least=1)
     places = _microphones(microphones)
     speed = number("speed", one_speed(speed, rpm, 0.0))
     state = linear(source)
     state.system.check_speed(speed)
-    found = [surface_of(state.system, name) for name in surfaces]
-    parts = list({term.name: term for term, _ in found}.values())
+    radiating = RadiatingParts.of(
+        state.system, surfaces, highest=float(f.max()), floor=floor, density=density,
+        sound_speed=sound_speed, element_size=element_size, cache=cache,
+    )  # fmt: skip
+    parts, radiators = radiating.parts, radiating.radiators
     given = [Input.of(state.system, name) for name in inputs]
-    radiators = _radiators(state.system, parts, floor)
-    _check(radiators, parts, f, element_size, sound_speed)
 
     moved = part_velocities(state, parts, f, given, speed, progress)
     velocity = np.concatenate(moved, axis=1)
     plane = np.zeros((f.size, len(given)))
-    for term, surface in found:
+    for term, surface in radiating.surfaces:
         v = moved[parts.index(term)]
         plane += (
             0.5
-            * density
-            * sound_speed
+            * radiating.density
+            * radiating.sound_speed
             * np.einsum("fai,ab,fbi->fi", v.conj(), surface.W, v, optimize=True).real
         )
 
@@ -136,32 +124,16 @@ def sound_power(
     part_power = np.zeros((f.size, len(parts), len(given)))
     pressure = np.zeros((f.size, len(places), len(given)), dtype=np.complex128)
     told_of: list[str] = []
-    if f.max() > 0.0:
-        bands = octaves(float(f[f > 0].min()), float(f.max()))
-        with told(progress, "octave") as tell:
-            for number_of, (low, high) in enumerate(bands):
-                # the lowest octave keeps its lower end, where nothing else begins
-                above = f >= low if number_of == len(bands) - 1 else f > low
-                at = np.flatnonzero(above & (f <= high))
-                if not at.size:
-                    continue
-                octave = solved_octave(
-                    radiators, low, high, density=density, sound_speed=sound_speed, microphones=places,
-                    element_size=element_size, cache=None if cache is None else Path(cache),
-                )  # fmt: skip
-                told_of.append(
-                    f"{low:.5g}-{high:.5g} Hz: {octave.panels} panels of {1e3 * octave.size:.3g} mm "
-                    f"(wavelength/{sound_speed / high / octave.size:.1f}), {len(octave.nodes)} frequencies"
-                )
-                H = heard(octave, radiators, f[at], places, sound_speed) if len(places) else None
-                for i in range(len(given)):
-                    v = velocity[at, :, i]
-                    power[at, i], error[at, i] = octave.power(f[at], v)
-                    part_power[at, :, i] = octave.shares(f[at], v, radiators.blocks)
-                    if H is not None:
-                        pressure[at, :, i] = np.einsum("fpn,fn->fp", H, v)
-                if tell is not None:
-                    tell(number_of + 1, len(bands))
+    with told(progress, "octave") as tell:
+        for at, octave in radiating.octaves(f, places, tell):
+            told_of.append(radiating.said(octave))
+            H = heard(octave, radiators, f[at], places, radiating.sound_speed) if len(places) else None
+            for i in range(len(given)):
+                v = velocity[at, :, i]
+                power[at, i], error[at, i] = octave.power(f[at], v)
+                part_power[at, :, i] = octave.shares(f[at], v, radiators.blocks)
+                if H is not None:
+                    pressure[at, :, i] = np.einsum("fpn,fn->fp", H, v)
 
     from bearingdyn.results import dataset, inputs_of
 
@@ -198,10 +170,7 @@ def sound_power(
         {
             "analysis": "sound power",
             "speed": speed,
-            "density": density,
-            "sound_speed": sound_speed,
-            "surfaces": ", ".join(surfaces),
-            "floor": "free field" if floor is None else f"rigid at y = {floor} m",
+            **radiating.facts(),
             "panels": "; ".join(told_of),
             **state_of(source),
             **inputs_of(state.system.inputs),
@@ -221,52 +190,3 @@ def _microphones(given: ArrayLike | None) -> Array:
     good = places.ndim == 2 and places.shape[1] == 3 and bool(np.isfinite(places).all())
     require(good, "microphones", given, remedy)
     return places
-
-
-def _radiators(system: System, parts: Sequence[PartTerm], floor: float | None) -> Radiators:
-    skins, places = [], []
-    for term in parts:
-        skin = term.element.skin
-        if skin is None:
-            raise ValueError(
-                f"part {term.name!r} has surfaces but no skin; make it a Housing, or a Solid with radiating="
-            )
-        at = system.positions.get(f"{term.name}.{next(iter(term.element.interfaces), None)}")
-        if at is None or np.isnan(term.rigid).any():
-            raise ValueError(f"part {term.name!r} has no known place; join it to the first part")
-        # the mean of the points, from the first interface and in the part's own frame
-        mean = skin.rows.reshape(-1, 3, skin.rows.shape[1]).mean(axis=0)
-        skins.append(skin)
-        places.append(at + arm(mean, term.rigid) - skin.points.mean(axis=0))
-    if floor is not None:
-        floor = number("floor", floor, "it must be a height y in m, or None")
-        for term, skin, place in zip(parts, skins, places, strict=True):
-            low = float((skin.points + place)[:, 1].min())
-            extent = float(np.ptp(skin.points, axis=0).max())
-            require(
-                low >= floor - 1e-6 * extent,
-                "floor",
-                floor,
-                f"part {term.name!r} reaches down to y = {low:.6g} m; put the floor at or below that",
-            )
-    return Radiators(skins, np.array(places), floor)
-
-
-def _check(
-    radiators: Radiators, parts: Sequence[PartTerm], f: Array, size: float | None, sound_speed: float
-) -> None:
-    """Words of warning before the work."""
-    highest = float(f.max())
-    for term, skin in zip(parts, radiators.skins, strict=True):
-        if highest > skin.f_max:
-            warn(
-                f"sound is asked for up to {highest:.5g} Hz, and part {term.name!r} was reduced up to "
-                f"f_max = {skin.f_max:.5g} Hz; give it a higher f_max",
-                BeyondModes,
-            )
-    if size is not None and highest > 0 and not size <= sound_speed / highest / PANELS:
-        warn(
-            f"element_size is {1e3 * size:.4g} mm, and a sixth of the wavelength at {highest:.5g} Hz is "
-            f"{1e3 * sound_speed / highest / PANELS:.4g} mm; make it smaller, or leave it out",
-            CoarsePanels,
-        )

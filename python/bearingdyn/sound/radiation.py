@@ -162,6 +162,12 @@ def solve(
     return Radiation(surface, B, frequency, density, sound_speed, rate * X, rate * F)
 
 
+def below_resonances(surface: TriangleSurface, frequency: float, sound_speed: float) -> bool:
+    """Whether a radiation at this frequency, Hz, lies safely below all resonances of the inside."""
+    safe = SAFE if surface.floor is None else SAFE_ON_FLOOR
+    return bool(2.0 * np.pi * frequency / sound_speed * surface.extent <= safe)
+
+
 def warn_of_coarse_panels(surface: TriangleSurface, frequency: float, sound_speed: float) -> None:
     """Warn where a triangle is too coarse for the radiation: longer than a sixth of the wavelength."""
     wavelength = sound_speed / frequency

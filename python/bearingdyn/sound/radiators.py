@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -18,6 +18,30 @@ from bearingdyn.types import Array, Index
 
 PER_WAVELENGTH = 4.0  # sides of the program's panels; a sphere's power is then within .01 dB
 PER_BODY = 10.0  # sides along the longest extent of a body, at least
+
+
+@dataclass(frozen=True, eq=False)
+class RadiatingPanels:
+    """Panels of all radiators in one surface.
+
+    Parameters
+    ----------
+    surface
+        The panels, without those on the floor.
+    rows
+        (m, n): their outward normal velocity from the coordinates of all bodies.
+    body
+        (m,): which body each belongs to.
+    shares
+        Of each body, name -> the share of each of its panels that lies on a named surface.
+    """
+
+    surface: TriangleSurface
+    rows: Array
+    body: Index
+    shares: Sequence[Mapping[str, Array]]
+
+    __repr__ = short
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +61,7 @@ class Radiators:
     skins: Sequence[Skin]
     places: Array
     floor: float | None = None
-    _made: dict[float, tuple[TriangleSurface, Array]] = field(default_factory=dict, init=False, repr=False)
+    _made: dict[float, RadiatingPanels] = field(default_factory=dict, init=False, repr=False)
 
     __repr__ = short
 
@@ -59,30 +83,41 @@ class Radiators:
 
     def surface(self, size: float) -> tuple[TriangleSurface, Array]:
         """One surface of all bodies, and how their coordinates move its triangles, (m, n); kept."""
+        made = self.panels(size)
+        return made.surface, made.rows
+
+    def panels(self, size: float) -> RadiatingPanels:
+        """The panels of all bodies with sides near `size`, m; kept."""
         if size not in self._made:
-            self._made[size] = self._surface(size)
+            self._made[size] = self._panels(size)
         return self._made[size]
 
-    def _surface(self, size: float) -> tuple[TriangleSurface, Array]:
-        made: dict[str, SkinPanels] = {}
-        points, faces, rows, count = [], [], [], 0
-        for skin, place in zip(self.skins, self.places, strict=True):
-            key = digest(skin.points, skin.faces, skin.rows)
+    def _panels(self, size: float) -> RadiatingPanels:
+        made: dict[tuple[str, ...], SkinPanels] = {}
+        points, faces, rows, body, shares, count = [], [], [], [], [], 0
+        for k, (skin, place) in enumerate(zip(self.skins, self.places, strict=True)):
+            key = (digest(skin.points, skin.faces, skin.rows, *skin.surfaces.values()), *skin.surfaces)
             if key not in made:
                 made[key] = panelled(skin, size)
-            body = made[key]
-            points.append(body.points + place)
-            faces.append(body.faces + count)
-            rows.append(body.rows)
-            count += len(body.points)
+            own = made[key]
+            points.append(own.points + place)
+            faces.append(own.faces + count)
+            rows.append(own.rows)
+            body.append(np.full(len(own.faces), k))
+            shares.append(own.shares)
+            count += len(own.points)
         p, f = np.vstack(points), np.vstack(faces)
-        B = np.asarray(scipy.linalg.block_diag(*rows))
+        B, owner = np.asarray(scipy.linalg.block_diag(*rows)), np.concatenate(body)
+        radiate: Array = np.ones(len(f), dtype=bool)
         if self.floor is not None:
             # feet that stand on the floor, to the errors of the fit
             near = np.abs(p[:, 1] - self.floor) < 1e-6 * float(np.ptp(p, axis=0).max())
             p[near, 1] = self.floor
-            B = B[~near[f].all(axis=1)]
-        return TriangleSurface(p, f, self.floor), B
+            radiate = np.asarray(~near[f].all(axis=1))
+        named = [
+            {name: share[radiate[owner == k]] for name, share in own.items()} for k, own in enumerate(shares)
+        ]
+        return RadiatingPanels(TriangleSurface(p, f, self.floor), B[radiate], owner[radiate], named)
 
     def fingerprint(self) -> str:
         """Hash of everything that the radiation of these bodies depends on."""

@@ -23,7 +23,7 @@ from bearingdyn.notice import RepairedResistance, UnsureInterpolation, warn
 from bearingdyn.progress import Progress
 from bearingdyn.short_repr import short
 from bearingdyn.sound.field import pressure_at
-from bearingdyn.sound.radiation import SAFE, SAFE_ON_FLOOR, Radiation, solve
+from bearingdyn.sound.radiation import Radiation, below_resonances, solve
 from bearingdyn.sound.radiators import Radiators, digest
 from bearingdyn.types import Array, Complex
 
@@ -92,11 +92,14 @@ class Octave:
         rough = f**2 * (forms * self.weights(f, (len(self.nodes) + 1) // 2)).sum(axis=1)
         return best, _difference(best, rough)
 
+    def force(self, f: Array, velocity: Complex) -> Complex:
+        """R v (f, n) of velocities (f, n) at frequencies (f,) of the octave, N."""
+        w = self.weights(f) * (f[:, None] / self.nodes) ** 2
+        return np.asarray(sum(w[:, j : j + 1] * (velocity @ R) for j, R in enumerate(self.resistance)))
+
     def shares(self, f: Array, velocity: Complex, blocks: Sequence[slice]) -> Array:
         """What each of the blocks of coordinates gives, ½ Re v_b* (R v)_b, (f, blocks)."""
-        w = self.weights(f) * (f[:, None] / self.nodes) ** 2
-        force = sum(w[:, j : j + 1] * (velocity @ R) for j, R in enumerate(self.resistance))
-        each = 0.5 * (velocity.conj() * force).real
+        each = 0.5 * (velocity.conj() * self.force(f, velocity)).real
         return np.stack([each[:, block].sum(axis=1) for block in blocks], axis=1)
 
     def matrix(self, f: float) -> Array:
@@ -163,8 +166,7 @@ def solved_octave(
         _warn(known)
         return known
     surface, rows = radiators.surface(size)
-    safe = SAFE if surface.floor is None else SAFE_ON_FLOOR
-    below = bool(2.0 * np.pi * high / sound_speed * surface.extent <= safe)
+    below = below_resonances(surface, high, sound_speed)
 
     def at(f: float) -> tuple[Array, Complex]:
         found = solve(surface, rows, f, density=density, sound_speed=sound_speed, coarse=True, below=below)

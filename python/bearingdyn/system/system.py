@@ -15,7 +15,7 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Channel
-from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing import BallBearing, FilmDamping
 from bearingdyn.checks import meant
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.notice import OilAtOtherSpeed, warn
@@ -294,11 +294,17 @@ class System:
 
 def _doubt_oil(name: str, bearing: BallBearing, speed: float) -> None:
     """Warn of films and damping that were found at another speed, rad/s (OilAtOtherSpeed)."""
-    oil = bearing.lubrication
-    if oil is not None and speed != 0.0 and not 1 / APART <= abs(speed / oil.speed) <= APART:
+    damping = bearing.damping
+    inner, outer = bearing.ring_speeds
+    if not isinstance(damping, FilmDamping) or damping.answer is None or speed == 0.0 or inner == outer:
+        return
+    # the speed of entrainment was that of the loaded angle, whose cosine matters little here
+    gamma = bearing.geometry.gamma
+    known = damping.answer.us / (bearing.Dpw / 2 * abs(inner - outer) * (1 - gamma**2))
+    if not 1 / APART <= abs(speed) / known <= APART:
         warn(
-            f"bearing {name!r} has the films and the damping of {abs(oil.speed):.4g} rad/s, of its "
-            f"lubrication=, and is asked at a speed more than {APART - 1:.0%} off: films go as speed to the power 0.67; "
-            "give lubrication=OilSupply(..., speed=) of the speed asked",
+            f"bearing {name!r} has the films and the damping of {known:.3g} rad/s, of its lubrication, and "
+            f"is asked at a speed more than {APART - 1:.0%} off: films go as speed to the power 0.67; give "
+            "lubrication=OilSupply(..., speed=) of the speed asked",
             OilAtOtherSpeed,
         )
