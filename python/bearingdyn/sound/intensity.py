@@ -35,9 +35,9 @@ def panel_forces(
     """Force of the sound field on each triangle of a surface, of which its intensity follows.
 
     The pressure at the corners has an error that is small beside the pressure, not beside that part of it
-    which is in phase with the velocity: of a plate at low frequency its power was 4.4 times too high. The
-    force on triangle t is therefore taken from the form F(1_t, v) of `bearingdyn.sound.radiation`, whose
-    error is of second order, as the impedance of triangles that move alone.
+    which is in phase with the velocity: of a plate at 600 Hz its power was 9 % too high. The force on
+    triangle t is therefore taken from the form F(1_t, v) of `bearingdyn.sound.radiation`, whose error is of
+    second order, as the impedance of triangles that move alone.
 
     Parameters
     ----------
@@ -147,11 +147,9 @@ def sound_intensity(
     through: dict[str, float] = {}
     for k, term in enumerate(radiating.parts):
         own = panels.body == k
-        leaving, left = (intensity * areas)[own], np.ones(int(own.sum()))
+        leaving, left = (intensity * areas)[own], panels.unnamed[own]
         for name, share in panels.shares[k].items():
             through[f"{term.name}.{name}"] = float(share @ leaving)
-            left -= share
-        left = np.maximum(left, 0.0)
         if left @ areas[own] > COVERED * areas[own].sum():
             through[f"{term.name}, the rest"] = float(left @ leaving)
 

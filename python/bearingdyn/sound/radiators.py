@@ -34,12 +34,15 @@ class RadiatingPanels:
         (m,): which body each belongs to.
     shares
         Of each body, name -> the share of each of its panels that lies on a named surface.
+    unnamed
+        (m,): the share of each panel that lies on none.
     """
 
     surface: TriangleSurface
     rows: Array
     body: Index
     shares: Sequence[Mapping[str, Array]]
+    unnamed: Array
 
     __repr__ = short
 
@@ -94,7 +97,7 @@ class Radiators:
 
     def _panels(self, size: float) -> RadiatingPanels:
         made: dict[tuple[str, ...], SkinPanels] = {}
-        points, faces, rows, body, shares, count = [], [], [], [], [], 0
+        points, faces, rows, body, shares, bare, count = [], [], [], [], [], [], 0
         for k, (skin, place) in enumerate(zip(self.skins, self.places, strict=True)):
             key = (digest(skin.points, skin.faces, skin.rows, *skin.surfaces.values()), *skin.surfaces)
             if key not in made:
@@ -105,6 +108,7 @@ class Radiators:
             rows.append(own.rows)
             body.append(np.full(len(own.faces), k))
             shares.append(own.shares)
+            bare.append(own.unnamed)
             count += len(own.points)
         p, f = np.vstack(points), np.vstack(faces)
         B, owner = np.asarray(scipy.linalg.block_diag(*rows)), np.concatenate(body)
@@ -117,7 +121,8 @@ class Radiators:
         named = [
             {name: share[radiate[owner == k]] for name, share in own.items()} for k, own in enumerate(shares)
         ]
-        return RadiatingPanels(TriangleSurface(p, f, self.floor), B[radiate], owner[radiate], named)
+        unnamed = np.concatenate(bare)[radiate]
+        return RadiatingPanels(TriangleSurface(p, f, self.floor), B[radiate], owner[radiate], named, unnamed)
 
     def fingerprint(self) -> str:
         """Hash of everything that the radiation of these bodies depends on."""

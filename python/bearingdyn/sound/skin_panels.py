@@ -35,12 +35,15 @@ class SkinPanels:
         (m, c): outward normal displacement of each panel from the coordinates of the part's superelement.
     shares
         name -> (m,): the share of each panel that lies on a named surface.
+    unnamed
+        (m,): the share of each panel that lies on none of them; surfaces may overlap.
     """
 
     points: Array
     faces: Index
     rows: Array
     shares: dict[str, Array]
+    unnamed: Array
 
     __repr__ = short
 
@@ -99,7 +102,9 @@ def panelled(skin: Skin, size: float) -> SkinPanels:
     for name, at in skin.surfaces.items():
         on = np.isin(samples.face, at)
         shares[name] = np.bincount(panel, weight * on, minlength=m) / held
-    return SkinPanels(points, faces, np.asarray(rows), shares)
+    named = np.concatenate([np.zeros(0, dtype=np.intp), *skin.surfaces.values()])
+    unnamed = np.bincount(panel, weight * ~np.isin(samples.face, named), minlength=m) / held
+    return SkinPanels(points, faces, np.asarray(rows), shares, unnamed)
 
 
 @dataclass(frozen=True, eq=False)
