@@ -76,7 +76,7 @@ def told(warning: type[Warning]) -> tuple[str, str, str]:
     if parts[1::2] != ["When", "Remedy"]:
         raise ValueError(f"{warning.__name__}: its docstring needs a paragraph When: and then one Remedy:")
     what, when, remedy = (" ".join(part.split()).replace("|", "\\|") for part in parts[0::2])
-    what = what.removeprefix("Notice class: ")
+    what = what.removeprefix("One of the notices: ")
     return what[0].upper() + what[1:], when, remedy
 
 

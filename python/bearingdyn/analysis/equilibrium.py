@@ -22,12 +22,12 @@ from bearingdyn.bearing import (
     warn_of_lean,
 )
 from bearingdyn.checks import one_of, positive, require, whole
-from bearingdyn.material import is_volume, warn_beyond
+from bearingdyn.material import is_volume
 from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
 from bearingdyn.pictures import picture
 from bearingdyn.plausible_ranges import plausible
-from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
+from bearingdyn.system import BearingTerm, LoadTerm, System, system_of, warn_at_rest
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 
@@ -252,7 +252,7 @@ def equilibrium(
     state = modulus or "relaxed"
     rest = Statics.of(system, state if after is None else after)
     if state == "relaxed":
-        warn_at_rest(system, math.inf if after is None else after)
+        warn_at_rest(system.layers, math.inf if after is None else after)
     q = None if start is None else rest.T.T @ (system.M @ start.x)
     if any(isinstance(t.bearing, BallBearing) and t.bearing.lubrication for t in system.bearings):
         system, q = _lubricated(system, rest, angle, q)
@@ -353,16 +353,6 @@ def state_of(source: object) -> dict[str, str]:
     """
     layered = isinstance(source, Equilibrium) and source.system.layers
     return {"layers": source.layers} if isinstance(source, Equilibrium) and layered else {}
-
-
-def warn_at_rest(system: System, time: float) -> None:
-    """Warn that an equilibrium at a time, s (inf: relaxed), rests on what a layer's data do not cover."""
-    warn_beyond(
-        [(layer.part, layer.material) for layer in system.layers],
-        time,
-        "the static state",
-        "take equilibrium(app, after=...) at a time that the data reach, ",
-    )
 
 
 def _doubt_lean(term: BearingTerm, state: BearingState) -> None:

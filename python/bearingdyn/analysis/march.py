@@ -18,8 +18,8 @@ from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
 from bearingdyn.analysis.march_state import Beginning, check_state, moved, system_hash
 from bearingdyn.analysis.recordable_channels import CoreChannel, channel_of
-from bearingdyn.analysis.shaft_speed import drive_of
 from bearingdyn.analysis.softening import memory_of, softening_layers
+from bearingdyn.analysis.speed_profile import drive_of
 from bearingdyn.analysis.step_size import step_error, warn_if_coarse, warn_if_growing
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY

@@ -14,7 +14,7 @@ import numpy as np
 
 from bearingdyn import run_file
 from bearingdyn.checks import existing, meant
-from bearingdyn.results.datasets import march_dataset
+from bearingdyn.results.march_record import march_dataset
 from bearingdyn.results.provenance import stamp
 from bearingdyn.writing import check_target, write_whole
 

@@ -1,7 +1,7 @@
 """An application as plain arrays: what the C core and the analyses take."""
 
 from bearingdyn.system.assembly import assemble
-from bearingdyn.system.layer_static_modulus import Modulus
+from bearingdyn.system.layer_static_modulus import Modulus, warn_at_rest
 from bearingdyn.system.matrix_factor import factor
 from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.system import System
@@ -21,4 +21,5 @@ __all__ = [
     "factor",
     "natural",
     "system_of",
+    "warn_at_rest",
 ]
