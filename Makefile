@@ -125,6 +125,12 @@ wheel: $(VENV)/tools
 	cd $(DIST)/empty && CC=/nonexistent PATH=$(CURDIR)/$(DIST)/venv/bin $(CURDIR)/$(DIST)/venv/bin/python \
 	  $(CURDIR)/tests/wheel_trial.py
 
+# A wheel for each Python of WHEEL_PYTHONS that runs on any Linux since 2014, tried in an empty environment.
+.PHONY: wheels
+WHEEL_PYTHONS ?= $(PYTHON)
+wheels: $(VENV)/tools
+	$(PY) tests/make_wheels.py $(BUILD)/wheels $(WHEEL_PYTHONS)
+
 clean:
 	rm -rf $(VENV) $(BUILD) out docs/_static .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find python tests examples benchmarks notebooks docs -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true

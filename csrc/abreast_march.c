@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "abreast.h"
+#include "echoes.h"
 #include "loads.h"
 #include "newton.h"
 #include "record.h"
@@ -203,6 +204,7 @@ static bd_status find_alone(runners *all, int l)
         work->z_linear[k] = *lane(abreast->z, k, l);
         work->z_rate_linear[k] = *lane(abreast->z_rate, k, l);
     }
+    bd_echoes_trial(model, work, &all->state[l]);
     const bd_status status = bd_solve_bearings(model, work, &all->state[l], &one->report);
     for (int k = 0; k < model->coefs; k++)
         *lane(abreast->guess, k, l) = work->guess[k];
@@ -275,6 +277,7 @@ static void end_step(runners *all, int l, bool found_in_lanes)
 
     state->clock.steps++;
     one->report.steps++;
+    bd_echoes_commit(model, work, state);
     const bool kept = state->clock.steps % one->decimate == 0, open = is_open(model);
     if (found_in_lanes && (open || (kept && asks_for_balls(model)))) {
         /* its own balls at the motion found, to the bit as they were there */

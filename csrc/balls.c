@@ -125,8 +125,10 @@ void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work
     const int coefs = bearing->coefs;
 
     indent(bearing, work, z, z_rate, cage_speed);
+    const bd_carried oil = {work->carried, work->pressed, work->fresh};
     BD_NAMED(bd_ehl_contacts)(&data->contact, bearing->film, whole_lanes(data->n_balls),
-                              work->delta, work->rate, work->force, work->stiffness, work->damping);
+                              work->delta, work->rate, &oil, work->force, work->stiffness,
+                              work->damping);
     if (work->holds)
         bd_held_contacts(&data->contact, data->n_balls, work);
 

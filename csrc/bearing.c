@@ -13,17 +13,28 @@ static const double no_ball = -1e6;
 size_t bd_bearing_work_size(const bd_bearing_data *data)
 {
     size_t balls = (size_t)BD_PADDED(data->n_balls), coefs = (size_t)BD_PADDED(data->n_coefs);
-    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + 20 * balls;
+    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + 22 * balls;
+}
+
+bool bd_has_film(const bd_contact *contact)
+{
+    return contact->law == BD_DAMPING_FILM || contact->law == BD_DAMPING_CARRIED;
+}
+
+size_t bd_echoes_size(const bd_bearing_data *data)
+{
+    const size_t n = (size_t)data->contact.n_echoes;
+    return n > 0 ? (1 + 2 * n) * (size_t)BD_PADDED(data->n_balls) : 0;
 }
 
 size_t bd_bearing_constants(const bd_bearing_data *data)
 {
-    const bool film = data->contact.law == BD_DAMPING_FILM;
+    const bool film = bd_has_film(&data->contact);
     return (3 + 2 * (size_t)data->n_waves) * (size_t)BD_PADDED(data->n_balls) +
            (film ? BD_FILM_CELLS * BD_FILM_POWERS : 0);
 }
 
-/* Hermite's cubics of the film law by powers of the distance in w from the cell's start. */
+/* Hermite's cubics of a film's law by powers of the distance in w from the cell's start. */
 static void set_film(const bd_contact *contact, double *film)
 {
     const double *at = contact->table_delta, *rise = contact->table_c, n = BD_FILM_CELLS;
@@ -60,7 +71,7 @@ void bd_bearing_setup(bd_bearing *bearing, const bd_bearing_data *data, double *
             wave_sin[w * balls + j] = sin(angle);
         }
     double *film = wave_sin + (size_t)data->n_waves * (size_t)balls;
-    bearing->film = data->contact.law == BD_DAMPING_FILM ? film : NULL;
+    bearing->film = bd_has_film(&data->contact) ? film : NULL;
     if (bearing->film)
         set_film(&data->contact, film);
     bearing->data = *data;
@@ -81,9 +92,11 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
         &work->sine_a,     &work->cosine_a, &work->delta,  &work->rate,         &work->turn,
         &work->tilt,       &work->turning,  &work->force,  &work->stiffness,    &work->damping,
         &work->shift_X,    &work->shift_Y,  &work->shift,  &work->shift_X_rate, &work->shift_Y_rate,
-        &work->shift_rate, &work->place,    &work->inside, &work->pull,         &work->peak};
+        &work->shift_rate, &work->place,    &work->inside, &work->pull,         &work->peak,
+        &work->carried,    &work->pressed};
 
     work->holds = false;
+    work->fresh = 1.0;
     work->normal = memory + 2 * by_ball + 2 * balls * coefs;
     bd_bearing_lead(bearing, work, NULL);
     work->along = work->normal + balls * coefs;

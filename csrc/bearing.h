@@ -12,8 +12,11 @@ struct bd_bearing {
     const double *spacing_cos, *spacing_sin; /* (balls) of 2 pi j/Z */
     const double *absent;              /* (balls) 0, or a gap no ball closes in padding lanes */
     const double *wave_cos, *wave_sin; /* (n_waves x balls) of order * 2 pi j/Z */
-    /* (BD_FILM_CELLS x BD_FILM_POWERS) c in a cell of the film law, by rising powers of the share of the cell; or NULL */
+    /* (BD_FILM_CELLS x BD_FILM_POWERS) c, or b, in a cell of the film's laws, by rising powers of the share of the cell;
+     * or NULL */
     const double *film;
+    size_t echo; /* of its films in a state's echoes */
+    int weight;  /* of its first echo in bd_work.echoes */
 };
 
 enum { BD_FILM_POWERS = 4 };
@@ -38,7 +41,17 @@ struct bd_bearing_work {
     double *place, *inside, *pull;
     bool holds; /* whether the three count */
     bool led;   /* whether the basis is another bearing's, which turns it (abreast.c) */
+    /* (balls) of the carried law: eta without the rate at the step's end, and b ddelta/dt there */
+    double *carried, *pressed;
+    double fresh; /* eta per b ddelta/dt at the step's end; 1 where all has been so for long */
 };
+
+/* Whether a contact has a table over w. */
+bool bd_has_film(const bd_contact *contact);
+
+/* Doubles that a state keeps of its films: p = b ddelta/dt, then of each echo the real and imaginary parts of q, ball by
+ * ball; 0 where none is carried. */
+size_t bd_echoes_size(const bd_bearing_data *data);
 
 /* Doubles of the constant arrays (spacing and absent), and their fill. */
 size_t bd_bearing_constants(const bd_bearing_data *data);

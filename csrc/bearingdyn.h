@@ -117,7 +117,9 @@ void bd_maxwell_stress(int n_times, int n_components, const double *rate, const 
     X(BD_DAMPING_CONSTANT, "constant") /* c while in contact (paper section 4.1) */                \
     X(BD_DAMPING_TABLE, "table")       /* c(delta), piecewise linear, its ends held */             \
     X(BD_DAMPING_LOAD, "load")         /* c = t_c dQ/ddelta: vanishes where contact is lost */     \
-    X(BD_DAMPING_FILM, "film") /* of a lubricated contact, over its load: vanishes likewise */
+    X(BD_DAMPING_FILM, "film") /* of a lubricated contact, over its load: vanishes likewise */     \
+    X(BD_DAMPING_CARRIED,                                                                          \
+      "carried") /* as film at low frequency; the oil carries what was pressed */
 
 typedef enum bd_damping_law { BD_DAMPING_LIST(BD_ENUMERATOR) } bd_damping_law;
 
@@ -125,14 +127,36 @@ typedef enum bd_damping_law { BD_DAMPING_LIST(BD_ENUMERATOR) } bd_damping_law;
  * lost towards 1, by cubics between equidistant nodes. */
 enum { BD_FILM_CELLS = 64, BD_FILM_NODES = BD_FILM_CELLS + 1 };
 
+/* Of the carried law: u^2 + give kappa u^3 = s + eta and F = kappa u^3, where the film eta answers the rate of approach
+ * through what the oil carries from the inlet through the contact,
+ *     eta = sum of Re(strength_i q_i),   dq_i/dt = -decay_i q_i + b(s) ddelta/dt,   Re sum of strength_i/decay_i = 1,
+ * b in s over w as the film law's c, here with w from s itself. Slow motions find eta = b ddelta/dt, the damping b dF/ds.
+ * F cannot be negative and jumps nowhere. */
+typedef struct bd_echo {
+    double decay[2],
+        strength[2]; /* 1/s, real and imaginary part; of a pair of two its first, doubled */
+} bd_echo;
+
+/* Weights of one echo for one step, complex: q(n+1) = decay q(n) + old p(n) + now p(n+1), p = b ddelta/dt. */
+typedef struct bd_echo_weights {
+    double decay[2], old[2], now[2];
+} bd_echo_weights;
+
+/* Given:    dt > 0; an echo whose decay has a positive real part
+ * Returned: the weights, exact for p linear in the step, to 2e-14 of the larger for any decay dt */
+bd_echo_weights bd_echo_step(const bd_echo *echo, double dt);
+
 typedef struct bd_contact {
     double kappa, h0; /* N/m^1.5; sum of both films, m */
     double give;      /* compliance of the ring beyond Hertz at a ball of its own, m/N */
     bd_damping_law law;
-    double c; /* N s/m (constant), t_c in s (load), or scale in m (film) */
+    double c; /* N s/m (constant), t_c in s (load), or scale in m (film, carried) */
     int n_table;
-    /* (n_table) increasing, and N s/m. Film: c at the nodes and its rise per cell, N s/m; both zero at the first */
+    /* (n_table) increasing, and N s/m. Film: c at the nodes and its rise per cell, N s/m; both zero at the first. Carried:
+     * likewise b, s */
     const double *table_delta, *table_c;
+    int n_echoes;          /* 0 but for the carried law */
+    const bd_echo *echoes; /* (n_echoes) */
 } bd_contact;
 
 /* ---------------------------------------------------------------- ball bearing (bearing.c) */
@@ -411,6 +435,7 @@ typedef struct bd_state {
     double *y_rate;    /* (rank_padded) layer rates L^T v */
     double *stress; /* branch stresses, layer by layer, branch by branch, then those of softening */
     double *softening; /* of layers that soften: what their amplitude runs on */
+    double *echoes;    /* of films that are carried: what they remember (echoes.c) */
     double *g;         /* (coefs_padded) bearing forces of the last step */
     double *g_before;  /* (2 coefs_padded) those of the two steps before it */
     double *inverse;   /* (coefs_padded^2) Newton's frozen inverse */

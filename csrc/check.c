@@ -61,6 +61,19 @@ static bool mirrored(const double *A, size_t n, double sign)
     return difference <= symmetry * largest;
 }
 
+/* Whether all echoes fade, and slow motions find the damping that the table has. */
+static bool fades_to_damping(const bd_contact *contact)
+{
+    double slow = 0.0;
+    for (int i = 0; i < contact->n_echoes; i++) {
+        const double *d = contact->echoes[i].decay, *s = contact->echoes[i].strength;
+        if (!(d[0] > 0.0))
+            return false;
+        slow += (s[0] * d[0] + s[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+    }
+    return fabs(slow - 1.0) < 1e-6; /* strengths are solved for: round-off, with room */
+}
+
 bd_status bd_bearing_check(const bd_bearing_data *bearing)
 {
     const bd_contact *contact = &bearing->contact;
@@ -109,13 +122,21 @@ bd_status bd_bearing_check(const bd_bearing_data *bearing)
             !increasing(contact->table_delta, contact->n_table))
             return BD_BAD_VALUE;
     }
-    if (contact->law == BD_DAMPING_FILM) {
+    if (bd_has_film(contact)) {
         const double *at = contact->table_delta, *rise = contact->table_c;
         if (contact->n_table != BD_FILM_NODES)
             return BD_BAD_SHAPE;
         if (!(contact->c > 0.0) || !all_finite(at, BD_FILM_NODES) ||
             !all_finite(rise, BD_FILM_NODES) || !nonnegative(at, BD_FILM_NODES) || at[0] != 0.0 ||
             rise[0] != 0.0)
+            return BD_BAD_VALUE;
+    }
+    if (contact->law == BD_DAMPING_CARRIED) {
+        const double *numbers = contact->n_echoes > 0 ? contact->echoes->decay : NULL;
+        if (contact->n_echoes < 1)
+            return BD_BAD_SHAPE;
+        if (!all_finite(numbers, (size_t)contact->n_echoes * sizeof(bd_echo) / sizeof(double)) ||
+            !fades_to_damping(contact))
             return BD_BAD_VALUE;
     }
     return BD_OK;

@@ -12,19 +12,19 @@
 
 /* Elastic part of one register of contacts. */
 typedef struct elastic {
-    lane_mask touching; /* delta + h0 > 0 */
+    lane_mask touching; /* s > 0, s = delta + h0 */
     lanes root;         /* u of film and solids, 0 out of contact */
     lanes force;        /* kappa u^3 */
     lanes firm;         /* its slope by delta */
     lanes soft;         /* what the ring's give leaves of that slope; 1 where nothing gives */
 } elastic;
 
-BD_INLINE void squeeze(const bd_contact *contact, bool gives, const double *delta, elastic *found)
+BD_INLINE void squeeze(const bd_contact *contact, bool gives, const lanes *approach, elastic *found)
 {
     const double kappa = contact->kappa, cubic = gives ? contact->give * kappa : 0.0;
-    lanes s = LANES(delta) + contact->h0, root;
-    found->touching = LANES_POSITIVE(s);
-    s = LANES_WHERE(found->touching, s);
+    lanes s, root;
+    found->touching = LANES_POSITIVE(*approach);
+    s = LANES_WHERE(found->touching, *approach);
     lanes_sqrt(&s, &root);
     found->soft = (lanes){0} + 1.0;
     if (gives) {
@@ -52,7 +52,7 @@ BD_INLINE void press(const elastic *spring, const lanes *c, const lanes *slope, 
     LANES_AT(damping) = LANES_WHERE(loaded, *c);
 }
 
-/* ---------------------------------------------------------------- the film law */
+/* ---------------------------------------------------------------- the film's laws */
 
 /* Registers between looking up and using: their chains of division, look-up and cubic then overlap, which are longer
  * than a processor looks ahead. */
@@ -99,19 +99,39 @@ BD_INLINE void film_cubics(const double *film, const lane_mask *cell, lanes *k0,
 #undef CUBIC
 }
 
-BD_INLINE void film_contacts(const bd_contact *contact, bool gives, const double *restrict film,
-                             int n, const double *restrict delta, const double *restrict rate,
+/* Force of one register under s, where the film is thicker by what the oil carries and by what is pressed now: F =
+ * kappa u^3, u^2 + give kappa u^3 = s + carried + fresh b rate; and its slopes. */
+BD_INLINE void press_carried(const bd_contact *contact, bool gives, const bd_carried *oil, int at,
+                             const lanes *approach, const lanes *b, const lanes *slope,
+                             const double *rate, double *force, double *stiffness, double *damping)
+{
+    const lanes r = LANES(rate), pressed = *b * r;
+    const lanes s = *approach + LANES(oil->carried + at) + oil->fresh * pressed;
+    elastic spring;
+    squeeze(contact, gives, &s, &spring);
+    LANES_AT(oil->pressed + at) = pressed;
+    LANES_AT(force) = spring.force;
+    LANES_AT(stiffness) = spring.firm * (1.0 + oil->fresh * (*slope * r));
+    LANES_AT(damping) = spring.firm * (oil->fresh * *b);
+}
+
+/* The film law, or the carried law; which of them the compiler knows. */
+BD_INLINE void film_contacts(const bd_contact *contact, bool gives, bool carries,
+                             const double *restrict film, int n, const double *restrict delta,
+                             const double *restrict rate, const bd_carried *oil,
                              double *restrict force, double *restrict stiffness,
                              double *restrict damping)
 {
+    const bool settled = gives && !carries; /* w is of what the ring's give leaves */
     const double half = sqrt(contact->c);
     for (int from = 0; from < n; from += AHEAD * BD_WIDTH) {
         const int left = (n - from) / BD_WIDTH, count = left < AHEAD ? left : AHEAD;
         elastic spring[AHEAD];
-        lanes u[AHEAD], by_s[AHEAD];
+        lanes s_of[AHEAD], u[AHEAD], by_s[AHEAD];
         lane_mask cell[AHEAD];
         for (int i = 0; i < count; i++) {
-            squeeze(contact, gives, delta + from + i * BD_WIDTH, &spring[i]);
+            s_of[i] = LANES(delta + from + i * BD_WIDTH) + contact->h0;
+            squeeze(contact, settled, &s_of[i], &spring[i]);
             lanes root = spring[i].root, s = root * root;
             /* one division, by root (root + half); 0/0 where nothing touches, which `touching` takes out again */
             lanes inverse = 1.0 / (s + half * root);
@@ -122,7 +142,7 @@ BD_INLINE void film_contacts(const bd_contact *contact, bool gives, const double
                       ((BD_FILM_CELLS - 1) << POWER_DIGITS);
             u[i] = place - (lanes)(digits & -(1LL << (DIGITS - CELL_DIGITS)));
             by_s[i] = ((0.5 * half) * root) * (inverse * inverse); /* dw/ds */
-            if (gives)
+            if (settled)
                 by_s[i] *= spring[i].soft;
         }
         for (int i = 0; i < count; i++) {
@@ -133,6 +153,12 @@ BD_INLINE void film_contacts(const bd_contact *contact, bool gives, const double
             lanes c = (k0 + u[i] * k1) + (u[i] * u[i]) * both;
             lanes slope = (k1 + u[i] * (both + both + last)) * by_s[i];
             c = LANES_WHERE(spring[i].touching, c);
+            if (carries) {
+                slope = LANES_WHERE(spring[i].touching, slope);
+                press_carried(contact, gives, oil, first, &s_of[i], &c, &slope, rate + first,
+                              force + first, stiffness + first, damping + first);
+                continue;
+            }
             press(&spring[i], &c, &slope, rate + first, force + first, stiffness + first,
                   damping + first);
         }
@@ -144,17 +170,21 @@ BD_INLINE void film_contacts(const bd_contact *contact, bool gives, const double
 /* As bd_ehl_contacts, of a law that the compiler knows: a loop without a branch. */
 BD_INLINE void contacts(const bd_contact *contact, bd_damping_law law, bool gives,
                         const double *restrict film, int n, const double *restrict delta,
-                        const double *restrict rate, double *restrict force,
+                        const double *restrict rate, const bd_carried *oil, double *restrict force,
                         double *restrict stiffness, double *restrict damping)
 {
     if (law == BD_DAMPING_FILM) {
-        film_contacts(contact, gives, film, n, delta, rate, force, stiffness, damping);
+        film_contacts(contact, gives, false, film, n, delta, rate, oil, force, stiffness, damping);
+        return;
+    }
+    if (law == BD_DAMPING_CARRIED) {
+        film_contacts(contact, gives, true, film, n, delta, rate, oil, force, stiffness, damping);
         return;
     }
     for (int first = 0; first < n; first += BD_WIDTH) {
         elastic spring;
-        lanes c = {0}, slope = {0};
-        squeeze(contact, gives, delta + first, &spring);
+        lanes c = {0}, slope = {0}, s = LANES(delta + first) + contact->h0;
+        squeeze(contact, gives, &s, &spring);
         if (law == BD_DAMPING_CONSTANT)
             c = c + contact->c;
         if (law == BD_DAMPING_LOAD) {
@@ -177,25 +207,27 @@ BD_INLINE void contacts(const bd_contact *contact, bd_damping_law law, bool give
  * Returned: force     F = max(0, kappa u^3 + c(delta) rate), 0 where delta + h0 <= 0, with the root u of film and
  *                     solids, u^2 + give kappa u^3 = delta + h0
  *           stiffness dF/ddelta at fixed rate, damping dF/drate; all zero where F is clipped
+ *           of the carried law see bd_echo; `oil` is written to
  * Notes:    a film cannot pull, hence the clip. Where c > 0 at the film's edge F jumps there; newton.c finds the force
  *           inside the jump (grazing.h)
  * Reference: paper eq (1). */
 void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, const double *restrict film, int n,
                                const double *restrict delta, const double *restrict rate,
-                               double *restrict force, double *restrict stiffness,
-                               double *restrict damping)
+                               const bd_carried *oil, double *restrict force,
+                               double *restrict stiffness, double *restrict damping)
 {
 #define LAW(law)                                                                                   \
     case law:                                                                                      \
         if (contact->give * contact->kappa != 0.0)                                                 \
-            contacts(contact, law, true, film, n, delta, rate, force, stiffness, damping);         \
+            contacts(contact, law, true, film, n, delta, rate, oil, force, stiffness, damping);    \
         else                                                                                       \
-            contacts(contact, law, false, film, n, delta, rate, force, stiffness, damping);        \
+            contacts(contact, law, false, film, n, delta, rate, oil, force, stiffness, damping);   \
         break;
     switch (contact->law) {
         LAW(BD_DAMPING_CONSTANT)
         LAW(BD_DAMPING_LOAD)
         LAW(BD_DAMPING_FILM)
+        LAW(BD_DAMPING_CARRIED)
         LAW(BD_DAMPING_TABLE)
     }
 #undef LAW

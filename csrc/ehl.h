@@ -5,9 +5,16 @@
 #include "elastic_force.h"
 #include "kernels.h"
 
+/* What the carried law needs besides: as in bd_bearing_work. */
+typedef struct bd_carried {
+    const double *carried;
+    double *pressed;
+    double fresh;
+} bd_carried;
+
 void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, const double *restrict film, int n,
                                const double *restrict delta, const double *restrict rate,
-                               double *restrict force, double *restrict stiffness,
-                               double *restrict damping);
+                               const bd_carried *oil, double *restrict force,
+                               double *restrict stiffness, double *restrict damping);
 
 #endif

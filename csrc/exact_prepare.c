@@ -164,6 +164,7 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
     work->exact = exact;
     work->reference = scheme->speed.value[0];
     work->in_x = work->in_v = 1.0; /* Newton's operators hold them */
+    bd_echoes_prepare(model, work);
     const size_t n = (size_t)data->n, padded = (size_t)model->n_padded, m = (size_t)model->coefs;
     const size_t channels = (size_t)model->n_channels, loads = (size_t)model->n_loads;
     exact->n = n;

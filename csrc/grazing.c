@@ -21,6 +21,7 @@ double bd_edge_damping(const bd_contact *contact)
         return bd_table_damping(contact, -contact->h0, &slope);
     case BD_DAMPING_LOAD:
     case BD_DAMPING_FILM:
+    case BD_DAMPING_CARRIED:
         break;
     }
     return 0.0;

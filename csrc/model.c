@@ -281,13 +281,16 @@ static bd_bearing_data copy_bearing(arena *a, const bd_bearing_data *from)
 {
     const size_t n_coefs = (size_t)from->n_coefs;
     const bd_contact *contact = &from->contact;
-    const bool tabled = contact->law == BD_DAMPING_TABLE || contact->law == BD_DAMPING_FILM;
+    const bool tabled = contact->law == BD_DAMPING_TABLE || bd_has_film(contact);
     const size_t n_table = tabled ? (size_t)contact->n_table : 0;
     bd_bearing_data own = *from;
     own.order = copy(a, from->order, n_coefs, sizeof *from->order);
     own.sine = copy(a, from->sine, n_coefs, sizeof *from->sine);
     own.contact.table_delta = copy_doubles(a, contact->table_delta, n_table);
     own.contact.table_c = copy_doubles(a, contact->table_c, n_table);
+    own.contact.n_echoes = contact->law == BD_DAMPING_CARRIED ? contact->n_echoes : 0;
+    own.contact.echoes =
+        copy(a, contact->echoes, (size_t)own.contact.n_echoes, sizeof *contact->echoes);
     own.waves = copy(a, from->waves, (size_t)from->n_waves, sizeof *from->waves);
     own.pits = copy(a, from->pits, (size_t)from->n_pits, sizeof *from->pits);
     if (from->oversize)
@@ -343,12 +346,16 @@ static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data
         double *constants = carve(a, bd_bearing_constants(&own), sizeof *constants);
         if (bearings) {
             bd_bearing_setup(&bearings[b], &own, constants);
+            bearings[b].echo = model->n_echo_doubles;
+            bearings[b].weight = model->n_echoes;
             bearing_slot[b] = slot;
             fill_coefs(model, data->B[b], slot, own.n_coefs, coef_slot + place, B);
             for (int c = 0; c < model->n_blocks; c++)
                 touched[b * model->n_blocks + c] =
                     sees(model, slot, own.n_coefs, &model->blocks[c]);
         }
+        model->n_echoes += own.contact.n_echoes;
+        model->n_echo_doubles += bd_echoes_size(&own);
         place += own.n_coefs;
         slot += BD_PADDED(own.n_coefs);
     }

@@ -56,6 +56,8 @@ struct bd_model {
     size_t n_stress;
     int n_softening;            /* layers that soften */
     size_t n_softening_doubles; /* of a state */
+    int n_echoes;               /* of all bearings' films that are carried */
+    size_t n_echo_doubles;      /* of a state */
     const int *order;           /* (n) the caller's index of a coordinate in block order */
     const int *slot;            /* (n) padded position of the caller's coordinate */
     const int *coef_slot;       /* (n_coefs) padded position of the caller's coefficient */

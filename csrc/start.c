@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dense.h"
+#include "echoes.h"
 #include "energy.h"
 #include "loads.h"
 #include "newton.h"
@@ -20,7 +21,9 @@ static void observe_state(const bd_model *model, bd_work *work, bd_state *state)
     columns_add_two(model->coefs, model->n_padded, model->B, model->coefs, state->x, state->v,
                     work->z, work->z_rate);
     bd_turn_bearings(model, work);
+    bd_echoes_forget(model, work);
     bd_force_bearings(model, work);
+    bd_echoes_begin(model, work, state);
     for (size_t k = 0; k < m; k++)
         state->g[k] = state->g_before[k] = state->g_before[m + k] = work->force[k];
 

@@ -60,7 +60,8 @@ size_t bd_state_size(const bd_model *model)
 {
     size_t n = (size_t)model->n_padded, m = (size_t)model->coefs;
     return BD_LANES + 3 * n + (size_t)model->ranks + model->n_stress + model->n_softening_doubles +
-           3 * m + m * m + (size_t)BD_PADDED(sizeof(bd_energy) / sizeof(double));
+           model->n_echo_doubles + 3 * m + m * m +
+           (size_t)BD_PADDED(sizeof(bd_energy) / sizeof(double));
 }
 
 bd_state bd_state_view(const bd_model *model, double *flat)
@@ -73,7 +74,8 @@ bd_state bd_state_view(const bd_model *model, double *flat)
     state.y_rate = state.a + n;
     state.stress = state.y_rate + model->ranks;
     state.softening = state.stress + model->n_stress;
-    state.g = state.softening + model->n_softening_doubles;
+    state.echoes = state.softening + model->n_softening_doubles;
+    state.g = state.echoes + model->n_echo_doubles;
     state.g_before = state.g + m;
     state.inverse = state.g_before + 2 * m;
     state.energy = (bd_energy *)(void *)(state.inverse + m * m);

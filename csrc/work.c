@@ -74,8 +74,10 @@ bd_work *bd_work_create(const bd_model *model)
     work->diagonal = calloc((size_t)model->n_blocks, sizeof *work->diagonal);
     work->step_at = calloc((size_t)model->n_blocks + 1, sizeof *work->step_at);
     work->weights = calloc((size_t)model->branches + 1, sizeof *work->weights);
+    work->echoes = calloc((size_t)model->n_echoes + 1, sizeof *work->echoes);
     work->bearings = calloc((size_t)model->n_bearings + 1, sizeof *work->bearings);
-    if (!work->memory || !work->diagonal || !work->step_at || !work->weights || !work->bearings) {
+    if (!work->memory || !work->diagonal || !work->step_at || !work->weights || !work->echoes ||
+        !work->bearings) {
         bd_work_free(work);
         return NULL;
     }
@@ -107,6 +109,7 @@ void bd_work_free(bd_work *work)
     free(work->step_at);
     free(work->diagonal);
     free(work->weights);
+    free(work->echoes);
     free(work->bearings);
     bd_profile_free(&work->profile);
     free(work->drift);
@@ -341,6 +344,16 @@ static void join_bearings(const bd_model *model, bd_work *work)
         }
 }
 
+void bd_echoes_prepare(const bd_model *model, bd_work *work)
+{
+    for (int b = 0; b < model->n_bearings; b++) {
+        const bd_bearing *bearing = &model->bearings[b];
+        for (int i = 0; i < bearing->data.contact.n_echoes; i++)
+            work->echoes[bearing->weight + i] =
+                bd_echo_step(&bearing->data.contact.echoes[i], work->scheme.dt);
+    }
+}
+
 bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                      double reference_speed, bd_work *work)
 {
@@ -356,6 +369,7 @@ bd_status bd_prepare(const bd_model *model, const bd_scheme *scheme, const bd_la
             work->weights[layer->branch + i] =
                 bd_maxwell_weights(scheme->dt, layer->tau[i], layer->modulus[i]);
     }
+    bd_echoes_prepare(model, work);
     status = factor_blocks(model, lapack, false, work);
     if (status == BD_OK)
         join_bearings(model, work);

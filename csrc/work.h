@@ -35,6 +35,7 @@ struct bd_work {
         W_rate; /* of an exact step, where W is of z alone and both hold what in_x and in_v are for */
     bd_exact *exact;            /* or NULL */
     bd_branch_weights *weights; /* (branches) layer by layer */
+    bd_echo_weights *echoes;    /* (n_echoes) bearing by bearing */
 
     /* vectors of a step, padded */
     double *x, *v, *a;       /* predictor; a without the bearings, then with */
@@ -52,6 +53,9 @@ struct bd_work {
         *a_drift; /* (n_padded) a at the reference speed; what the departure from it adds */
     bd_bearing_work *bearings;
 };
+
+/* Takes the weights of every echo for the step of work's scheme. */
+void bd_echoes_prepare(const bd_model *model, bd_work *work);
 
 /* Takes over a scheme, copies its speed and chooses its kernels; BD_BAD_VALUE where it is not valid, or not on this
  * machine. */

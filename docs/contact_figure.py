@@ -96,7 +96,65 @@ def damping(path: Path) -> None:
     plt.close(figure)
 
 
+def in_time(path: Path) -> None:
+    """Write how a mass on oiled balls rings down, and c(ω) as a film's decays give it, as SVG or PNG."""
+    import matplotlib.pyplot as plt
+
+    import bearingdyn as bd
+    from bearingdyn.bearing import FilmMemory, OilSupply
+
+    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
+    ball = bd.catalogue.bearing("6202", clearance=10e-6, lubrication=OilSupply(oil, TEMPERATURE, 500.0))
+    app = bd.Application()
+    app.add("mass", bd.RigidBody(mass=0.006, inertia=(1e-6, 1e-6, 1e-6)))
+    app.ground("mass.centre", stiffness=(1e3, 1e3, 0, 1e3, 1e3, 1e3))
+    app.bearing("ball", ball, inner="mass.centre", outer="ground")
+    app.load("mass.centre", (0, 0, 300.0, 0, 0, 0))
+    rest = bd.equilibrium(app)
+    start = {"mass.centre": (0, 0, rest.x @ rest.system.rows("mass.centre")[2] + 1e-7, 0, 0, 0)}
+    figure, axes = plt.subplots(1, 2, figsize=(9.6, 3.6), layout="constrained")
+    ways = (("viscous", ORANGE), ("film", BLUE))
+    for contacts, colour in ways:
+        run = bd.transient(
+            rest,
+            speed=500.0,
+            dt=1e-6,
+            steps=1500,
+            record=["mass.centre.z"],
+            contacts=contacts,  # type: ignore[arg-type]
+            initial=start,
+            filter=False,
+        )
+        z = 1e9 * run["record"].values[:, 0]
+        axes[0].plot(1e3 * run["time"], z - z[-500:].mean(), color=colour, lw=0.9, label=contacts)
+    axes[0].set(xlabel="time, ms", ylabel="displacement, nm", title="6 g on a 6202, 300 N, VG 32, 60 °C")
+
+    kernel, law = rest.system.bearings[0].kernel(), rest.system.bearings[0].bearing.damping
+    memory = FilmMemory.of(law, kernel.kappa)
+    f = np.geomspace(100, 30e3, 200)
+    dry = 1.5 * kernel.kappa ** (2 / 3) * memory.load ** (1 / 3)
+    table = law.answer.under(np.array([memory.load])).stiffness(2 * np.pi * f)[:, 0]
+    for k, style, label in (
+        (table, {"lw": 3, "alpha": 0.35}, "films"),
+        (memory.stiffness(2 * np.pi * f), {"lw": 1}, "decays"),
+    ):
+        axes[1].semilogx(f, dry * k.imag / (2 * np.pi * f), color=BLUE, label=label, **style)
+    axes[1].axhline(
+        float(law.at((memory.load / kernel.kappa) ** (2 / 3))), color=ORANGE, lw=1, label="viscous"
+    )
+    axes[1].set(
+        xlabel="frequency, Hz", ylabel="c of a ball, N s/m", title=f"both contacts, {memory.load:.0f} N"
+    )
+    for ax in axes:
+        ax.title.set_fontsize(10)
+        ax.legend(frameon=False, fontsize=8)
+        ax.spines[["top", "right"]].set_visible(False)
+    figure.savefig(path)
+    plt.close(figure)
+
+
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     maps(folder / "contact_maps.png")
     damping(folder / "contact_damping.png")
+    in_time(folder / "films_in_time.png")

@@ -48,6 +48,7 @@ def make() -> None:
     pictures.gallery(HERE / "gallery.md", STATIC)
     contact_figure.maps(STATIC / "contact_maps.png")
     contact_figure.damping(STATIC / "contact_damping.svg")
+    contact_figure.in_time(STATIC / "films_in_time.svg")
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))
@@ -75,7 +76,7 @@ def told(warning: type[Warning]) -> tuple[str, str, str]:
     if parts[1::2] != ["When", "Remedy"]:
         raise ValueError(f"{warning.__name__}: its docstring needs a paragraph When: and then one Remedy:")
     what, when, remedy = (" ".join(part.split()).replace("|", "\\|") for part in parts[0::2])
-    what = what.removeprefix("Notice class: ")
+    what = what.removeprefix("One of the notices: ")
     return what[0].upper() + what[1:], when, remedy
 
 

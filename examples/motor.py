@@ -29,7 +29,7 @@ import xarray
 import bearingdyn as bd
 from bearingdyn.examples import paper_motor
 from bearingdyn.examples.paper import INNER_6305, LEFT_SEAT, OUTER_6305, plain_6305
-from bearingdyn.notice import UnequalRuns
+from bearingdyn.notice import CutHarmonics, UnequalRuns
 
 ROOT = Path(__file__).resolve().parents[1]
 MEASURED = ROOT.parent / "shared" / "data" / "epdm70" / "dma.csv"
@@ -291,9 +291,12 @@ def sweep(eq: bd.Equilibrium, progress: Callable[[int, int], object] | None = No
         try:
             # lines beyond the band that the rubber was measured for say nothing
             lines = min(SWEPT, int(BAND[1] / (ball_pass() * speed / SPEED)))
-            motion = bd.steady_state(
-                eq, speed=speed, record=VELOCITIES, harmonics=lines, start=motion, stability=False
-            )
+            with warnings.catch_warnings():
+                # so that those left out are left out on purpose
+                warnings.simplefilter("ignore", CutHarmonics)
+                motion = bd.steady_state(
+                    eq, speed=speed, record=VELOCITIES, harmonics=lines, start=motion, stability=False
+                )
         except bd.SolverError:
             motion = None  # ended in a fold: the next begins from the equilibrium
             continue

@@ -102,7 +102,7 @@ static int parse_imperfections(PyObject *keep, PyObject *dict, bd_bearing_data *
 
 typedef struct fields {
     bd_bearing_data data;
-    PyObject *order, *sine, *law, *table, *imperfections;
+    PyObject *order, *sine, *law, *table, *echoes, *imperfections;
 } fields;
 
 #define INT(name, place) {name, BD_PY_INT, offsetof(fields, data.place)}
@@ -123,6 +123,7 @@ static const bd_py_field bearing_fields[] = {
     OBJECT("law", law),
     DOUBLE("c", contact.c),
     OBJECT("table", table),
+    OBJECT("echoes", echoes),
     DOUBLE("cage_ratio", cage_ratio),
     DOUBLE("angle0", angle0),
     DOUBLE("inner_ratio", inner_ratio),
@@ -160,16 +161,20 @@ int bd_py_parse_bearing(PyObject *keep, PyObject *dict, bd_bearing_data *bearing
         columns[i] = points[2 * i];
         columns[n_table + i] = points[2 * i + 1];
     }
+    double *echoes = bd_py_doubles(keep, in.echoes, "bearing.echoes", 2, -1, 4);
+    if (!echoes)
+        return -1;
+    const npy_intp n_echoes = bd_py_rows(keep);
     if (bearing->n_balls < 1 || bearing->n_balls > 100000) {
         PyErr_Format(PyExc_ValueError, "bearing.n_balls is %d; it must be 1 to 100000",
                      bearing->n_balls);
         return -1;
     }
-    if (n_coefs < 1 || n_coefs > 100000 || n_table > INT_MAX) {
+    if (n_coefs < 1 || n_coefs > 100000 || n_table > INT_MAX || n_echoes > 1000) {
         PyErr_Format(PyExc_ValueError,
-                     "bearing.order has %zd coefficients and bearing.table %zd rows; they must be "
-                     "1 to 100000 and below 2**31",
-                     (Py_ssize_t)n_coefs, (Py_ssize_t)n_table);
+                     "bearing.order has %zd coefficients, bearing.table %zd rows and "
+                     "bearing.echoes %zd; they must be 1 to 100000, below 2**31 and at most 1000",
+                     (Py_ssize_t)n_coefs, (Py_ssize_t)n_table, (Py_ssize_t)n_echoes);
         return -1;
     }
     bearing->n_coefs = (int)n_coefs;
@@ -179,6 +184,9 @@ int bd_py_parse_bearing(PyObject *keep, PyObject *dict, bd_bearing_data *bearing
     bearing->contact.n_table = (int)n_table;
     bearing->contact.table_delta = columns;
     bearing->contact.table_c = columns + n_table;
+    /* rows of decay and strength, real and imaginary parts, as bd_echo has them */
+    bearing->contact.n_echoes = (int)n_echoes;
+    bearing->contact.echoes = (const bd_echo *)(const void *)echoes;
     return parse_imperfections(keep, in.imperfections, bearing);
 }
 

@@ -118,6 +118,11 @@ def fingerprint(value: Any) -> str:
     return _digest(describe(value))
 
 
+def loose(value: Any) -> str:
+    """Fingerprint that refuses nothing: what cannot be told by its content is told by its class."""
+    return _digest(describe(value, strict=False))
+
+
 def _digest(described: Any) -> str:
     return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:32]
 

@@ -17,7 +17,7 @@ class Notice(UserWarning):
 
 
 class CoarseStep(Notice):
-    """Notice class: the time step does not follow something that drives the march.
+    """One of the notices: the time step does not follow something that drives the march.
 
     When: a wave of a bearing, the passage of its balls, a pit, an unbalance, a harmonic or a sampled load has
     fewer than twenty steps a period, at the highest speed of the profile.
@@ -28,7 +28,7 @@ class CoarseStep(Notice):
 
 
 class GrowingStep(Notice):
-    """Notice class: exact steps of this size make a motion grow that balls hold.
+    """One of the notices: exact steps of this size make a motion grow that balls hold.
 
     When: at `method="exact"`, about an equilibrium, a mode at ω of which balls hold the share s gains
     s (ωΔt)⁴/48 a step, and its damping takes less, so that it is 1 % larger at the end.
@@ -39,7 +39,7 @@ class GrowingStep(Notice):
 
 
 class FitWarning(Notice):
-    """Notice class: two neighbours at one interface hardly fit, by what is known of radii and widths.
+    """One of the notices: two neighbours at one interface hardly fit, by what is known of radii and widths.
 
     When: radii 1 to 5 % apart (above, they are refused); a bearing or a bonded layer that has less than nine
     tenths of its width on its seat; two interfaces joined that both face outwards, or both inwards.
@@ -50,14 +50,14 @@ class FitWarning(Notice):
 
 
 class OpenSideWarning(Notice):
-    """Notice class: motion pressed an angular contact bearing where it has no shoulder, or not onto it.
+    """One of the notices: motion pressed an angular contact bearing where it has no shoulder, or not onto it.
 
     The motion computed from then on is that of a bearing with two shoulders.
 
-    When: a march, a steady motion or a map in which a ball that carries (1 % of the largest ball load) stood
-    beyond the bottom of its groove, on the open side, or in which all that carry stood on the bottom, no
-    axial load pressing them onto the shoulder. The bearing, the first time and the number of steps are
-    named, or the speed and the share of the time.
+    When: a motion given to a `BallBearing`, a march, a steady motion or a map in which a ball that carries
+    (1 % of the largest ball load) stood beyond the bottom of its groove, on the open side, or in which all
+    that carry stood on the bottom, no axial load pressing them onto the shoulder. The bearing, the first time
+    and the number of steps are named, or the speed and the share of the time.
 
     Remedy: more preload, or the bearing hung the other way round, `bearing.mirrored()`; with shoulders on
     both sides it has `open_side=None`.
@@ -65,7 +65,7 @@ class OpenSideWarning(Notice):
 
 
 class UnusualMagnitude(Notice):
-    """Notice class: an input is larger or smaller than machines have it, probably in another unit.
+    """One of the notices: an input is larger or smaller than machines have it, probably in another unit.
 
     When: a number lies outside the usual range of its row in `bearingdyn.plausible_ranges.MAGNITUDES`, where
     it is given or where what it is compared with becomes known.
@@ -76,19 +76,20 @@ class UnusualMagnitude(Notice):
 
 
 class BearingWarning(Notice):
-    """Notice class: a bearing is asked for more than its parts bear, or than its model covers.
+    """One of the notices: a bearing is asked for more than its parts bear, or than its model covers.
 
     When: a contact pressure exceeds 4.2 GPa (ISO 76), the static rating, in an equilibrium, in any step of a
     march, in a steady motion or a map, or in a response to unbalance or of a given amplitude, the balls
-    pressed as the rings then move; in a sheet also where a shoulder cuts a contact ellipse, or a bearing
-    carries nothing.
+    pressed as the rings then move; a load exceeds the static rating that friction or a life is asked with;
+    the rings lean against each other by more than .01 rad in an equilibrium, or under a load or motion given;
+    in a sheet also where a shoulder cuts a contact ellipse, or a bearing carries nothing.
 
     Remedy: check the load's unit; a larger bearing, less load, or a higher shoulder.
     """
 
 
 class ClampedBalls(Notice):
-    """Notice class: fits and temperatures have eaten a bearing's clearance, and its rings clamp the balls.
+    """One of the notices: fits and warmth have eaten a bearing's clearance, and its rings clamp the balls.
 
     When: `Mounting.mounted` leaves a deep-groove bearing less than no clearance. The text says how hard each
     ball is pressed before any load.
@@ -98,7 +99,7 @@ class ClampedBalls(Notice):
 
 
 class PassedOver(Notice):
-    """Notice class: a designation says something that the model of a bearing does not know.
+    """One of the notices: a designation says something that the model of a bearing does not know.
 
     When: `catalogue.bearing` reads a maker's name, seals, shields, a cage, a tolerance class, or a clearance
     class beside a given clearance. The text says how the rest was read.
@@ -109,7 +110,7 @@ class PassedOver(Notice):
 
 
 class UnloadedBearing(Notice):
-    """Notice class: a linear analysis stands on a bearing that carries nothing, and so has no stiffness.
+    """One of the notices: an analysis stands on a bearing that carries nothing, and so has no stiffness.
 
     When: modes, a response or a Campbell diagram start from an equilibrium in which no ball of a bearing is
     pressed.
@@ -120,7 +121,7 @@ class UnloadedBearing(Notice):
 
 
 class NothingPushes(Notice):
-    """Notice class: nothing pushes, so a march stays as it begins, and a steady motion is none.
+    """One of the notices: nothing pushes, so a march stays as it begins, and a steady motion is none.
 
     When: a march from an equilibrium in which no ball is pressed, of an application without any load, from
     no displacement by `initial=` and no earlier state; `steady_state` of such an application, where no ball
@@ -132,7 +133,7 @@ class NothingPushes(Notice):
 
 
 class BeyondData(Notice):
-    """Notice class: a static answer rests on a modulus at longer times than the rubber's data speak of.
+    """One of the notices: a static answer rests on a modulus at longer times than the rubber's data speak of.
 
     When: `equilibrium`, a response at 0 Hz or a stiffness at rest takes the modulus of a layer relaxed, or
     `after` a time more than twice the longest that its fit reaches, and the data show no plateau there.
@@ -143,7 +144,7 @@ class BeyondData(Notice):
 
 
 class StrainedLayer(Notice):
-    """Notice class: a layer's linear stiffness is wrong at the displacement an equilibrium gives it.
+    """One of the notices: a layer's linear stiffness is wrong at the displacement an equilibrium gives it.
 
     When: `equilibrium` displaces the surfaces of a Layer against each other, across the axis, by more than
     4 % of its thickness: there its stiffness has risen by 1 %. The text says by how much the state itself,
@@ -155,7 +156,7 @@ class StrainedLayer(Notice):
 
 
 class MeshDependent(Notice):
-    """Notice class: the answer of a squeezed part changes by more than 1 % between two meshes.
+    """One of the notices: the answer of a squeezed part changes by more than 1 % between two meshes.
 
     When: `assembled` finds another force or static stiffness on a coarser mesh; at the sharp edge of a bond
     the strain is singular, and near to folding the mesh decides.
@@ -165,7 +166,7 @@ class MeshDependent(Notice):
 
 
 class BeyondSweep(Notice):
-    """Notice class: a rubber vibrates with more strain than its law of softening was found from.
+    """One of the notices: a rubber vibrates with more strain than its law of softening was found from.
 
     When: a response or a march with a law of softening (`payne`) reaches a strain above the highest of the
     strain sweep.
@@ -175,7 +176,7 @@ class BeyondSweep(Notice):
 
 
 class OutsideIsotherms(Notice):
-    """Notice class: a shift law is used at a temperature at which nothing was measured.
+    """One of the notices: a shift law is used at a temperature at which nothing was measured.
 
     When: a material is moved to (`at`, `Application.temperature`), or a master curve referred to, a
     temperature outside the isotherms its law was found from.
@@ -185,7 +186,7 @@ class OutsideIsotherms(Notice):
 
 
 class PoorLaw(Notice):
-    """Notice class: a shift law renders the shifts of the isotherms far worse than they are known.
+    """One of the notices: a shift law renders the shifts of the isotherms far worse than they are known.
 
     When: `master_curve` fits a law that misses the shifts by 0.3 decade rms, or by ten times their own
     standard errors, or that doubles the misfit of the moduli.
@@ -195,17 +196,29 @@ class PoorLaw(Notice):
 
 
 class UnevenShifts(Notice):
-    """Notice class: shifts of neighbouring isotherms zigzag, or rise with temperature, as no polymer's do.
+    """One of the notices: shifts of isotherms zigzag, or rise with temperature, as no polymer's do.
 
     When: a step of `master_curve`'s shifts, per kelvin, is below half the smaller, or above twice the
-    larger, of its neighbours by 0.15 decade or more, or has the other sign.
+    larger, of its neighbours by 0.15 decade or more, or has the other sign; or the isotherms, shifted, leave
+    a gap of more than 0.3 decade.
 
-    Remedy: look at the isotherms named; leave one out, give its shift by hand, or measure again.
+    Remedy: look at the isotherms named; leave one out, give its shift by hand, or measure again, in between
+    or over a wider range of frequency.
+    """
+
+
+class OddPoints(Notice):
+    """One of the notices: single moduli of a measurement stand off the curve of all others.
+
+    When: after `master_curve` has superposed them, G′ or G″ of a point deviates from one causal spectrum by
+    more than 10 %, and ten times the scatter of the others.
+
+    Remedy: look at the points named; measure them again, or leave them out by `dma.take` or `dma.select`.
     """
 
 
 class MixedRuns(Notice):
-    """Notice class: a curve is made of several runs, whose levels may differ by more than the fit's errors.
+    """One of the notices: a curve is of several runs, whose levels may differ by more than the fit's errors.
 
     When: `master_curve` gets points of several runs, as a column of the table names them, that nobody chose.
 
@@ -214,7 +227,7 @@ class MixedRuns(Notice):
 
 
 class UnequalRuns(Notice):
-    """Notice class: runs (specimens) of one measurement stand at different levels.
+    """One of the notices: runs (specimens) of one measurement stand at different levels.
 
     When: `master_curve` finds that the moduli of a run have to be multiplied by a factor more than 2 % and
     three standard errors from 1, so that all runs follow one law; or cannot tell the level of a run.
@@ -225,7 +238,7 @@ class UnequalRuns(Notice):
 
 
 class CutFile(Notice):
-    """Notice class: a file ends inside a character: cut off in copying, its last line is left out.
+    """One of the notices: a file ends inside a character: cut off in copying, its last line is left out.
 
     When: `read_dma` reads a UTF-16 text of an odd number of bytes.
 
@@ -234,7 +247,7 @@ class CutFile(Notice):
 
 
 class OutsideBand(Notice):
-    """Notice class: a material model is used at a frequency it was not fitted at.
+    """One of the notices: a material model is used at a frequency it was not fitted at.
 
     When: a Maxwell model that knows its band is asked for its modulus outside it, in a response, in damped
     modes or by `complex_modulus`; or `fit_maxwell` is given a band that reaches beyond the master curve.
@@ -245,39 +258,41 @@ class OutsideBand(Notice):
 
 
 class AssumedMeaning(Notice):
-    """Notice class: a file does not say what a number means, and the usual is taken.
+    """One of the notices: a file does not say what a number means, and the usual is taken.
 
     When: `read_dma` finds no unit for a frequency or a temperature, an angular frequency in a unit of
     frequency, moduli of which only the words around them tell shear from tension, or a temperature only in
-    the file's name; or when the first of several sheets that hold a table is read.
+    the file's name; or when the first of several sheets that hold a table is read; when `read_strain_sweep`
+    finds no unit for a strain.
 
     Remedy: say it: `units={...}`, `mode=...`, `temperature=...`, `step=...`; the text names the argument.
     """
 
 
 class LeftOut(Notice):
-    """Notice class: something of a measurement is not used.
+    """One of the notices: something of a file or measurement is not used.
 
     When: `read_dma` leaves out rows that are not valid or stand behind the table; `master_curve` leaves out
-    points that no passive material could give, such as a resonance of the fixture.
+    points that no passive material could give, such as a resonance of the fixture; `read_mesh` leaves out
+    beams, masses, springs and other elements without volume.
 
     Remedy: look at the rows or points named; `clean=False` keeps what is positive, `dma.select` leaves out
-    more.
+    more. Add masses and springs of a mesh to the application (`RigidBody`, `Application.spring`).
     """
 
 
 class UnlikelyModulus(Notice):
-    """Notice class: a measured modulus is far from what gels, elastomers and polymers have; a wrong unit.
+    """One of the notices: a measured modulus is far from what gels and polymers have; a wrong unit.
 
     When: the median of the storage moduli that `read_dma` read lies outside 100 Pa to 20 GPa, or no storage
-    modulus is as large as a rubber's.
+    modulus is as large as a rubber's; or a relaxation modulus rises with time by more than 10 %.
 
     Remedy: give the unit of the columns: `units={"storage": "MPa", "loss": "MPa"}`.
     """
 
 
 class ThinIsotherm(Notice):
-    """Notice class: a shift rests on a single point.
+    """One of the notices: a shift rests on a single point.
 
     When: `master_curve` meets an isotherm with one frequency only.
 
@@ -286,7 +301,7 @@ class ThinIsotherm(Notice):
 
 
 class CoarseModel(Notice):
-    """Notice class: no number of branches tried renders the measurement within the tolerance.
+    """One of the notices: no number of branches tried renders the measurement within the tolerance.
 
     When: `fit_maxwell(n="auto")` has tried all it may.
 
@@ -296,7 +311,7 @@ class CoarseModel(Notice):
 
 
 class FewerBranches(Notice):
-    """Notice class: a fit has fewer branches than were asked for, for the data hold no more.
+    """One of the notices: a fit has fewer branches than were asked for, for the data hold no more.
 
     When: `fit_maxwell` finds that further branches have no strength, or help by less than 1e-4 of the
     misfit. The fit is as good as one with all of them.
@@ -306,7 +321,7 @@ class FewerBranches(Notice):
 
 
 class TensionAsShear(Notice):
-    """Notice class: moduli measured in tension are turned into shear by the bulk modulus alone.
+    """One of the notices: moduli measured in tension are turned into shear by the bulk modulus alone.
 
     When: `fit_maxwell` is given a master curve in tension.
 
@@ -315,7 +330,7 @@ class TensionAsShear(Notice):
 
 
 class VolumeCounts(Notice):
-    """Notice class: a thin layer's radial stiffness hangs on its bulk modulus, which DMA does not measure.
+    """One of the notices: a thin layer's radial stiffness hangs on its bulk modulus, which DMA leaves open.
 
     When: a layer is reduced whose radial stiffness changes by 0.1 % or more where K changes by 1 %; from 1 to
     3 GPa, between which K of rubbers is told, that is 12 % or more.
@@ -326,7 +341,7 @@ class VolumeCounts(Notice):
 
 
 class FoldedMesh(Notice):
-    """Notice class: elements of a mesh overlap, one folded into its neighbours, its volume counted twice.
+    """One of the notices: elements of a mesh overlap, one folded into others, its volume counted twice.
 
     When: two elements of a mesh lie on the same side of a face that they share. gmsh writes such tetrahedra
     beside pyramids now and then.
@@ -336,7 +351,7 @@ class FoldedMesh(Notice):
 
 
 class CoarsePanels(Notice):
-    """Notice class: triangles of a radiating surface are longer than a sixth of the wavelength.
+    """One of the notices: triangles of a radiating surface are longer than a sixth of the wavelength.
 
     When: `sound.solve` or `sound.radiated_power` is given a surface with a longer side of a triangle,
     or `sound_power` an element size that is too large for its highest frequency.
@@ -346,7 +361,7 @@ class CoarsePanels(Notice):
 
 
 class BeyondModes(Notice):
-    """Notice class: sound is asked for above the frequency up to which a part was reduced.
+    """One of the notices: sound is asked for above the frequency up to which a part was reduced.
 
     When: `sound_power` gets a frequency above the `f_max` of a part that radiates.
 
@@ -355,7 +370,7 @@ class BeyondModes(Notice):
 
 
 class RepairedResistance(Notice):
-    """Notice class: a radiation resistance had motions of negative power, which were set to zero.
+    """One of the notices: a radiation resistance had motions of negative power, which were set to zero.
 
     When: `sound_power` finds an eigenvalue of the resistance below −1e-4 of the largest.
 
@@ -364,7 +379,7 @@ class RepairedResistance(Notice):
 
 
 class UnsureInterpolation(Notice):
-    """Notice class: sound power between the frequencies solved at is less sure than 0.05 dB.
+    """One of the notices: sound power between the frequencies solved at is less sure than 0.05 dB.
 
     When: `sound_power` has solved as many frequencies in an octave as it may, and the last of them still
     disagreed with the rest.
@@ -374,7 +389,7 @@ class UnsureInterpolation(Notice):
 
 
 class ClippedSound(Notice):
-    """Notice class: a sound file of 16 bits cannot hold the largest pressures.
+    """One of the notices: a sound file of 16 bits cannot hold the largest pressures.
 
     When: `write_wav(bits=16, full_scale=...)` gets a pressure above the full scale.
 
@@ -382,8 +397,50 @@ class ClippedSound(Notice):
     """
 
 
+class OilAtOtherSpeed(Notice):
+    """One of the notices: a lubricated bearing is asked at another speed than that of its films.
+
+    When: a march, a response, modes or a steady motion at a speed, not zero, that is more than 25 % above or
+    below that of a bearing's `lubrication`; films and the damping of contacts are constants of that speed.
+
+    Remedy: `lubrication=OilSupply(..., speed=)` of the speed asked; for a range of speeds, one of each.
+    """
+
+
+class ChangedFunction(Notice):
+    """One of the notices: processes of a study computed another function than the one at hand.
+
+    When: `study.sweep` sends a function to other processes, which import its module afresh, and a global
+    value, default or attribute that it uses was changed after the import here.
+
+    Remedy: pass what changes as a parameter of the cases; or give an executor of threads.
+    """
+
+
+class UnprovenOptimum(Notice):
+    """One of the notices: an optimiser's best design misses the conditions of an optimum.
+
+    When: `study.optimise` or `study.front` ends where the scaled objective's gradient, after the limits that
+    are reached, is more than 5 % of the steepest on the way: the function is noisy, jumps, or its slopes are
+    wrong.
+
+    Remedy: more starts; smoother values (a tighter tolerance inside the function, the same mesh for all
+    designs), slopes of the function's own, or a study by `study.sobol` where it is not smooth.
+    """
+
+
+class CutHarmonics(Notice):
+    """One of the notices: a steady motion wants more harmonics than it was given.
+
+    When: the harmonics next above the last of a `steady_state` would add more than 2 % of a channel's largest
+    line; or, of several base frequencies, a line above the last that would be 2 % of the bearings' largest.
+
+    Remedy: more `harmonics`; a pit or a ball that loses contact needs many.
+    """
+
+
 class UnfinishedLine(Notice):
-    """Notice class: the last number of a text file may have been cut.
+    """One of the notices: the last number of a text file may have been cut.
 
     When: the file's last line has no line end, which programs write and a copy that broke off lacks.
 

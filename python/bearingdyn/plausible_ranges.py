@@ -81,6 +81,7 @@ class Magnitude:
 
 
 _MM, _UM, _NM = Slip("mm", 1e-3), Slip("µm", 1e-6), Slip("nm", 1e-9)
+_KN = Slip("kN", 1e3)
 _MPA, _GPA, _KPA = Slip("MPa", 1e6), Slip("GPa", 1e9), Slip("kPa", 1e3)
 # a factor typed twice, as in 30 * mm * mm
 _TWICE = Slip("mm, converted twice", 1e3)
@@ -267,13 +268,37 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             "N/m", (0.0, 1e18), (0.0, 1e14), "a machine's bed has 1e9 N/m; hold rigidly what is stiffer"
         ),
         "bed stiffness": Magnitude(
-            "N/m³", (0.0, 1e20), (0.0, 1e17), "1 mm of rubber has 1e9 to 1e12 N/m³, 10 mm of steel 2e13"
+            "N/m³",
+            (0.0, 1e20),
+            (1e6, 1e17),
+            "1 mm of rubber has 1e9 to 1e12 N/m³, 10 mm of steel 2e13",
+            (Slip("N/mm³", 1e9),),
         ),
         "support damping": Magnitude(
             "s", (0.0, 100.0), (0.0, 0.1), "of a spring with a loss factor of 0.1 at 100 Hz it is 1.6e-4 s"
         ),
         "conductance": Magnitude(
             "W/K", (1e-12, 1e9), (1e-6, 1e5), "a film of still air has 1e-2 W/K, a ring in its bore 1e2"
+        ),
+        "area": Magnitude(
+            "m²",
+            (1e-12, 1e4),
+            (1e-7, 100.0),
+            "a bearing's seat has 1e-3 m², a motor's housing 1",
+            (Slip("mm²", 1e-6), Slip("cm²", 1e-4)),
+        ),
+        "film coefficient": Magnitude(
+            "W/(m² K)",
+            (0.0, 1e7),
+            (0.5, 1e5),
+            "still air has 5 to 10, a fan's air 50, a stream of water 5000, a dry seat 300",
+        ),
+        "conductivity": Magnitude(
+            "W/(m K)",
+            (1e-4, 5000.0),
+            (0.01, 500.0),
+            "air has 0.026, rubber 0.2, steel 50, copper 400",
+            (Slip("mW/(m K)", 1e-3),),
         ),
         "sample rate": Magnitude(
             "Hz", (1.0, 1e9), (1e3, 1e7), "sound is sampled at 8000 to 192 000 Hz", (Slip("kHz", 1e3),)
@@ -327,6 +352,26 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             (0.0, 4.2e9),
             "4.2 GPa is the static rating (ISO 76), five times that is above the hardness of silicon nitride",
         ),
+        "oil pressure": Magnitude(
+            "Pa",
+            (0.0, 2.1e10),
+            (1e4, 4.2e9),
+            "contacts press their oil with 1e8 to 4e9 Pa",
+            (_GPA, _MPA),
+        ),
+        "pressure by Barus": Magnitude(
+            "Pa", (0.0, 3e10), (0.0, 5e8), "Barus' law is some times too high above 1e8 Pa; take Roelands'"
+        ),
+        "rating": Magnitude(
+            "N", (0.0, 1e10), (5.0, 1e8), "the smallest ball bearings have 10 N, the largest 1e7", (_KN,)
+        ),
+        "rating by size": Magnitude(
+            "N/m²",
+            (3e4, 3e8),
+            (2e5, 3e7),
+            "C0 over the square of a diameter is 2e6 to 1e7 N/m² of ball bearings",
+            (Slip("kN", 1e3),),
+        ),
         # ------------------------------------------------------- time and speed
         "speed": Magnitude(
             "rad/s", (0.0, 1e6), (0.0, 5e4), "5e4 rad/s are 477 000 rpm, a dental drill's", (_RPM,)
@@ -345,6 +390,12 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             (Slip("rpm (the speed),", math.pi / 30),),
         ),
         "frequency": Magnitude("Hz", (1e-12, 1e12), (1e-9, 1e9), "machines sound from 1e-3 to 1e5 Hz"),
+        "band of a part": Magnitude(
+            "Hz",
+            (0.0, 1e8),
+            (0.0, 1e6),
+            "modes above what is heard, 20 kHz, follow statically; a mesh for more grows without end",
+        ),
         "time step": Magnitude(
             "s",
             (1e-18, 1e6),

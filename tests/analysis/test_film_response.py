@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from bearingdyn.analysis.modes import _damped_modal
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, FilmDamping, Lubricant, Walther, ehl
 from bearingdyn.demo import SPEED, motor
+from bearingdyn.notice import OilAtOtherSpeed
 from bearingdyn.parts import RigidBody
 from bearingdyn.system import assemble
 from core_models import harmonic, model
@@ -328,3 +330,17 @@ def test_a_steady_motion_takes_films_by_the_frequency_of_each_line(frequency: fl
         assert abs(found.attrs["energy_balance"]) < 1e-6
     with pytest.raises(ValueError, match="contacts"):
         bd.steady_state(state, speed=OMEGA, record=places, contacts="oil")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("factor", [1 / 3, -0.7, 1.4])
+def test_films_of_another_speed_are_told_of(axial: Equilibrium, factor: float) -> None:
+    with pytest.warns(OilAtOtherSpeed, match=r"bearing 'ball' has the films and the damping of 52\d rad/s"):
+        bd.transient(axial, speed=factor * OMEGA, dt=1e-6, steps=2, record=["mass.centre.z"])
+
+
+def test_films_of_nearly_that_speed_pass_and_so_does_a_response_at_rest(axial: Equilibrium) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", OilAtOtherSpeed)
+        for factor in (-1.0, 0.85, 1.2):
+            bd.transient(axial, speed=factor * OMEGA, dt=1e-6, steps=2, record=["mass.centre.z"])
+        frequency_response(axial, [100.0], ["mass.centre.z"], ["mass.centre.z"])

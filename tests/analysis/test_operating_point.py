@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 import bearingdyn as bd
 from bearingdyn.bearing import Mounting, Seat
 from bearingdyn.demo import motor
+from bearingdyn.notice import UnloadedBearing, UnusualMagnitude
 
 OIL = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
 RUBBER = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
@@ -198,3 +200,46 @@ class TestOperatingPoint:
         given = {"speed": SPEED, "oil": OIL, **change}
         with pytest.raises(ValueError, match=message):
             bd.operating_point(motor(RUBBER), **given)
+
+
+def idle() -> bd.Application:
+    """A rotor in a bearing with clearance, and nothing that presses it."""
+    app = bd.Application()
+    app.add("rotor", bd.RigidBody(1.0, (1e-3, 1e-3, 1e-3), rotating=True))
+    app.ground("rotor.centre", stiffness=[0, 0, 1e5, 1e3, 1e3, 0])
+    app.bearing("b", bd.catalogue.bearing("6205", clearance=1e-5), inner="rotor.centre", outer="ground")
+    return app
+
+
+def test_where_nothing_presses_the_warm_state_says_that_drag_alone_is_in_it():
+    with pytest.warns(UnloadedBearing, match="drag alone"):
+        bd.operating_point(idle(), speed=100.0, oil=OIL)
+
+
+@pytest.mark.parametrize("call", [bd.cage_ratios, bd.with_loaded_cages])
+def test_where_nothing_presses_a_cage_has_its_nominal_speed_and_it_is_said(call):
+    with pytest.warns(UnloadedBearing, match="bearing 'b' carries no load.*nominal speed"):
+        call(bd.equilibrium(idle()), 100.0)
+
+
+def test_a_passage_under_no_load_is_told_of():
+    with pytest.warns(UnloadedBearing, match="load is zero"):
+        bd.bearing.passage(bd.catalogue.bearing("6205", clearance=1e-5), [0.0] * 6)
+
+
+@pytest.mark.parametrize(
+    ("give", "message"),
+    [
+        (lambda n: n.film("a", 5000.0, 10.0), "is it in mm²"),
+        (lambda n: n.film("a", 0.1, 1e6), "film coefficient|coefficient is"),
+        (lambda n: n.slab("s", "a", "b", area=1e-3, thickness=2.0, conductivity=0.2e-3), "conductivity is"),
+        (lambda n: n.ring("r", "a", "b", r_inner=26, r_outer=32, width=15, conductivity=0.2), "is it in mm"),
+        (lambda n: n.ring("r", "a", "b", r_inner=0.026, r_outer=0.032, width=0.015, conductivity=2e5),
+         "is it in mW"),
+    ],
+)  # fmt: skip
+def test_a_network_in_other_units_is_told_of(give, message):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UnusualMagnitude)
+        with pytest.raises((ValueError, UnusualMagnitude), match=message):
+            give(bd.ThermalNetwork())

@@ -142,3 +142,25 @@ def test_swings_that_stay_below_the_limit_are_not_looked_at(monkeypatch):
     monkeypatch.setattr(overload.core, "bearing_along", counted)
     overload.warn_of_swings(eq, swings[:100], ["here"] * 100)
     assert seen == [1, 1]
+
+
+def test_a_response_of_a_given_amplitude_knows_the_balls_that_it_overloads():
+    """2 kN zero-to-peak on a 6205 in a soft layer at its resonance; a fifth of a newton is nothing."""
+    law = bd.Payne(D=2e6, gamma_c=4e-3, m=0.5, Lm=1e5, gamma_l=3e-3)
+    rubber = bd.Maxwell(2e6, [2e6], [1e-3], K=2e9, density=1100.0).with_payne(law)
+    app = bd.Application()
+    app.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+    app.add("layer", bd.Layer(0.026, 0.032, 0.015, rubber))
+    app.ground("layer.outer")
+    app.ground("r.centre", stiffness=(0, 0, 1e6, 1e4, 1e4, 0), damping=(0, 0, 10, 1, 1, 0))
+    app.bearing(
+        "b", bd.BallBearing(**BALLS, damping=500.0), inner="r.centre", outer="layer.inner", fits=False
+    )
+    app.gravity((0, -9.81, 0))
+    eq = bd.equilibrium(app)
+    places = [50.0], ["r.centre.y"], ["r.centre.y"]
+    with pytest.warns(BearingWarning, match=r"bearing 'b': a ball bore .* over 4\.2 GPa"):
+        bd.frequency_response(eq, *places, amplitude=50e3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", BearingWarning)
+        bd.frequency_response(eq, *places, amplitude=0.2)

@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bearingdyn.analysis import transient
-from bearingdyn.analysis.shaft_speed import shaft_angle
+from bearingdyn.analysis.speed_profile import shaft_angle
 from bearingdyn.application import Application
 from bearingdyn.parts import RigidBody
 from bearingdyn.system import System, assemble

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from types import SimpleNamespace
 
 import matplotlib as mpl
 import numpy as np
@@ -22,6 +23,7 @@ from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_st
 from bearingdyn.analysis.steady import branches as tracing
 from bearingdyn.analysis.steady.balance import flat, newton, unflat
 from bearingdyn.analysis.steady.factored import Factored, jacobian
+from bearingdyn.analysis.steady.located import once, within
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.reaching import curve_of
 from bearingdyn.analysis.steady.torus import Lines
@@ -122,6 +124,73 @@ def test_the_upper_branch_ends_where_the_reference_page_says() -> None:
     end = np.flatnonzero(data["event"].values == "fold")[0]
     assert float(data["speed"].values[end]) / RPM == pytest.approx(3075.0, abs=3.0)
     assert 1e6 * float(data["peak_to_peak"].values[end, 0]) == pytest.approx(39.9, rel=0.01)
+    # the tip is a crowd of folds, 3072.8 to 3076.1 rpm by the step: the result says that it knows no more
+    known = float(data["located_within"].values[end]) / RPM
+    assert 0.5 < known < 5.0
+    lone = np.flatnonzero(data["event"].values == "flip")
+    assert data["located_within"].values[lone].max() / RPM < 0.3
+
+
+def test_an_interval_between_neimark_sacker_points_is_one_that_marches_leave_turning() -> None:
+    """With 6 µm a side, from 4149 to 4317 rpm: a pair of multipliers is outside; marches have that pair."""
+    eq = equilibrium(rotors.held_jis_rotor(6e-6))
+    data = speed_map(
+        eq, speeds=(4080 * RPM, 4380 * RPM), record=RECORD, **{**QUICK, "harmonics": 24, "points": 12}
+    )
+    ends = events(data, "neimark-sacker")
+    assert len(ends) == 2
+    assert 4080 < ends[1] < 4230 < ends[0] < 4380
+    rpm, stable = data["speed"].values / RPM, data["stable"].values == 1
+    inside = (rpm > ends[1] + 1) & (rpm < ends[0] - 1)
+    assert not stable[inside].any()
+    assert stable[(rpm < ends[1] - 1) | (rpm > ends[0] + 1)].all()
+
+    at = 4230 * RPM
+    found = steady_state(eq, speed=at, harmonics=24, record=RECORD)
+    steps, passages = 512, 110
+    passage = 2 * math.pi / float(np.abs(found["frequency"].values[1]) * 2 * math.pi)
+    run = transient(
+        eq,
+        speed=at,
+        dt=passage / steps,
+        steps=steps * passages,
+        decimate=steps,
+        filter=False,
+        record=RECORD,
+        initial=found,
+    )
+    # one pair μ, μ*: d(n + 2) = 2 Re μ d(n + 1) - |μ|² d(n), of differences, which know no mean
+    d = np.diff(run["record"].values, axis=0)
+    d = d[(np.abs(d).max(axis=1) > 3e-12).argmax() :]
+    d = d[: (np.abs(d).max(axis=1) > 1e-8).argmax()]
+    assert len(d) > 20
+    before = np.stack([d[1:-1].ravel(), d[:-2].ravel()], axis=1)
+    _, square = np.linalg.lstsq(before, d[2:].ravel(), rcond=None)[0]
+    assert math.log(-square) / 2 == pytest.approx(math.log(found.attrs["multiplier"]), rel=0.05)
+
+
+def test_folds_that_crowd_are_known_to_what_they_span() -> None:
+    events = ["", "fold", "", "fold", "fold", "flip", "fold", "failed"]
+    found = within(events, [500.0, 400.0, 400.2, 400.3, 400.1, 600.0, 700.0, 710.0], 1e-3)
+    assert np.isnan([found[0], found[2], found[7]]).all()
+    assert [found[k] for k in (1, 3, 4)] == pytest.approx([0.3] * 3)
+    assert [found[5], found[6]] == [1e-3, 1e-3]
+
+
+def test_an_event_on_a_point_is_told_once(hysteresis: xarray.Dataset) -> None:
+    """A crossing on a point is found behind the point before it and again behind it."""
+
+    def mark(event: str, parameter: float, size: float = 1.0) -> SimpleNamespace:
+        z = np.array([[1.0], [size]])
+        return SimpleNamespace(event=event, point=SimpleNamespace(parameter=parameter, z=z))
+
+    marks = [mark("", 1.0), mark("flip", 1.5), mark("", 1.5), mark("flip", 1.5 + 1e-9), mark("fold", 1.5)]
+    marks += [mark("flip", 1.6), mark("flip", 1.6, 1.1)]
+    kept = list(once(marks, 1e-6))
+    assert kept == [m for k, m in enumerate(marks) if k != 3]
+    located = hysteresis["event"].values != ""
+    assert np.isfinite(hysteresis["located_within"].values[located]).all()
+    assert np.isnan(hysteresis["located_within"].values[~located]).all()
 
 
 def test_a_store_gives_the_same_map_again_without_work(tmp_path, monkeypatch, hysteresis) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 import pickle
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -29,6 +30,7 @@ from bearingdyn.analysis.steady import balance
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, FilmDamping, Waviness
 from bearingdyn.material import FractionalZener, Maxwell, Payne, PowerLaw
+from bearingdyn.notice import CutHarmonics
 from bearingdyn.parts import Layer, RigidBody, Section, Shaft
 from bearingdyn.results import open_result, save
 from bearingdyn.system import System, assemble
@@ -515,3 +517,42 @@ def test_no_motion_found_names_speed_line_and_residual_and_keeps_the_nearest(mon
         )
     assert caught.value.partial["amplitude"].shape == (4, 1)
     assert caught.value.report.residual > 0.0
+
+
+def on_a_6205(**bearing) -> Application:
+    app = Application()
+    app.add("r", RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+    app.ground("r.centre", stiffness=(0, 0, 1e6, 1e3, 1e3, 0), damping=(10, 10, 10, 1, 1, 0))
+    ball = BallBearing(9, 7.94e-3, 39.04e-3, 0.52, 0.53, clearance=1e-5, damping=200.0, **bearing)
+    app.bearing("b", ball, inner="r.centre", outer="ground")
+    app.load("r.centre", (0, -200.0, 0, 0, 0, 0))
+    return app
+
+
+@pytest.mark.parametrize(
+    ("bearing", "few", "enough"),
+    [
+        ({}, 8, 40),
+        ({"waviness": [Waviness("outer", 9, 1e-7)]}, 5, 40),
+        ({"waviness": [Waviness("inner", 9, 1e-7)]}, 2, 20),
+    ],
+)
+def test_a_motion_that_wants_more_harmonics_says_so(bearing, few, enough):
+    """Judged by the lines above the last, which the balance leaves out."""
+    asked = {"speed": 100.0, "record": ["r.centre.y"], "stability": False}
+    app = on_a_6205(**bearing)
+    with pytest.warns(CutHarmonics, match=f"wants more than {few} harmonics"):
+        poor = steady_state(app, harmonics=few, **asked)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", CutHarmonics)
+        good = steady_state(app, harmonics=enough, **asked)
+    # and they do differ
+    spread = [float(np.ptp(r["record"].values[:, 0])) for r in (poor, good)]
+    assert abs(spread[0] / spread[1] - 1) > 0.02
+
+
+def test_waves_alone_drive_a_motion_of_several_bases():
+    """Without unbalance or load that turns the search begins at rest; a wave's line is that of a march."""
+    wavy = {"waviness": [Waviness("inner", 9, 1e-7)]}
+    found = steady_state(on_a_6205(**wavy), speed=100.0, record=["r.centre.y"], stability=False)
+    assert np.abs(found["amplitude"].values[1:]).max() > 1e-9

@@ -100,3 +100,10 @@ def test_transients_tell_of_the_marches_that_are_done():
     assert told == [(1, 3), (2, 3), (3, 3)]
     with pytest.raises(ValueError, match=r"cases\[1\] is 5; it must be a list of mappings"):
         bd.transients([case, 5])
+
+
+@pytest.mark.parametrize("name", ["filter", "audit", "check_step", "check_unique"])
+@pytest.mark.parametrize("wrong", ["yes", None, 2, []])
+def test_a_truth_of_a_march_is_true_or_false(name, wrong):
+    with pytest.raises(ValueError, match=f"{name} is .*; it must be True or False"):
+        bd.transient(APP, speed=100.0, dt=1e-5, steps=3, record=["r.centre.y"], **{name: wrong})

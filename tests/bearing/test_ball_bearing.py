@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from bearingdyn.bearing import BallBearing, ConstantDamping, Geometry, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.catalogue import bearing
 from bearingdyn.material import Elastic
+from bearingdyn.notice import BearingWarning
 
 ISO = dict(Z=7, Dw=11.5e-3, Dpw=43.5e-3, fi=0.52, fo=0.53)
 SIX_202 = dict(Z=8, Dw=5.953e-3, Dpw=25e-3, fi=0.52, fo=0.53)
@@ -315,3 +317,18 @@ class TestForceLaw:
         change = brg.force(q, velocity=[0, 0, rate, 0, 0, 0]) - brg.force(q)
         # a difference of forces: seven digits remain of a damping force 1e-4 of the elastic one
         assert change[2] == pytest.approx(7 * expected(brg, delta) * math.sin(s) ** 2 * rate, rel=1e-7)
+
+
+def test_rings_that_lean_by_more_than_makers_allow_are_told_of():
+    """A deep groove bearing is allowed 10 minutes of arc, .003 rad, at most; 1.3° is eight times that."""
+    ball = bearing("7205")
+    with pytest.warns(BearingWarning, match=r"its rings lean by 1\.3° against each other"):
+        ball.force([0, 0, 1e-5, 0.0227, 0, 0])
+    loose = bearing("6205", clearance=80e-6)
+    with pytest.warns(BearingWarning, match=r"its rings lean by 0\.\d+° against each other"):
+        tilt = math.hypot(*loose.displacement(load(Fy=100.0, Mx=10.0))[3:5])
+    assert tilt > 0.01
+    deep = bearing("6205", clearance=40e-6)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        deep.displacement(load(Fy=100.0, Fz=100.0))

@@ -124,3 +124,11 @@ def test_no_clearance_outside_the_table(bore, group):
 
 def test_a_designation_leads_to_its_lines():
     assert bearing("6205").lines(1797 * math.pi / 30)["BPFO"] == pytest.approx(107.36, abs=5e-3)
+
+
+@pytest.mark.parametrize(
+    "text", ["6205/HC5", "HC6205", "6205-2RSLTN9/HC5C3WT", "7014 CD/HCP4A", "6205 hybrid"]
+)
+def test_ceramic_balls_are_not_read_as_steel_nor_as_a_clearance(text):
+    with pytest.raises(ValueError, match=r"means ceramic balls.*give ball_material"):
+        read_designation(text)

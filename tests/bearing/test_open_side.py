@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 from bearingdyn.bearing import BallBearing, Pair, Running
 from bearingdyn.bearing.catalogue import CATALOGUE, bearing
+from bearingdyn.notice import OpenSideWarning
 
 MIRROR = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
 
@@ -108,3 +110,16 @@ def test_single_balls_may_stand_on_the_bottom_while_others_lean():
     ball = bearing("7205")
     q = ball.displacement([0, -300.0, 60.0, 0, 0, 0])
     np.testing.assert_allclose(ball.force(q)[:3], [0, -300.0, 60.0], atol=1e-5)
+
+
+@pytest.mark.parametrize("what", ["force", "stiffness"])
+def test_a_motion_that_presses_balls_onto_the_open_side_is_told_of(what):
+    ball = replace(bearing("7205"), fo=0.53)
+    place = [0, 0, -0.513e-3, 0, 0, 0]
+    with pytest.warns(OpenSideWarning, match=r"at this q 13 of 13 balls .* at -40"):
+        getattr(ball, what)(place)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        getattr(ball, what)([0, 0, 5e-6, 0, 0, 0])
+        getattr(replace(ball, open_side=None), what)(place)
+        getattr(ball, what)([0, 0, -1e-5, 0, 0, 0])  # nothing is pressed

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +22,9 @@ from bearingdyn.bearing.rating import (
     equivalent_load,
     equivalent_static_load,
     fatigue_limit,
+    friction,
     in_hours,
+    iso_ratings,
     life_factor,
     life_of_loads,
     modified_life,
@@ -31,7 +34,7 @@ from bearingdyn.bearing.rating import (
     static_factor,
 )
 from bearingdyn.material import Elastic
-from bearingdyn.notice import BearingWarning
+from bearingdyn.notice import BearingWarning, Notice
 
 ISO = BallBearing(7, 11.5e-3, 43.5e-3, 0.52, 0.53, clearance=0.0)
 LOOSE = replace(ISO, clearance=10e-6)
@@ -315,3 +318,48 @@ class TestDutyCycles:
     def test_bad_phases_are_named(self, bad):
         with pytest.raises(ValueError, match=r"^phases"):
             equivalent_life(bad)
+
+
+SIZE = {"bore": 0.025, "outside": 0.052, "C0": 7850.0}
+USUAL = {"radial": 500.0, "axial": 0.0, "speed": 300.0, "viscosity": 32e-6, **SIZE}
+LIFE = {"C0": 7850.0, "Dpw": 39e-3, "speed": 300.0, "viscosity": 20e-6}
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: friction(**{**USUAL, "C0": 7.85}), "is it in kN"),
+        (lambda: friction(**{**USUAL, "bore": 25, "outside": 52}), "is it in mm"),
+        (lambda: friction(**{**USUAL, "speed": 9e4}), "speed"),
+        (lambda: friction(**{**USUAL, "contact_angle": 15.0}), "is it in degrees"),
+        (lambda: friction(**{**USUAL, "radial": 40e3}), "above the static rating"),
+        (lambda: modified_life(1e3, 500.0, **{**LIFE, "Dpw": 39}), "is it in mm"),
+        (lambda: modified_life(1e3, 500.0, **{**LIFE, "C0": 7.85}), "is it in kN"),
+        (lambda: modified_life(1e3, 500.0, **{**LIFE, "speed": 9e4}), "speed"),
+        (lambda: modified_life(1e3, 15e3, **LIFE), "above the static rating"),
+        (lambda: equivalent_load(500.0, 100.0, 7.85, f0=14.0), "is C0 in kN"),
+        (lambda: equivalent_load(500.0, 100.0, 7850.0, contact_angle=15.0, f0=14.0), "is it in degrees"),
+        (lambda: equivalent_static_load(500.0, 100.0, 15.0), "is it in degrees"),
+        (lambda: iso_ratings(9, 7.94, 39.04), "is it in mm"),
+        (lambda: iso_ratings(9, 7.94e-3, 39.04e-3, 25.0), "is it in degrees"),
+        (lambda: in_hours(1e3, 9e4), "is it in rpm"),
+        (lambda: life_of_loads(ISO, [0, 100.0, 500.0, 800.0, 500.0, 100.0, 0], C=23.4), "is it in kN"),
+        (lambda: rating_life(ISO, [0, 1e3, 0, 0, 0, 0], C=23.4), "is it in kN"),
+        (lambda: load_cases(ISO, [[0, 1e3, 0, 0, 0, 0]], C=23.4), "is it in kN"),
+    ],
+)
+def test_what_a_rating_is_asked_with_in_another_unit_is_told_of(call, message):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", Notice)
+        with pytest.raises((ValueError, Notice), match=message):
+            call()
+
+
+def test_what_is_usual_passes_without_a_word():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        friction(**USUAL)
+        friction(**{**USUAL, "radial": 0.0})
+        modified_life(1e3, 500.0, **LIFE)
+        equivalent_load(500.0, 100.0, 7850.0, f0=14.0)
+        rating_life(ISO, [0, 1e3, 0, 0, 0, 0], C=20e3)

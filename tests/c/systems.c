@@ -84,7 +84,15 @@ bd_bearing_data deep_groove(bd_damping_law law)
         film_c[i] = 40.0 * w * w * (1.5 - w);
         film_rise[i] = (120.0 * w * (1.0 - w)) / BD_FILM_CELLS;
     }
-    const bool film = law == BD_DAMPING_FILM;
+    static double carried_b[BD_FILM_NODES], carried_rise[BD_FILM_NODES];
+    for (int i = 1; i < BD_FILM_NODES; i++) {
+        const double w = (double)i / BD_FILM_CELLS;
+        carried_b[i] = 6e-6 * w * w * (1.0 - w);
+        carried_rise[i] = 6e-6 * w * (2.0 - 3.0 * w) / BD_FILM_CELLS;
+    }
+    /* real parts of strength over decay: .25 + .75 */
+    static const bd_echo echoes[] = {{{8e5, 0.0}, {2e5, 0.0}}, {{5e4, 1e5}, {1e5, 4.375e4}}};
+    const bool carried = law == BD_DAMPING_CARRIED, film = law == BD_DAMPING_FILM || carried;
     const double A = 0.04 * 11.5e-3, clearance = 10e-6, y0 = A - 0.5 * clearance;
     return (bd_bearing_data){
         .n_balls = 8,
@@ -102,8 +110,14 @@ bd_bearing_data deep_groove(bd_damping_law law)
                          : film                 ? 2e-6
                                                 : 30.0,
                     .n_table = film ? BD_FILM_NODES : 3,
-                    .table_delta = film ? film_c : table_delta,
-                    .table_c = film ? film_rise : table_c},
+                    .table_delta = carried ? carried_b
+                                   : film  ? film_c
+                                           : table_delta,
+                    .table_c = carried ? carried_rise
+                               : film  ? film_rise
+                                       : table_c,
+                    .n_echoes = carried ? 2 : 0,
+                    .echoes = carried ? echoes : NULL},
         .cage_ratio = 0.38,
         .angle0 = 0.2,
     };

@@ -34,6 +34,8 @@ static marching case_of(bd_damping_law law, bd_scheme scheme, int k)
         const double tighter = 1e-6 * k;
         bearings[b].e0 += tighter * (2.0 * bearings[b].y0 + tighter);
         bearings[b].y0 += tighter;
+        bearings[b].e0 += 4e-10; /* an axial distance of the groove centres too */
+        bearings[b].x0 = 2e-5;
         bearings[b].angle0 += k % 2 ? 0.0 : 0.05 * k;
         bearings[b].contact.c *= k == 7 ? 2.0 : 1.0;
     }

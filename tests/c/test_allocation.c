@@ -149,5 +149,6 @@ int main(void)
     the_march_allocates_nothing(BD_DAMPING_LOAD, motor_run_up(), false);
     the_march_allocates_nothing(BD_DAMPING_LOAD, motor_scheme(), true);
     the_march_allocates_nothing(BD_DAMPING_FILM, motor_scheme(), false);
+    the_march_allocates_nothing(BD_DAMPING_CARRIED, motor_scheme(), false);
     return check_result();
 }

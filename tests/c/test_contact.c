@@ -83,6 +83,32 @@ static void contact_pushes_and_never_pulls(bd_damping_law law)
     CHECK_EQUAL("cases without touch, and torn apart", lost > 100 && torn > 100, 1);
 }
 
+/* Where all has been so for long: F = kappa (s + b ddelta/dt)^1.5. */
+static void a_film_that_is_carried_adds_to_the_approach(void)
+{
+    const bd_bearing_data bearing = single_contact(BD_DAMPING_CARRIED);
+    const bd_contact *contact = &bearing.contact;
+    unsigned long long seed = 11;
+    int lost = 0, torn = 0;
+    for (int i = 0; i < 4000; i++) {
+        const double delta = 2e-5 * uniform(&seed),
+                     rate = uniform(&seed) * pow(10.0, 2.0 * uniform(&seed));
+        const double s = fmax(delta + contact->h0, 0.0);
+        const double w = sqrt(s) / (sqrt(s) + sqrt(contact->c)), b = 6e-6 * w * w * (1.0 - w);
+        const double both = s + b * rate, expected = contact->kappa * pow(fmax(both, 0.0), 1.5);
+        double F, K, C;
+        press(&bearing, delta, rate, &F, &K, &C);
+        lost += s <= 0.0;
+        torn += s > 0.0 && both < 0.0;
+        /* round-off of delta, as above, and of the sum: 1e-16 of its terms in F^(2/3) */
+        CHECK_CLOSE("force of the contact", F, expected,
+                    1e-11 * contact->kappa * sqrt(fmax(both, 0.0)) * (s + fabs(b * rate)) + 1e-9);
+        if (both < 0.0)
+            CHECK_EQUAL("no tangent where there is no force", K == 0.0 && C == 0.0, 1);
+    }
+    CHECK_EQUAL("cases without touch, and torn apart", lost > 100 && torn > 100, 1);
+}
+
 static void contact_tangent_is_the_derivative_of_its_force(bd_damping_law law)
 {
     const bd_bearing_data bearing = single_contact(law);
@@ -183,13 +209,15 @@ static void turned_by_one_pitch_a_bearing_is_itself(void)
 int main(void)
 {
     static const bd_damping_law laws[] = {BD_DAMPING_CONSTANT, BD_DAMPING_TABLE, BD_DAMPING_LOAD,
-                                          BD_DAMPING_FILM};
-    for (int i = 0; i < 4; i++) {
-        contact_pushes_and_never_pulls(laws[i]);
+                                          BD_DAMPING_FILM, BD_DAMPING_CARRIED};
+    for (int i = 0; i < 5; i++) {
+        if (laws[i] != BD_DAMPING_CARRIED)
+            contact_pushes_and_never_pulls(laws[i]);
         contact_tangent_is_the_derivative_of_its_force(laws[i]);
         bearing_tangent_is_the_derivative_of_its_force(laws[i], false);
         bearing_tangent_is_the_derivative_of_its_force(laws[i], true);
     }
+    a_film_that_is_carried_adds_to_the_approach();
     turned_by_one_pitch_a_bearing_is_itself();
     return check_result();
 }

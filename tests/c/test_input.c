@@ -216,6 +216,23 @@ static void a_film_law_begins_at_zero(void)
     CHECK_EQUAL("a node too few", bd_bearing_check(&bearing), BD_BAD_SHAPE);
 }
 
+static void echoes_fade_to_the_damping_of_the_table(void)
+{
+    bd_echo echoes[] = {{{8e5, 0.0}, {2e5, 0.0}}, {{5e4, 1e5}, {1e5, 4.375e4}}};
+    bd_bearing_data bearing = deep_groove(BD_DAMPING_CARRIED);
+    bearing.contact.echoes = echoes;
+    CHECK_EQUAL("good echoes", bd_bearing_check(&bearing), BD_OK);
+    echoes[1].strength[1] = 4.4e4;
+    CHECK_EQUAL("another damping at low frequency", bd_bearing_check(&bearing), BD_BAD_VALUE);
+    echoes[1].strength[1] = NAN;
+    CHECK_EQUAL("a strength that is not a number", bd_bearing_check(&bearing), BD_BAD_VALUE);
+    echoes[1].strength[1] = 4.375e4;
+    echoes[0] = (bd_echo){{-8e5, 0.0}, {-2e5, 0.0}};
+    CHECK_EQUAL("an echo that grows", bd_bearing_check(&bearing), BD_BAD_VALUE);
+    bearing.contact.n_echoes = 0;
+    CHECK_EQUAL("no echo", bd_bearing_check(&bearing), BD_BAD_SHAPE);
+}
+
 /* A table of one point, met by a displacement that is not a number: nothing is read beyond its end. */
 static void a_table_is_not_read_beyond_its_end(void)
 {
@@ -447,6 +464,7 @@ int main(void)
     every_number_of_a_bearing_is_checked();
     a_damping_table_is_sorted_and_finite();
     a_film_law_begins_at_zero();
+    echoes_fade_to_the_damping_of_the_table();
     a_table_is_not_read_beyond_its_end();
     a_load_table_is_sorted_and_finite();
     a_channel_exists();

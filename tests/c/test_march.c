@@ -367,6 +367,8 @@ int main(void)
     a_march_resumes_bit_for_bit(BD_DAMPING_LOAD, motor_scheme());
     a_march_resumes_bit_for_bit(BD_DAMPING_LOAD, motor_run_up());
     a_march_resumes_bit_for_bit(BD_DAMPING_FILM, motor_run_up());
+    a_march_resumes_bit_for_bit(BD_DAMPING_CARRIED, motor_scheme());
+    a_march_resumes_bit_for_bit(BD_DAMPING_CARRIED, motor_run_up());
     every_instruction_set_gives_the_same_bits(BD_DAMPING_CONSTANT, motor_scheme());
     every_instruction_set_gives_the_same_bits(BD_DAMPING_CONSTANT, motor_run_up());
     every_instruction_set_gives_the_same_bits(BD_DAMPING_TABLE, motor_scheme());
@@ -374,6 +376,7 @@ int main(void)
     every_instruction_set_gives_the_same_bits(BD_DAMPING_LOAD, motor_scheme());
     every_instruction_set_gives_the_same_bits(BD_DAMPING_LOAD, motor_run_up());
     every_instruction_set_gives_the_same_bits(BD_DAMPING_FILM, motor_run_up());
+    every_instruction_set_gives_the_same_bits(BD_DAMPING_CARRIED, motor_run_up());
     blocks_are_found();
     the_order_of_coordinates_does_not_matter();
     a_new_step_size_starts_a_new_count();

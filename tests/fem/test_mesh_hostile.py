@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import random
 import time
+import warnings
 
 import pytest
 
 from bearingdyn.fem import box_mesh, read_mesh, read_nodes
+from bearingdyn.notice import LeftOut
 from fem.test_mesh_files import TET_INP, inp_of, meshio_of, msh41_of
 from fem.test_mesh_formats import BLOCK, ENDS, bdf, msh, unv, vtk_of_gmsh
 
@@ -205,3 +207,44 @@ def test_damaged_meshes_raise_value_errors_only(tmp_path):
 @pytest.mark.filterwarnings("ignore")
 def test_ten_thousand_damaged_meshes_a_reader_raise_value_errors_only(tmp_path):
     assert strangers(tmp_path, 40_000) == []
+
+
+HEX = (
+    "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+    "*ELEMENT, TYPE=C3D8, ELSET=all\n1,1,2,3,4,5,6,7,8\n"
+)
+
+
+def test_a_step_that_removes_elements_is_refused_by_name(tmp_path):
+    path = tmp_path / "m.inp"
+    path.write_text(HEX + "*STEP\n*MODEL CHANGE, REMOVE\nall\n*END STEP\n")
+    with pytest.raises(ValueError, match=r"m\.inp, line 13: \*MODEL CHANGE: it removes elements"):
+        read_mesh(path, scale=0.01, upgrade=True)
+    # contact pairs carry no geometry
+    path.write_text(HEX + "*STEP\n*MODEL CHANGE, REMOVE, TYPE=CONTACT PAIR\na, b\n*END STEP\n")
+    assert len(read_mesh(path, scale=0.01, upgrade=True).elements) == 1
+
+
+@pytest.mark.parametrize("kind", ["MASS", "B31", "SPRINGA", "ROTARYI", "CONN3D2", "T3D2"])
+def test_an_element_without_volume_is_told_of(kind, tmp_path):
+    path = tmp_path / "m.inp"
+    path.write_text(HEX + f"*ELEMENT, TYPE={kind}, ELSET=lean\n2, 1, 2\n3, 2, 3\n")
+    with pytest.warns(LeftOut, match=f"m.inp: elements without volume are left out.* 2 of type {kind}"):
+        read_mesh(path, scale=0.01, upgrade=True)
+
+
+@pytest.mark.parametrize("card", ["CONM2,9,1,,5.0", "CBAR,9,1,1,2,0.,0.,1.", "CELAS2,9,1e6,1,1,2,1"])
+def test_a_card_without_volume_is_told_of(card, tmp_path):
+    nodes = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nGRID,4,,0.,0.,1.\n"
+    path = tmp_path / "m.bdf"
+    path.write_text(f"BEGIN BULK\n{nodes}CTETRA,1,1,1,2,3,4\n{card}\nENDDATA\n")
+    with pytest.warns(LeftOut, match=f"m.bdf: .* 1 of type {card.split(',')[0]}"):
+        read_mesh(path, scale=0.01, upgrade=True)
+
+
+def test_skins_of_a_body_pass_without_a_word(tmp_path):
+    path = tmp_path / "m.inp"
+    path.write_text(HEX + "*ELEMENT, TYPE=S4, ELSET=skin\n2,1,2,3,4\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_mesh(path, scale=0.01, upgrade=True)

@@ -25,7 +25,7 @@ from bearingdyn.material import (
     sample_dma_path,
     suspects,
 )
-from bearingdyn.notice import OutsideIsotherms, PoorLaw, UnevenShifts
+from bearingdyn.notice import OddPoints, OutsideIsotherms, PoorLaw, UnevenShifts
 from measured import measured
 
 
@@ -236,3 +236,43 @@ def test_measured_data_lose_what_their_readme_names():
         assert low < min(f)
         assert max(f) < high
         assert suspects(dma.select(f_max=low))[1] == ()
+
+
+def isotherms_of(shift, frequency) -> DMAData:
+    """Isotherms of one stated Maxwell model, shifted by decades at T."""
+    T = (0.0, 10.0, 20.0, 30.0, 40.0)
+    tau, G = np.geomspace(1e-6, 1e3, 28), np.geomspace(3e6, 3e5, 28)
+    f, at = np.tile(frequency, len(T)), np.repeat(T, frequency.size)
+    x = 2j * np.pi * (f * 10 ** shift(at))[:, None] * tau
+    modulus = 1e6 + (x / (1 + x)) @ G
+    return DMAData(f, at, modulus.real, modulus.imag, "shear")
+
+
+def test_isotherms_that_do_not_meet_are_told_of():
+    """Sweeps of one decade, 3 decades apart: over two decades between them nothing was measured."""
+    f = np.geomspace(1.0, 10.0, 8)
+    with pytest.warns(UnevenShifts, match=r"leave gaps in the master curve, [12][.0-9]* decades about"):
+        master_curve(isotherms_of(lambda T: (20 - T) * 0.3, f), law="free")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UnevenShifts)
+        master_curve(isotherms_of(lambda T: (20 - T) * 0.06, f), law="free")
+
+
+@pytest.mark.parametrize(("which", "factor"), [("storage", 1.4), ("loss", 3.0), ("loss", 0.5)])
+def test_a_point_that_stands_alone_is_told_of(which, factor):
+    dma = isotherms_of(lambda T: (20 - T) * 0.08, np.geomspace(1.0, 100.0, 10))
+    moduli = {"storage": dma.storage.copy(), "loss": dma.loss.copy()}
+    moduli[which][24] *= factor
+    odd = DMAData(dma.frequency, dma.temperature, moduli["storage"], moduli["loss"], "shear")
+    name = "G′" if which == "storage" else "G″"
+    said = rf"{name} at {dma.frequency[24]:.4g} Hz and 20 °C"
+    with pytest.warns(OddPoints, match=said):
+        master_curve(odd, law="free")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", OddPoints)
+        rng = np.random.default_rng(3)
+        scatter = 1 + 0.03 * rng.standard_normal((2, dma.storage.size))
+        noisy = DMAData(
+            dma.frequency, dma.temperature, dma.storage * scatter[0], dma.loss * scatter[1], "shear"
+        )
+        master_curve(noisy, law="free")

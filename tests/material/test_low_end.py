@@ -11,7 +11,7 @@ import pytest
 
 import bearingdyn as bd
 from bearingdyn.material import WLF, MasterCurve, fit_dense
-from bearingdyn.notice import BeyondData
+from bearingdyn.notice import BeyondData, OutsideBand
 from measured import measured
 
 GIVEN = {"K": 2e9, "density": 1150.0}
@@ -215,3 +215,39 @@ def test_the_sag_of_113_or_56_um_comes_with_a_warning(n: int | str, sag: float) 
     found = bd.static_summary(eq)
     assert float(found["deflection_low"][0]) < 56e-6
     assert float(found["deflection_high"][0]) == math.inf
+
+
+def known_to_16_s() -> bd.Maxwell:
+    """A fit whose points reach from 1/(2π 0.01 Hz) = 16 s down to 1.6 µs."""
+    return bd.fit_maxwell(curve(1e-2), n=5, **GIVEN)
+
+
+@pytest.mark.parametrize("t", [1e9, [1.0, 1e9], math.inf])
+@pytest.mark.parametrize("what", ["relaxation", "creep"])
+def test_a_time_beyond_the_data_is_told_of(what: str, t: object) -> None:
+    rubber = bd.fit_maxwell(curve(1.0), n=3, **GIVEN)
+    with pytest.warns(BeyondData, match=r"data that reach 0\.159 s"):
+        getattr(rubber, what)(t)
+
+
+@pytest.mark.parametrize("what", ["relaxation", "creep"])
+def test_a_time_before_the_band_is_told_of(what: str) -> None:
+    rubber = known_to_16_s()
+    with pytest.warns(OutsideBand, match=r"after 1e-12 s, before 1\.59e-06 s"):
+        getattr(rubber, what)([1e-12, 1.0])
+    app = bd.Application()
+    app.add("layer", bd.Layer(0.02, 0.025, 0.012, rubber))
+    app.ground("layer.outer")
+    app.free("layer.inner")
+    app.load("layer.inner", (0, -10.0, 0, 0, 0, 0))
+    with pytest.warns(OutsideBand, match="the static state of layer is asked after 1e-12 s"):
+        bd.equilibrium(app, after=1e-12)
+
+
+@pytest.mark.parametrize("what", ["relaxation", "creep"])
+def test_times_that_the_data_reach_pass_and_so_does_the_instant_of_loading(what: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        getattr(known_to_16_s(), what)([0.0, 1e-5, 1e-3, 10.0])
+        # a model given by hand without a band is believed
+        getattr(bd.Maxwell(G0, G, TAU, **GIVEN), what)([1e-15, 1e15])

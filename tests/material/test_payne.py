@@ -1,11 +1,13 @@
 """The law of softening with amplitude, its fit to a strain sweep, and what is said of bad sweeps."""
 
+import warnings
+
 import numpy as np
 import pytest
 from tests.measured import DATA
 
 import bearingdyn as bd
-from bearingdyn.notice import TensionAsShear
+from bearingdyn.notice import AssumedMeaning, TensionAsShear
 
 # the law of shared rubber measurements' notes (section 1), computed there independently, to the digits given
 LAW = bd.Payne(D=2.0344e6, gamma_c=3.588e-3, m=0.4817, Lm=0.1663e6, gamma_l=3.132e-3)
@@ -188,3 +190,24 @@ def test_a_law_of_a_harder_rubber_is_refused():
     soft = bd.Maxwell(1e6, [1e5], [1e-3], K=2e9, density=1150.0, payne=LAW)
     with pytest.raises(ValueError, match=r"the law is of a harder rubber"):
         _ = soft.rest
+
+
+ROWS = "0.1,4e6,6e5,10\n1,3e6,7e5,10\n10,2e6,5e5,10\n"
+
+
+@pytest.mark.parametrize("title", ["strain p-p (%)", "peak-to-peak strain (%)", "strain pk-pk [%]"])
+def test_a_strain_from_peak_to_peak_is_halved(title, tmp_path):
+    path = tmp_path / "s.csv"
+    path.write_text(f"{title},G' (Pa),G'' (Pa),frequency (Hz)\n{ROWS}")
+    found = bd.read_strain_sweep(path, temperature=20.0)
+    np.testing.assert_allclose(found.strain, [5e-4, 5e-3, 5e-2], rtol=1e-12)
+
+
+def test_a_strain_without_a_unit_is_taken_as_a_fraction_and_it_is_said(tmp_path):
+    path = tmp_path / "s.csv"
+    path.write_text(f"strain,G' (Pa),G'' (Pa),frequency (Hz)\n{ROWS.replace('10,2e6', '0.9,2e6')}")
+    with pytest.warns(AssumedMeaning, match=r"s\.csv, line 1, column 'strain': no unit .* a fraction"):
+        assert bd.read_strain_sweep(path, temperature=20.0).strain[-1] == 1.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert bd.read_strain_sweep(path, temperature=20.0, units={"strain": "%"}).strain[-1] == 0.01

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 
 from bearingdyn.material import DMAData, Maxwell, RelaxationData, fit_maxwell, master_curve, read_dma
 from bearingdyn.material.reading import ReadingError
-from bearingdyn.notice import CutFile, MixedRuns
+from bearingdyn.notice import CutFile, MixedRuns, UnlikelyModulus
 from measured import DATA, measured, written
 
 RUBBER = Maxwell(1e6, [5e6, 2e7], [1e-2, 5e-4], K=2e9, density=1100.0)
@@ -388,3 +389,17 @@ def test_what_is_no_file_or_too_large_is_refused(tmp_path):
         file.truncate(40 << 20)
     with pytest.raises(ValueError, match="larger than 32 MB"):
         read_dma(path)
+
+
+def test_a_relaxation_modulus_that_rises_is_no_relaxation(tmp_path):
+    """A creep compliance, or columns mixed: of a passive material G(t) falls."""
+    t = np.geomspace(1.0, 100.0, 5)
+    with pytest.raises(ValueError, match=r"rises from 2e\+06 Pa at 1 s to 4e\+06 Pa at 100 s; it must fall"):
+        RelaxationData.of(t, np.linspace(2e6, 4e6, 5), 20.0, "shear")
+    with pytest.warns(UnlikelyModulus, match="rises from 2e.06 Pa"):
+        RelaxationData.of(t, [2.1e6, 2e6, 2e6, 2.3e6, 1.9e6], 20.0, "shear")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        RelaxationData.of(t[::-1], np.linspace(2e6, 4e6, 5), 20.0, "shear")
+        # each isotherm by itself
+        RelaxationData.of(np.r_[t, t], np.r_[[1e6] * 5, [3e6] * 5], [60.0] * 5 + [20.0] * 5, "shear")

@@ -523,3 +523,19 @@ def test_the_rubber_of_the_examples_is_the_fit_it_says() -> None:
     omega = 2 * np.pi * np.geomspace(10.0, 5e3, 50)
     # an optimiser stops elsewhere on another machine
     assert examples.rubber().complex_modulus(omega) == pytest.approx(fitted.complex_modulus(omega), rel=1e-3)
+
+
+@pytest.mark.parametrize("wrong", [["modes"], [5], "modes", [None]])
+def test_what_a_model_is_asked_is_a_list_of_analyses(wrong):
+    app = bd.Application()
+    app.add("mass", bd.RigidBody(2.0, (1e-3, 1e-3, 1e-3)))
+    with pytest.raises(ValueError, match=r"analyses(\[0\])? is .*; it must be a"):
+        bd.Model(app, wrong)
+
+
+def test_a_model_that_an_editor_saved_with_a_mark_of_its_encoding_is_read(tmp_path):
+    """Windows writes EF BB BF, and ends lines with CR LF."""
+    path = tmp_path / "m.toml"
+    plain = examples.model_path("pump").read_text(encoding="utf-8")
+    path.write_bytes(b"\xef\xbb\xbf" + plain.replace("\n", "\r\n").encode())
+    assert set(bd.read_model(path).application.names()) == set(examples.pump().names())

@@ -21,6 +21,7 @@ from flexible_rings import (
     MM,
     RING,
     RUBBER,
+    SIZE,
 )
 from verified.ring_theory import annulus_compliance, thick_ring, thin_ring
 
@@ -108,6 +109,23 @@ def test_the_stiff_ring_moves_as_one_body() -> None:
             RIGID.rigid(0.02), bd.BallBearing.coefficients(replace(B6305, arm=0.02))
         )
         assert track.arm == B6305.arm
+
+
+@pytest.mark.parametrize("race", ["outer", "inner"])
+def test_the_race_follows_the_interface_that_holds_the_ring(race: str) -> None:
+    """A ring in rubber, its rigid interface moved: the race moves with it, tilts about x and y included."""
+    layer = LAYER if race == "outer" else replace(LAYER, r_inner=23.5 * MM, r_outer=27.5 * MM)
+    arm = 22 * MM if race == "outer" else 36 * MM
+    ring = FlexibleRing(*SIZE, arm=arm, order=3, layer=layer, race=race, f_max=0.0)
+    element = ring.superelement()
+    raceway, held = element.raceways["raceway"], element.interfaces[race]
+    wanted = np.zeros((len(raceway.series), 6))
+    # z = y θx − x θy at the arm: axial sine and cosine of order 1
+    terms = ((0, 1, 0), (0, 1, 1), (1, 0, 0), (1, 1, 1), (1, 1, 0))
+    for at, (term, value) in enumerate(zip(terms, (1.0, 1.0, 1.0, arm, -arm), strict=True)):
+        wanted[raceway.series.index(*term), at] = value
+    # round-off of a static solution between steel and rubber
+    np.testing.assert_allclose(raceway.rows[:, held], wanted, rtol=0, atol=1e-7)
 
 
 def test_a_cut_groove_takes_its_mass_out() -> None:

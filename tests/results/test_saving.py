@@ -167,3 +167,13 @@ def test_results_within_results_are_named_by_both(tmp_path: Path) -> None:
     assert groups(tmp_path / "r.nc") == ["a", "response/hard", "response/soft"]
     for name in groups(tmp_path / "r.nc"):
         assert bd.open_result(tmp_path / "r.nc", name).sizes == small().sizes
+
+
+@pytest.mark.parametrize("value", [None, object(), {"a": 1}, 1 + 2j])
+def test_an_attribute_that_no_file_keeps_is_named(value, tmp_path):
+    data = xarray.Dataset({"x": ("t", [1.0], {"odd": value})}, attrs={"fine": "a", "n": 3})
+    with pytest.raises(ValueError, match=r"results\['x'\]\.attrs\['odd'\] is "):
+        bd.save(data, tmp_path / "r.nc")
+    with pytest.raises(ValueError, match=r"results\['a'\]\.attrs\['odd'\] is "):
+        bd.save({"a": xarray.Dataset(attrs={"odd": value})}, tmp_path / "r.nc")
+    assert not list(tmp_path.iterdir())

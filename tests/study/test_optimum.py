@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 
 import bearingdyn as bd
 from bearingdyn import study
+from bearingdyn.notice import UnprovenOptimum
 
 CUBE = {"x": (0.0, 3.0), "y": (0.0, 3.0)}
 
@@ -204,3 +206,23 @@ def test_a_layer_with_the_mesh_of_another_is_as_stiff_as_one_meshed_anew():
     assert np.diag(moved).real == pytest.approx(np.diag(anew).real, rel=4e-4)
     with pytest.raises(ValueError, match="meshed_as is"):
         bd.Layer(0.020, 0.026, 0.014, **shape, meshed_as=(0.03, 0.02, 0.017))
+
+
+def test_an_optimum_within_the_ranges_satisfies_its_conditions():
+    """No limit and no end of a range holds it: nothing of the slope is left, beside that at the starts."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        best = study.optimise(
+            lambda d: {"f": (d["x"] - 2) ** 2 + (d["y"] - 1) ** 2}, CUBE, minimise="f", starts=2
+        )
+    assert best.parameters["x"] == pytest.approx(2.0, abs=1e-3)
+    # slopes of some 3 at the starts; ftol 1e-6 of a square leaves its root
+    assert best.kkt < 5e-3
+
+
+def test_a_noisy_objective_is_told_of():
+    with pytest.warns(UnprovenOptimum, match="misses the conditions of an optimum"):
+        study.optimise(
+            lambda d: {"f": (d["x"] - 0.3) ** 2 + 1e-3 * math.sin(1e6 * d["x"])},
+            {"x": (0.0, 1.0)}, minimise="f", starts=2,
+        )  # fmt: skip

@@ -13,6 +13,7 @@ import sys
 import threading
 import time
 import types
+import warnings
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
@@ -21,6 +22,7 @@ import pytest
 
 import bearingdyn as bd
 from bearingdyn import core, results, study
+from bearingdyn.notice import ChangedFunction
 from bearingdyn.study import store
 
 
@@ -587,3 +589,46 @@ def test_a_table_refuses_what_is_no_list_of_cases(alien: object) -> None:
         study.table(alien)
     with pytest.raises(ValueError, match="units is "):
         study.table([study.Case({"k": 1.0}, {"m": 1.0})], units=alien if not isinstance(alien, dict) else 5)
+
+
+FACTOR = 1.0
+
+
+def times_the_global(case):
+    return {"y": FACTOR * case["x"]}
+
+
+def times_its_default(case, factor=2.0):
+    return {"y": factor * case["x"]}
+
+
+@pytest.mark.parametrize("change", ["global", "default"])
+def test_a_function_changed_after_its_import_is_told_of_and_not_stored(change, monkeypatch, tmp_path):
+    """Spawned workers import the module afresh, with the values that stand in its file."""
+    function, old = (times_the_global, 1.0) if change == "global" else (times_its_default, 2.0)
+    if change == "global":
+        monkeypatch.setitem(function.__globals__, "FACTOR", 5.0)
+    else:
+        monkeypatch.setattr(function, "__defaults__", (5.0,))
+    with pytest.warns(ChangedFunction, match="was changed after its module was imported"):
+        found = study.sweep(function, [{"x": 1.0}, {"x": 2.0}], store=tmp_path, progress=False)
+    assert [case.values["y"] for case in found] == [old, 2 * old]
+    assert not list(tmp_path.iterdir())
+    with ThreadPoolExecutor(1) as threads, warnings.catch_warnings():
+        warnings.simplefilter("error")
+        here = study.sweep(function, [{"x": 1.0}], threads, store=tmp_path, progress=False)
+    assert here[0].values["y"] == 5.0
+
+
+def test_an_unchanged_function_is_sent_without_a_word(tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = study.sweep(times_the_global, [{"x": 1.0}], store=tmp_path, progress=False)
+    assert found[0].values["y"] == 1.0
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+@pytest.mark.parametrize("relative", [20.0, 2.5])
+def test_a_relative_deviation_in_per_cent_is_refused(relative):
+    with pytest.raises(ValueError, match=r"LogNormal.relative is .*; is it in per cent\?"):
+        study.LogNormal(1e6, relative)

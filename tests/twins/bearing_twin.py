@@ -22,23 +22,9 @@ def contact_damping(spec: Any, delta: Any, s: Any) -> tuple[Any, Any]:
         bend = 0.75 * spec.kappa / root / (1 + 1.5 * give * spec.kappa * root) ** 3
         return spec.damping_c * firm, spec.damping_c * bend
     if spec.damping_law == "film":
-        root, half = solid_root(spec, s), np.sqrt(spec.damping_c)
-        at, rise = np.asarray(spec.damping_table).T
-        cells = len(at) - 1
-        x = cells * root / (root + half)
-        i = min(int(np.real(x)), cells - 1)
-        u = x - i
-        # Hermite's basis
-        c = (
-            at[i] * (1 + 2 * u) * (1 - u) ** 2
-            + at[i + 1] * u**2 * (3 - 2 * u)
-            + rise[i] * u * (1 - u) ** 2
-            - rise[i + 1] * u**2 * (1 - u)
-        )
-        by_u = 6 * u * (1 - u) * (at[i + 1] - at[i])
-        by_u += rise[i] * (1 - u) * (1 - 3 * u) + rise[i + 1] * u * (3 * u - 2)
-        by_s = 1 / (2 * root + 3 * spec.give * spec.kappa * root**2)
-        return c, by_u * cells * half / (root + half) ** 2 * by_s
+        root = solid_root(spec, s)
+        c, by_root = film_curve(spec, root)
+        return c, by_root / (2 * root + 3 * spec.give * spec.kappa * root**2)
     table = np.asarray(spec.damping_table)
     x, c = table[:, 0], table[:, 1]
     i = int(np.searchsorted(x, np.real(delta), side="left")) - 1
@@ -48,6 +34,42 @@ def contact_damping(spec: Any, delta: Any, s: Any) -> tuple[Any, Any]:
         return c[-1], 0.0
     slope = (c[i + 1] - c[i]) / (x[i + 1] - x[i])
     return c[i] + slope * (delta - x[i]), slope
+
+
+def film_curve(spec: Any, root: Any) -> tuple[Any, Any]:
+    """The table over w = root/(root + √scale), by Hermite's basis, and its derivative by the root."""
+    half = np.sqrt(spec.damping_c)
+    at, rise = np.asarray(spec.damping_table).T
+    cells = len(at) - 1
+    x = cells * root / (root + half)
+    i = min(int(np.real(x)), cells - 1)
+    u = x - i
+    value = (
+        at[i] * (1 + 2 * u) * (1 - u) ** 2
+        + at[i + 1] * u**2 * (3 - 2 * u)
+        + rise[i] * u * (1 - u) ** 2
+        - rise[i + 1] * u**2 * (1 - u)
+    )
+    by_u = 6 * u * (1 - u) * (at[i + 1] - at[i])
+    by_u += rise[i] * (1 - u) * (1 - 3 * u) + rise[i + 1] * u * (3 * u - 2)
+    return value, by_u * cells * half / (root + half) ** 2
+
+
+def film_value(spec: Any, s: Any) -> Any:
+    """b of a film that is carried, s, at s = δ + h0 > 0."""
+    return film_curve(spec, np.sqrt(s))[0]
+
+
+def carried_force(spec: Any, s: Any, rate: Any) -> tuple[Any, Any, Any]:
+    """F = κ u³, u² + give κ u³ = s + b δ̇, of rates that have been so for long, and its derivatives."""
+    b, by_root = film_curve(spec, np.sqrt(s)) if np.real(s) > 0 else (0.0, 0.0)
+    both = s + b * rate
+    if not np.real(both) > 0:
+        return 0.0, 0.0, 0.0
+    u = solid_root(spec, both)
+    firm = 1.5 * spec.kappa * u / (1 + 1.5 * spec.give * spec.kappa * u)
+    bend = by_root / (2 * np.sqrt(s)) if np.real(s) > 0 else 0.0
+    return spec.kappa * u**3, firm * (1 + bend * rate), firm * b
 
 
 def solid_root(spec: Any, s: Any) -> Any:
@@ -61,6 +83,8 @@ def solid_root(spec: Any, s: Any) -> Any:
 def contact_force(spec: Any, delta: Any, rate: Any) -> tuple[Any, Any, Any]:
     """F = κ(δ+h0−give F_e)^1.5 + c(δ) δ̇, never tensile, with dF/dδ and dF/dδ̇ (paper eq. 1, clipped)."""
     s = delta + spec.h0
+    if spec.damping_law == "carried":
+        return carried_force(spec, s, rate)
     if not np.real(s) > 0:
         return 0.0, 0.0, 0.0
     c, slope = contact_damping(spec, delta, s)

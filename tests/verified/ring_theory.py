@@ -99,3 +99,33 @@ def annulus_hoop(n: int, a: float, b: float) -> float:
 
     (inner, slip, _), (outer, outer_slip, hoop) = rows(1.0), rows(ratio)
     return float(np.dot(hoop, np.linalg.solve([inner, slip, outer, outer_slip], [-1.0, 0.0, 0.0, 0.0])))
+
+
+def annulus_in_bush(n: int, E: float, nu: float, a: float, b: float, c: float, bed: float) -> float:
+    """u_r at r = a, m, for the pressure cos nφ of 1 Pa there, of a ring a…b in a bush b…c held at c, n ≥ 2.
+
+    Between them radial springs, bed in N/m³, and no friction. Plane stress, Michell's solution as above, its
+    tangential motions by Barber, table 9.1.
+    """
+    mu, kappa = E / (2 * (1 + nu)), (3 - nu) / (1 + nu)
+
+    def rows(r: float) -> list[list[float]]:
+        up, down = r**n, r**-n
+        stress = [-(n + 1) * (n - 2) * up, -(n + 2) * (n - 1) * down]
+        stress += [-n * (n - 1) * up / r**2, -n * (n + 1) * down / r**2]
+        shear = [n * (n + 1) * up, -n * (n - 1) * down, n * (n - 1) * up / r**2, -n * (n + 1) * down / r**2]
+        move = [(kappa - n - 1) * up * r, (kappa + n - 1) * down * r, -n * up / r, n * down / r]
+        slide = [(kappa + n + 1) * up * r, -(kappa - n + 1) * down * r, n * up / r, n * down / r]
+        return [stress, shear, move, slide]
+
+    # lengths in units of b; the ring's four constants, then the bush's
+    none = [0.0] * 4
+    (pressed, slip, within, _), (stress, shear, move, _) = rows(a / b), rows(1.0)
+    held, stuck = rows(c / b)[2:]
+    gap = np.array([*move, *(-np.array(move))]) + 2 * mu / (bed * b) * np.array([*stress, *none])
+    A = [
+        [*pressed, *none], [*slip, *none], [*shear, *none], [*none, *shear],
+        [*stress, *(-np.array(stress))], gap, [*none, *held], [*none, *stuck],
+    ]  # fmt: skip
+    found = np.linalg.solve(np.array(A), [-1.0] + [0.0] * 7)
+    return float(np.dot(within, found[:4])) * b / (2 * mu)

@@ -26,9 +26,9 @@ from bearingdyn.analysis.orders import order_spectrum, track_orders
 from bearingdyn.analysis.part_velocities import part_velocities, surface_of
 from bearingdyn.analysis.recorded_ball_loads import ball_channels, contact_statistics
 from bearingdyn.analysis.response_band import Band, band_of
-from bearingdyn.analysis.shaft_speed import shaft_angle
 from bearingdyn.analysis.sheet_pages import sheet_html, sheet_rows, sheet_text
 from bearingdyn.analysis.spectrum import spectrum
+from bearingdyn.analysis.speed_profile import shaft_angle
 from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
 from bearingdyn.analysis.steady import parameter_map, speed_map, steady_state

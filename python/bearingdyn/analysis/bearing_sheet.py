@@ -19,6 +19,7 @@ from bearingdyn.bearing import (
     Lubricant,
     Phase,
     Supply,
+    check_given,
     contamination_factor,
     equivalent_life,
     equivalent_load,
@@ -26,15 +27,15 @@ from bearingdyn.bearing import (
     fault_lines,
     friction,
     in_hours,
-    life_of_loads,
     modified_life,
     nijenbanning_venner_moes,
     ratings_of,
     reliability_factor,
 )
 from bearingdyn.bearing import catalogue as listed
+from bearingdyn.bearing import lives as lives_of
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
-from bearingdyn.notice import BearingWarning, UnusualMagnitude, warn
+from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.parts import RigidBody
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
@@ -42,9 +43,6 @@ from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
-
-FAR = 3.0
-"""Factor between a rating given and that of the balls by ISO that is doubted; makers differ by 1.3."""
 
 
 @takes(speed="rad/s", temperature="°C")
@@ -256,15 +254,7 @@ def _check_ratings(hung: Mapping[str, BallBearing], C: Mapping[str, float], C0: 
     """Warn (UnusualMagnitude) of ratings given that are far from what ISO gives to the bearing's balls."""
     for what, given in (("C", C), ("C0", C0)):
         for name, value in given.items():
-            found = getattr(ratings_of(hung[name]), what)
-            if not 1 / FAR < value / found < FAR:
-                kilo = 1 / FAR < 1e3 * value / found < FAR
-                guess = f"; is it in kN? give {1e3 * value:.4g} N" if kilo else ""
-                warn(
-                    f"{what} of bearing {name!r} is {value:.4g} N, and its balls give {found:.4g} N by ISO"
-                    f"{guess}",
-                    UnusualMagnitude,
-                )
+            check_given(what, value, getattr(ratings_of(hung[name]), what), f" of bearing {name!r}")
 
 
 def _row(
@@ -322,7 +312,7 @@ def _row(
         "P0": P0,
         "static_safety": C0 / P0 if P0 > 0 else math.inf,
         "L10": (C / P) ** 3 if P > 0 else math.inf,
-        "L10r": life_of_loads(bearing, Q, C=C),
+        "L10r": float(lives_of(bearing, Q[None], Q[None], C)[0]),
     }
     for key, index in (("stiffness_x", x), ("stiffness_y", y), ("stiffness_z", along)):
         row[key] = math.nan if index is None else float(state.K[index, index])
@@ -415,7 +405,8 @@ def _life_of_phase(
         float(np.hypot(force[0], force[1])), abs(float(force[2])), bearing.contact_angle or 0.0
     )
     doubts = _overloaded(P0, C0)
-    life = life_of_loads(bearing, state.bearings[name].loads, C=C)
+    Q = state.bearings[name].loads[None]
+    life = float(lives_of(bearing, Q, Q, C)[0])
     if oil is not None and relative != 0 and math.isfinite(life):
         nu = oil.kinematic.viscosity(T)
         found, doubt = _modified(life, C, C0, bearing, relative, nu, contamination, reliability)

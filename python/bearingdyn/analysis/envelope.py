@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.march_record import sampling_time, signal_of, unit_of
 from bearingdyn.analysis.spectrum import amplitudes, check_window
 from bearingdyn.checks import vector
+from bearingdyn.results import sampling_time, signal_of, unit_of
 
 if TYPE_CHECKING:
     import xarray

@@ -14,18 +14,20 @@ from bearingdyn.analysis.static_balance import Statics, diagonal_blocks
 from bearingdyn.application import Application
 from bearingdyn.bearing import (
     OPEN_SIDE_REMEDY,
+    RIGID,
     BallBearing,
     check_bearing_pressure,
     lubricated,
     runs_off,
+    warn_of_lean,
 )
 from bearingdyn.checks import one_of, positive, require, whole
-from bearingdyn.material import is_volume, warn_beyond
+from bearingdyn.material import is_volume
 from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
 from bearingdyn.parts import Layer
 from bearingdyn.pictures import picture
 from bearingdyn.plausible_ranges import plausible
-from bearingdyn.system import BearingTerm, LoadTerm, System, system_of
+from bearingdyn.system import BearingTerm, LoadTerm, System, system_of, warn_at_rest
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 
@@ -137,14 +139,14 @@ class Equilibrium:
         """Whether any ball is pressed."""
         return any((state.loads > PARTED).any() for state in self.bearings.values())
 
-    def warn_of_unloaded(self) -> None:
-        """Warn of every bearing without a pressed ball: about this state it has no stiffness."""
+    def warn_of_unloaded(self, so: str = "in a linear analysis it has no stiffness") -> None:
+        """Warn of every bearing without a pressed ball, and say what follows from it."""
         for name, state in self.bearings.items():
             if isinstance(self._bearing(name), BallBearing) and not (state.loads > PARTED).any():
                 warn(
                     f"bearing {name!r} carries no load in this equilibrium: none of its {state.loads.size} "
-                    f"balls is pressed, and in a linear analysis it has no stiffness; load it (app.gravity, "
-                    f"app.load, an axial preload by offset=), or give it no clearance",
+                    f"balls is pressed, and {so}; load it (app.gravity, app.load, an "
+                    f"axial preload by offset=), or give it no clearance",
                     UnloadedBearing,
                 )
 
@@ -250,7 +252,7 @@ def equilibrium(
     state = modulus or "relaxed"
     rest = Statics.of(system, state if after is None else after)
     if state == "relaxed":
-        warn_at_rest(system, math.inf if after is None else after)
+        warn_at_rest(system.layers, math.inf if after is None else after)
     q = None if start is None else rest.T.T @ (system.M @ start.x)
     if any(isinstance(t.bearing, BallBearing) and t.bearing.lubrication for t in system.bearings):
         system, q = _lubricated(system, rest, angle, q)
@@ -267,6 +269,7 @@ def equilibrium(
         for term in bearings:
             if isinstance(term.bearing, BallBearing):
                 check_bearing_pressure(term.bearing, states[term.name].loads, f"bearing {term.name!r}, ")
+                _doubt_lean(term, states[term.name])
         passage.append(
             {
                 term.name: replace(
@@ -352,14 +355,12 @@ def state_of(source: object) -> dict[str, str]:
     return {"layers": source.layers} if isinstance(source, Equilibrium) and layered else {}
 
 
-def warn_at_rest(system: System, time: float) -> None:
-    """Warn that an equilibrium at a time, s (inf: relaxed), rests on what a layer's data do not cover."""
-    warn_beyond(
-        [(layer.part, layer.material) for layer in system.layers],
-        time,
-        "the static state",
-        "take equilibrium(app, after=...) at a time that the data reach, ",
-    )
+def _doubt_lean(term: BearingTerm, state: BearingState) -> None:
+    """Warn (BearingWarning) of rings that lean far against each other in the equilibrium."""
+    if not isinstance(term.bearing, BallBearing):
+        return
+    tilts = [state.z[state.series.index(*t)] for t in RIGID.terms[3:]]
+    warn_of_lean(math.hypot(*tilts) / term.bearing.arm, f"bearing {term.name!r}: ")
 
 
 def _check_open_sides(bearings: Sequence[BearingTerm], states: Mapping[str, BearingState]) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.inputs_outputs import Input, Output, recovered, requested
-from bearingdyn.analysis.linearised import Contacts, linear
+from bearingdyn.analysis.linearised import linear
 from bearingdyn.analysis.overload import warn_of_swings
 from bearingdyn.analysis.response_band import response_band
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, softening_layers, warn_of_strain
@@ -20,7 +20,7 @@ from bearingdyn.checks import name_list, numbers, one_of, one_speed, positive, r
 from bearingdyn.material import warn_beyond
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.progress import Progress, told
-from bearingdyn.system import System
+from bearingdyn.system import Contacts, System
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 

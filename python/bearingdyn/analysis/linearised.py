@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.static_balance import HOLD
 from bearingdyn.application import COMPONENTS, Application
 from bearingdyn.checks import one_of
-from bearingdyn.system import System, natural, system_of
+from bearingdyn.system import Contacts, System, natural, system_of
 from bearingdyn.types import Array, Complex
 
 # N/m: a bearing below it holds nothing; κ^(2/3) F^(1/3) of one ball under 1e-9 N is some 1e4 N/m
@@ -148,9 +147,6 @@ def _freedom(system: System, motion: Array, idle: list[str]) -> str:
         f"dynamic stiffness is singular); ask from above 0 Hz on, leave that input out, or hold it, as by "
         f'app.ground("{name}", stiffness=[{spring}])'
     )
-
-
-Contacts: TypeAlias = Literal["film", "viscous"]
 
 
 def linear(source: Equilibrium | Application | System, contacts: Contacts = "film") -> Linear:

@@ -41,6 +41,11 @@ def cage_ratios(eq: Equilibrium, speed: float) -> dict[str, float]:
     ArithmeticError
         Where the balls of a bearing find no balance at that speed.
 
+    Warns
+    -----
+    UnloadedBearing
+        Where a bearing carries nothing: no ball drives its cage.
+
     Examples
     --------
     >>> import bearingdyn as bd
@@ -56,6 +61,7 @@ def cage_ratios(eq: Equilibrium, speed: float) -> dict[str, float]:
     instance("eq", eq, Equilibrium, "give what bd.equilibrium returns")
     speed = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
     require(speed != 0, "speed", speed, "at rest no cage turns: give the speed of the shaft in rad/s")
+    eq.warn_of_unloaded("its cage is taken to have the nominal speed")
     return {
         term.name: _ratio(term, term.bearing, eq.bearings[term.name], speed)
         for term in eq.system.bearings

@@ -18,8 +18,8 @@ from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
 from bearingdyn.analysis.march_state import Beginning, check_state, moved, system_hash
 from bearingdyn.analysis.recordable_channels import CoreChannel, channel_of
-from bearingdyn.analysis.shaft_speed import drive_of
 from bearingdyn.analysis.softening import memory_of, softening_layers
+from bearingdyn.analysis.speed_profile import drive_of
 from bearingdyn.analysis.step_size import step_error, warn_if_coarse, warn_if_growing
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
@@ -28,7 +28,7 @@ from bearingdyn.notice import NothingPushes, OpenSideWarning, warn
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.progress import part_of
 from bearingdyn.results import inputs_of
-from bearingdyn.system import System, system_of
+from bearingdyn.system import Contacts, System, system_of
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -68,6 +68,8 @@ class March:
         One of METHODS.
     pressed
         Whether a ball is pressed where the march starts, or that is not known.
+    contacts
+        How lubricated contacts answer.
     """
 
     system: System
@@ -82,6 +84,7 @@ class March:
     memory: float | None = None
     method: str = "newmark"
     pressed: bool = True
+    contacts: Contacts = "viscous"
 
     @classmethod
     def of(
@@ -99,6 +102,7 @@ class March:
         memory: float | None = None,
         method: str = "newmark",
         least_steps: int = 0,
+        contacts: Contacts = "viscous",
     ) -> March:
         """Prepare a march from an equilibrium, an application (its equilibrium is found) or a system at zero.
 
@@ -123,6 +127,7 @@ class March:
             )
         drive = drive_of(speed)
         one_of("method", method, METHODS)
+        one_of("contacts", contacts, ("film", "viscous"))
         if scheme is not None:
             instance("scheme", scheme, core.Scheme, "it must be a bd.Scheme(...)")
         if isinstance(source, Application):
@@ -143,6 +148,11 @@ class March:
         )
         fastest = float(np.abs(drive[1]).max()) if isinstance(drive, tuple) else drive
         system.check_speed(fastest)
+        if contacts == "film" and not any(term.has_films for term in system.bearings):
+            raise ValueError(
+                "contacts is 'film', and no bearing runs on films; give one BallBearing(..., "
+                "lubrication=OilSupply(...)), or contacts='viscous'"
+            )
         if method == "exact":
             drive = _exact_speed(system, drive)
         warn_if_coarse(system, fastest, dt)
@@ -160,12 +170,13 @@ class March:
             memory=memory_of(system, drive, memory),
             method=method,
             pressed=not isinstance(source, Equilibrium) or source.presses,
+            contacts=contacts,
             **counts,
         )
 
     def model(self, channels: list[CoreChannel]) -> core.Model:
         """The core's model, with these channels."""
-        return self.modal.model(channels, memory=self.memory)
+        return self.modal.model(channels, memory=self.memory, contacts=self.contacts)
 
     @property
     def total(self) -> int:
@@ -296,7 +307,7 @@ class March:
         remedy = "resume a result of this application, or start anew with `initial`"
         if size != own_size:
             raise ValueError(f"{another}: it has {size} numbers, and this one has {own_size}; {remedy}")
-        theirs, own = result.attrs.get("system_hash"), system_hash(self.modal)
+        theirs, own = result.attrs.get("system_hash"), system_hash(self.modal, self.contacts)
         if theirs is None:  # written before results said it: its channels must at least exist here
             for name in result["channel"].values:
                 try:
@@ -325,8 +336,9 @@ class March:
             "settle": self.settle,
             "steps": self.steps,
             "inputs": self.system.inputs,
-            "system_hash": system_hash(self.modal),
+            "system_hash": system_hash(self.modal, self.contacts),
             **({} if self.method == "newmark" else {"method": self.method}),
+            **({} if self.contacts == "viscous" else {"contacts": self.contacts}),
         }
 
     def digest(self, state: Array) -> str:
@@ -336,7 +348,7 @@ class March:
         """
         return fingerprint.fingerprint(
             {
-                "system": system_hash(self.modal),
+                "system": system_hash(self.modal, self.contacts),
                 "stepping": self.stepping,
                 "state": state,
                 **({} if self.memory is None else {"memory": self.memory}),

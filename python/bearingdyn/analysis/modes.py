@@ -9,10 +9,10 @@ import scipy
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.film_modes import film_modes
-from bearingdyn.analysis.linearised import Contacts, linear
+from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import Application
 from bearingdyn.checks import number, one_of, one_speed, truth, whole
-from bearingdyn.system import System
+from bearingdyn.system import Contacts, System
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 

@@ -213,6 +213,11 @@ def operating_point(
     ValueError
         Naming what is wrong; also where fits and warmth leave a bearing no clearance.
 
+    Warns
+    -----
+    UnloadedBearing
+        Where a bearing carries nothing when it is warm.
+
     Examples
     --------
     >>> import bearingdyn as bd
@@ -267,6 +272,7 @@ def operating_point(
         found = parts.temperatures(heat)
         change = max(abs(found[n] - T[n]) for n in found)
         if change <= still:
+            state.warn_of_unloaded("no load rubs in it, so that its oil's drag alone warms it")
             return OperatingPoint(
                 state, found, {**{n: f.power for n, f in rubbed.items()}, **own}, rubbed,
                 {n: oil.kinematic.viscosity(_mean(T, n)) for n in hung},

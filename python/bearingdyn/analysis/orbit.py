@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from bearingdyn.analysis.march_record import signal_of
+from bearingdyn.results import signal_of
 
 if TYPE_CHECKING:
     import xarray

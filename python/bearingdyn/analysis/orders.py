@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.march_record import signal_of, unit_of
-from bearingdyn.analysis.shaft_speed import shaft_angle, speed_profile
 from bearingdyn.analysis.spectrum import amplitudes, check_window
+from bearingdyn.analysis.speed_profile import shaft_angle, speed_profile
 from bearingdyn.checks import numbers, positive, require, whole
+from bearingdyn.results import signal_of, unit_of
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:

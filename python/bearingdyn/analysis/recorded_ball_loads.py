@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.analysis.march_record import recorded, sampling_time, signal_of
 from bearingdyn.checks import instance
+from bearingdyn.results import recorded, sampling_time, signal_of
 from bearingdyn.system import System
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.march_record import sampling_time, signal_of, unit_of
+from bearingdyn.results import sampling_time, signal_of, unit_of
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:

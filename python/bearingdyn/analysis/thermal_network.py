@@ -81,7 +81,8 @@ class ThermalNetwork:
 
     def film(self, a: str, area: float, coefficient: float) -> None:
         """Join a node to the air by a film: coefficient W/(m² K) times area, m²."""
-        self.link(a, AIR, positive("area", area) * positive("coefficient", coefficient))
+        carried = plausible("film coefficient", "coefficient", positive("coefficient", coefficient))
+        self.link(a, AIR, plausible("area", "area", positive("area", area)) * carried)
 
     def slab(
         self,
@@ -110,8 +111,9 @@ class ThermalNetwork:
             Through its thickness; the temperature's error is 1/cells².
         """
         n = whole("cells", cells, 2, 1000)
-        step = positive("thickness", thickness) / n
-        G = positive("conductivity", conductivity) * positive("area", area) / step
+        step = plausible("length", "thickness", positive("thickness", thickness)) / n
+        lambda_ = plausible("conductivity", "conductivity", positive("conductivity", conductivity))
+        G = lambda_ * plausible("area", "area", positive("area", area)) / step
         self._chain(name, a, b, [2 * G, *([G] * (n - 1)), 2 * G], [1 / n] * n)
 
     def ring(
@@ -136,12 +138,16 @@ class ThermalNetwork:
             m.
         """
         n = whole("cells", cells, 2, 1000)
-        inner = positive("r_inner", r_inner)
-        require(positive("r_outer", r_outer) > inner, "r_outer", r_outer, "it must exceed r_inner")
+        inner, outer, wide = (
+            plausible("length", name, positive(name, value))
+            for name, value in (("r_inner", r_inner), ("r_outer", r_outer), ("width", width))
+        )
+        require(outer > inner, "r_outer", r_outer, "it must exceed r_inner")
         edges = np.linspace(inner, r_outer, n + 1)
         middles = (edges[1:] + edges[:-1]) / 2
         radii = np.concatenate([[inner], middles, [r_outer]])
-        along = 2 * math.pi * positive("conductivity", conductivity) * positive("width", width)
+        along = 2 * math.pi * wide
+        along *= plausible("conductivity", "conductivity", positive("conductivity", conductivity))
         G = along / np.log(radii[1:] / radii[:-1])
         volume = np.diff(edges**2)
         self._chain(name, a, b, G.tolist(), (volume / volume.sum()).tolist())

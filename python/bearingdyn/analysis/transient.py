@@ -19,10 +19,10 @@ from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.step_size import step_error_made
 from bearingdyn.application import Application
-from bearingdyn.checks import instance, items, name_list, named, number, one_speed, whole
+from bearingdyn.checks import instance, items, name_list, named, number, one_speed, truth, whole
 from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
-from bearingdyn.system import System
+from bearingdyn.system import Contacts, System
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ def transient(
     scheme: core.Scheme | None = None,
     memory: float | None = None,
     method: str = "newmark",
+    contacts: Contacts = "viscous",
     progress: Progress | bool | None = None,
     rpm: float | tuple[ArrayLike, ArrayLike] | None = None,
 ) -> xarray.Dataset:
@@ -132,6 +133,13 @@ def transient(
         motion at ω that balls alone hold grows by (ωΔt)⁴/48 a step, against its damping, and by 2 % at ωΔt =
         1; `GrowingStep` warns of it. Without damping in its contacts a machine with modes to 8 kHz leaves its
         rest at Δt = 11 µs, and not at 5.6 µs.
+    contacts
+        How lubricated contacts answer (`BallBearing(lubrication=…)`): "viscous", by the damping that holds at
+        low frequency, or "film": the oil carries what was pressed at the inlet through the contact, so that
+        the answer of `frequency_response` with contacts="film" holds in time, K(ω) and c(ω), at the mean load
+        of the loaded balls; under others damping follows the load and the course over frequency stays. Films
+        become thinner under load, which makes contacts softer by one part in fifty or so. Of the speed at
+        which they were lubricated, in a run-up too.
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
@@ -149,7 +157,8 @@ def transient(
     ValueError
         Before any long work: for dt ≤ 0, negative steps, a record that the memory cannot hold, an unknown
         channel, a part that would turn although its damping is known at rest only, the state of another
-        application, `check_unique` of a run-up or of several base frequencies.
+        application, `check_unique` of a run-up or of several base frequencies, contacts="film" where no
+        bearing runs on films or one is so thick that it follows the load.
     SolverError
         When Newton's iteration diverges or the response is no longer finite; its `partial` is the Dataset up
         to there.
@@ -199,6 +208,8 @@ def transient(
         )
     if resume is not None and (places or motion is not None):
         raise ValueError("resume and initial both set the state at the start; give one of them")
+    filter, audit = truth("filter", filter), truth("audit", audit)
+    check_step, check_unique = truth("check_step", check_step), truth("check_unique", check_unique)
     speed = one_speed(speed, rpm)
     if isinstance(source, Application):
         source = equilibrium(source)
@@ -214,7 +225,12 @@ def transient(
         scheme=scheme,
         memory=memory,
         method=method,
+        contacts=contacts,
     )
+    if check_unique and contacts == "film":
+        raise ValueError(
+            "check_unique looks for steady motions on viscous contacts, and contacts is 'film'; leave one out"
+        )
     if resume is None and not initial:
         march.warn_if_still()
     approaches = _approaches(source, speed) if check_unique else None

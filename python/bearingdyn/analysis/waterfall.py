@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.analysis.march_record import sampling_time, signal_of, unit_of
-from bearingdyn.analysis.shaft_speed import speed_profile
 from bearingdyn.analysis.spectrum import amplitudes, check_window
+from bearingdyn.analysis.speed_profile import speed_profile
 from bearingdyn.checks import number, positive
+from bearingdyn.results import sampling_time, signal_of, unit_of
 
 if TYPE_CHECKING:
     import xarray

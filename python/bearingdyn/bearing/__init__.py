@@ -20,12 +20,14 @@ from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_p
 from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.film_answer import AnswerUnderLoads, FilmAnswer
+from bearingdyn.bearing.film_memory import FilmMemory, carried
 from bearingdyn.bearing.film_thickness import Film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.half_space import footprint_profile, half_space_orders
 from bearingdyn.bearing.hertz import PointContact, contact_modulus, resultant_deflection_coefficient
 from bearingdyn.bearing.imperfections import Imperfections, Pit, Waviness
 from bearingdyn.bearing.kernel import BearingKernel
+from bearingdyn.bearing.load_and_motion_checks import warn_of_lean
 from bearingdyn.bearing.load_distribution import LoadDistribution, load_distribution
 from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Lubricant, Walther
@@ -43,6 +45,7 @@ from bearingdyn.bearing.rating import (
     Phase,
     Ratings,
     Supply,
+    check_given,
     contamination_factor,
     equivalent_life,
     equivalent_load,
@@ -52,6 +55,7 @@ from bearingdyn.bearing.rating import (
     iso_ratings,
     life_factor,
     life_of_loads,
+    lives,
     load_cases,
     modified_life,
     rating_life,
@@ -78,6 +82,7 @@ __all__ = [
     "Film",
     "FilmAnswer",
     "FilmDamping",
+    "FilmMemory",
     "Frequencies",
     "Friction",
     "FrictionModel",
@@ -110,8 +115,10 @@ __all__ = [
     "Waviness",
     "WavinessSpectrum",
     "at_distance",
+    "carried",
     "catalogue",
     "check_bearing_pressure",
+    "check_given",
     "clearance_range",
     "contact_modulus",
     "contamination_factor",
@@ -129,6 +136,7 @@ __all__ = [
     "iso_ratings",
     "life_factor",
     "life_of_loads",
+    "lives",
     "load_cases",
     "load_distribution",
     "lubricate",
@@ -147,6 +155,7 @@ __all__ = [
     "samples_off",
     "shoulder",
     "spall",
+    "warn_of_lean",
     "waviness_lines",
     "without_spin",
 ]

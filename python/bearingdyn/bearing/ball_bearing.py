@@ -25,13 +25,14 @@ from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.hertz import PointContact, race_contact, resultant_deflection_coefficient
 from bearingdyn.bearing.imperfections import Body, Imperfections, Pit, Waviness, checked
 from bearingdyn.bearing.kernel import BearingKernel
-from bearingdyn.bearing.load_and_motion_checks import check_load, check_motion
+from bearingdyn.bearing.load_and_motion_checks import check_load, check_motion, warn_of_lean
 from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, runs_off, shoulder
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
 from bearingdyn.checks import nonnegative, number, one_speed, positive, require, vector, whole
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.pictures import picture
 from bearingdyn.plausible_ranges import check_speed_value, plausible
 from bearingdyn.types import Array
@@ -527,17 +528,19 @@ class BallBearing:
         Warns
         -----
         BearingWarning
-            Where a pressure exceeds 4.2 GPa (ISO 76).
+            Where a pressure exceeds 4.2 GPa (ISO 76), or the rings lean by more than .01 rad.
+        OpenSideWarning
+            Where balls are pressed onto the open side of an angular contact bearing.
         """
         rate = np.zeros(6) if velocity is None else velocity
         g, _, _, loads = self._checked(q, angle, rate, speed)
-        check_bearing_pressure(self, loads)
+        self._doubt(q, angle, loads)
         return self.coefficients().T @ g
 
     def stiffness(self, q: ArrayLike, angle: float = 0.0) -> Array:
-        """Tangent stiffness (6, 6) ∂force/∂q at rest, symmetric, N/m, N and N m."""
+        """Tangent stiffness (6, 6) ∂force/∂q at rest, symmetric, N/m, N and N m; warns as `force`."""
         B, (_, K, _, loads) = self.coefficients(), self._checked(q, angle, np.zeros(6), 0.0)
-        check_bearing_pressure(self, loads)
+        self._doubt(q, angle, loads)
         return B.T @ K @ B
 
     def damping_matrix(self, q: ArrayLike, angle: float = 0.0) -> Array:
@@ -577,7 +580,7 @@ class BallBearing:
         Warns
         -----
         BearingWarning
-            Where a pressure exceeds 4.2 GPa (ISO 76).
+            Where a pressure exceeds 4.2 GPa (ISO 76), or the rings lean by more than .01 rad.
         """
         f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
         check_load("load", f)
@@ -601,6 +604,7 @@ class BallBearing:
         if astray:
             raise ValueError(f"load is {f.tolist()}; {astray}; {OPEN_SIDE_REMEDY}")
         check_bearing_pressure(self, loads)
+        warn_of_lean(math.hypot(z[3], z[4]) / R)
         return np.array([z[0], z[1], z[2], z[4] / R, -z[3] / R, 0.0])
 
     def evaluate(self, q: ArrayLike, angle: float = 0.0) -> _Response:
@@ -609,6 +613,17 @@ class BallBearing:
         For searches, which pass through motions that no bearing makes: q is not judged, nor are pressures.
         """
         return self._evaluate(q, angle, np.zeros(6), 0.0)
+
+    def _doubt(self, q: ArrayLike, angle: float, loads: Array) -> None:
+        """Warn of a motion that overloads the balls, presses them onto the open side, or leans far."""
+        check_bearing_pressure(self, loads)
+        if not loads.max(initial=0.0) > 0:
+            return
+        z = self.relative(q)
+        astray = runs_off(self._kernel, z, loads, self.angle0 + angle) if self._kernel.shoulder else ""
+        if astray:
+            warn(f"at this q {astray}; {OPEN_SIDE_REMEDY}", OpenSideWarning)
+        warn_of_lean(math.hypot(z[3], z[4]) / self.arm)
 
     def _checked(self, q: ArrayLike, angle: float, velocity: ArrayLike, speed: float) -> _Response:
         """`_evaluate` at a motion that a bearing can make."""

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Running
 from bearingdyn.checks import require
+from bearingdyn.notice import UnloadedBearing, warn
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
@@ -60,11 +61,22 @@ def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Pas
         unequal balls, which does not repeat after a ball spacing.
     ArithmeticError
         If no equilibrium is found.
+
+    Warns
+    -----
+    UnloadedBearing
+        For a load of zero.
     """
     require(isinstance(n, int) and n >= 1, "n", n, "it must be a whole number of positions, one or more")
     brg = bearing.bearing if isinstance(bearing, Running) else bearing
     smooth = not (brg.waviness or brg.defects or brg.oversize)
     require(smooth, "bearing", brg, "it must have neither waviness, defects nor unequal balls")
+    if not np.any(np.asarray(load, dtype=np.float64)):
+        warn(
+            "load is zero: a bearing that bears nothing has no place of its own, and no stiffness unless it "
+            "is clamped; give the load that it runs under",
+            UnloadedBearing,
+        )
     angle = 2 * math.pi / brg.Z * np.arange(n) / n
     q = np.array([bearing.displacement(load, float(a)) for a in angle])
     K = np.array([bearing.stiffness(place, float(a)) for place, a in zip(q, angle, strict=True)])

@@ -42,7 +42,7 @@ def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) ->
     return math.fsum(nonnegative("c", c) * math.pow(kappa / k, 4 / 3) for k, c in (inner, outer))
 
 
-Law: TypeAlias = Literal["constant", "table", "load", "film"]
+Law: TypeAlias = Literal["constant", "table", "load", "film", "carried"]
 KernelFields: TypeAlias = tuple[Law, float, Array]
 
 
@@ -156,7 +156,10 @@ class FilmDamping:
     c
         (65,) damping of one ball, N s/m, at w = 0, 1/64, …, 1; zero at the first.
     answer
-        How the contacts answer by frequency, for harmonic analyses; None: as this damping says, at any.
+        How the contacts answer by frequency, for analyses with contacts="film"; None: as this damping says,
+        at any.
+    load
+        At which it was found, N; None: not known.
 
     Raises
     ------
@@ -167,10 +170,13 @@ class FilmDamping:
     scale: float
     c: Array
     answer: FilmAnswer | None
+    load: float | None
 
     __repr__ = short
 
-    def __init__(self, scale: float, c: ArrayLike, answer: FilmAnswer | None = None) -> None:
+    def __init__(
+        self, scale: float, c: ArrayLike, answer: FilmAnswer | None = None, load: float | None = None
+    ) -> None:
         remedy = "leave it to bearing.lubricate, or None"
         require(isinstance(answer, FilmAnswer | None), "damping.answer", answer, remedy)
         positive("damping.scale", scale, "an approach in metres must be positive and finite")
@@ -184,6 +190,7 @@ class FilmDamping:
         object.__setattr__(self, "scale", float(scale))
         object.__setattr__(self, "c", y)
         object.__setattr__(self, "answer", answer)
+        object.__setattr__(self, "load", None if load is None else positive("damping.load", load))
 
     @cached_property
     def _rises(self) -> Array:
@@ -219,7 +226,7 @@ class FilmDamping:
         k = 1.5 * kappa * math.sqrt(self.scale) * w / (1 - w)
         # a wall may stiffen without bound at loads that no ball bears: held where it doubles k
         c = self.c[:-1] / np.maximum(1 + give * k, 0.5) ** 2
-        return FilmDamping(self.scale, np.append(c, c[-1]), self.answer)
+        return FilmDamping(self.scale, np.append(c, c[-1]), self.answer, self.load)
 
     def kernel_fields(self) -> KernelFields:
         """Law, scale and nodes as the kernel takes them."""

@@ -35,6 +35,8 @@ _ANGLES = {"A5": 25, "ACD": 25, "AC": 25, "A": 30, "BE": 40, "B": 40, "CD": 15, 
 _ANGULAR = ("70", "72", "73")
 
 _NUMBER = re.compile(r"(?<![0-9])(618|619|160|60|62|63|64|68|69|70|72|73)([0-9]{2})(?=2RS|2Z|[^0-9]|$)")
+# SKF's and FAG's signs of hybrid bearings; HC5 is no clearance C5
+_CERAMIC = re.compile(r"(?:^|[\s/\-])(HC[0-9]?|SN24|CERAMIC|HYBRID)(?=$|P[0-9]|C[0-9N]|[\s/\-])")
 _THIN = {"68": "618", "69": "619"}  # JIS writes 6805 for 61805
 
 
@@ -74,7 +76,7 @@ def read_designation(designation: str | int) -> Designation:
     Raises
     ------
     ValueError
-        If no number of a series that is known stands in it.
+        If no number of a series that is known stands in it, or a sign of ceramic balls.
 
     Examples
     --------
@@ -89,6 +91,13 @@ def read_designation(designation: str | int) -> Designation:
             "it must hold a number of the series 60, 62, 63, 64, 618, 619, 160, 70, 72 or 73, such as '6205'"
         )
         raise ValueError(f"designation is {designation!r}; {remedy}")
+    ceramic = _CERAMIC.search(text[: found.start()]) or _CERAMIC.search(text[found.end() :])
+    if ceramic is not None:
+        raise ValueError(
+            f"designation is {designation!r}; {ceramic[1]} means ceramic balls, which the catalogue does not "
+            f"take from a name: write {found[0]!r} and give ball_material=bd.Elastic(E=3.1e11, nu=0.26, "
+            f"density=3200.0), silicon nitride"
+        )
     series = _THIN.get(found[1], found[1])
     rest = text[found.end() :]
     letter, angle = "", None

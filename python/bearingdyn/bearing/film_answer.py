@@ -86,6 +86,11 @@ class FilmAnswer:
         """Damping of a ball at low frequency under a load that the table holds, N s/m."""
         return in_series(*self._looked_up(Q))
 
+    def passages(self, Q: float) -> tuple[float, float]:
+        """Times in which the oil passes half of the inner and of the outer contact under a load, a/um, s."""
+        inner, outer = (2 * contact.semi_axes(Q)[1] / self.us for contact in (self.inner, self.outer))
+        return inner, outer
+
     def under(self, loads: Array) -> AnswerUnderLoads:
         """The answer of balls under loads (b,), N; one that the table does not hold is taken at its end."""
         held = np.log(np.clip(loads, *self.loads()))

@@ -46,9 +46,11 @@ class BearingKernel:
     """Film thickness of both contacts of a ball together, m."""
     damping_law: Law
     damping_c: float
-    """c in N s/m ("constant"), the damping time in s ("load"), or the scale in m ("film"); 0 for "table"."""
+    """c in N s/m ("constant"), damping time in s ("load"), scale in m ("film", "carried"); 0 for "table"."""
     damping_table: Array = field(default_factory=lambda: np.zeros((0, 2)))
-    """(n, 2) rows (δ in m, c in N s/m), "table", or (c and its rise per cell, N s/m), "film"; else empty."""
+    """(n, 2) rows (δ in m, c in N s/m), "table", or c and its rise per cell, N s/m, "film", s, "carried"."""
+    echoes: Array = field(default_factory=lambda: np.zeros((0, 4)))
+    """(n, 4) rows of decay and strength, 1/s, real and imaginary parts, "carried"; else empty."""
     cage_ratio: float = 0.5
     """Cage speed over shaft speed."""
     angle0: float = 0.0
@@ -98,6 +100,7 @@ class BearingKernel:
             "law": self.damping_law,
             "c": self.damping_c,
             "table": np.asarray(self.damping_table, dtype=np.float64).reshape(-1, 2),
+            "echoes": np.asarray(self.echoes, dtype=np.float64).reshape(-1, 4),
             "cage_ratio": self.cage_ratio,
             "angle0": self.angle0,
             "inner_ratio": self.inner_ratio,

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+
+from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
@@ -11,6 +14,30 @@ def check_load(field: str, load: Array) -> None:
     for k, x in enumerate(load.tolist()):
         kind = "force" if k < 3 else "moment"
         plausible(kind, f"{field}[{k}], the {kind} along {'xyz'[k % 3]},", x)
+
+
+LEAN = 0.01
+"""Tilt of a bearing's rings against each other, rad, that is doubted: makers allow 2 to 10 minutes of arc,
+0.0006 to 0.003 rad, and beyond some half a degree the balls climb to the shoulders."""
+
+
+def warn_of_lean(tilt: float, who: str = "") -> None:
+    """Warn (BearingWarning) of rings that lean against each other by more than makers of bearings allow.
+
+    Parameters
+    ----------
+    tilt
+        Size of the tilt about an axis across the bearing's, rad.
+    who
+        What the message begins with.
+    """
+    if tilt > LEAN:
+        warn(
+            f"{who}its rings lean by {math.degrees(tilt):.2g}° against each other; deep groove bearings are "
+            "allowed 2 to 10 minutes of arc, 0.17° at most, and angular contact bearings less: give the "
+            "shaft a second bearing, or less moment; are moments in N m?",
+            BearingWarning,
+        )
 
 
 def check_motion(field: str, q: Array) -> None:

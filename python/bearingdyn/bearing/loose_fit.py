@@ -1,4 +1,4 @@
-"""A ring with clearance in its bore: radial contact without friction that opens and closes."""
+"""A ring with clearance in its bore or on its shaft: radial contact that opens and closes, no friction."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ _SCALE = 1.0  # m; radial motion alone: no result depends on it
 
 @dataclass(frozen=True)
 class LooseFit:
-    """A loose fit: the seat of a flexible outer ring in a rigid bore larger than it.
+    """A loose fit: the seat of a flexible ring, an outer one in its bore or an inner one on its shaft.
 
-    The gap is closed at stations around the circumference, each a stiff spring F = κ δ^{3/2} that only
-    pushes; the contact kernel of the balls computes it, the stations standing still. Friction and shoulders,
-    which keep the ring from sliding along the bore and tilting in it, are linear springs. In a march, a hard
-    seat that opens and closes costs tenths of a millisecond a step.
+    Bore and shaft are rigid interfaces, or move by the same orders as the ring does, as the groove of another
+    body of revolution. The gap is closed at stations around the circumference, each a stiff spring
+    F = κ δ^{3/2} that only pushes; the contact kernel of the balls computes it, the stations standing still.
+    Friction and shoulders, which keep the ring from sliding along the bore and tilting in it, are linear
+    springs. In a march, a hard seat that opens and closes costs tenths of a millisecond a step.
 
     Parameters
     ----------
     clearance
-        Bore less outside of the ring, diametral, m.
+        Bore less outside of the ring, or bore of the ring less shaft, diametral, m.
     stations
         Number of them; more than twice the highest order of the ring.
     kappa

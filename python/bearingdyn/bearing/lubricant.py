@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent
-from bearingdyn.checks import number, positive, require
+from bearingdyn.checks import nonnegative, number, positive, require
 from bearingdyn.plausible_ranges import plausible
 
 _ZERO_CELSIUS = 273.15
@@ -144,10 +144,18 @@ class Lubricant:
         plausible("pressure coefficient", "alpha", alpha)
 
     def viscosity(self, T: float, p: float = 0.0, law: Literal["roelands", "barus"] = "roelands") -> float:
-        """Dynamic viscosity, Pa s, at T in °C and the pressure p in Pa."""
+        """Dynamic viscosity, Pa s, at T in °C and the pressure p in Pa.
+
+        Warns
+        -----
+        UnusualMagnitude
+            For a pressure that no contact has, or one at which Barus' law is far too high.
+        """
         eta0 = self.kinematic.viscosity(T) * self.density
         require(law in ("roelands", "barus"), "law", law, 'it must be "roelands" or "barus"')
+        plausible("oil pressure", "p", nonnegative("p", p))
         if law == "barus":
+            plausible("pressure by Barus", "p", p)
             return barus(eta0, self.alpha, p)
         return roelands(eta0, roelands_exponent(eta0, self.alpha), p)
 

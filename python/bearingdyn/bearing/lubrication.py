@@ -283,7 +283,7 @@ def _over_load(
     loads = bearing.kappa * (scale * (w[1:-1] / (1 - w[1:-1])) ** 2) ** 1.5
     values = [0.0, *(damping(float(F)) for F in loads)]
     values.append(values[-1])
-    return FilmDamping(scale, np.array(values) * (c / damping(Q)), answer)
+    return FilmDamping(scale, np.array(values) * (c / damping(Q)), answer, Q)
 
 
 def _speeds_held(contact: PointContact, supply: OilSupply, Q: float, us: float) -> str:

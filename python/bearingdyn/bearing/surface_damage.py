@@ -6,6 +6,7 @@ import math
 
 from bearingdyn.bearing.imperfections import Body, Pit
 from bearingdyn.checks import positive, require
+from bearingdyn.plausible_ranges import plausible
 
 
 def spall(body: Body, angle: float, length: float, depth: float, *, ball: int = 1) -> Pit:
@@ -53,8 +54,9 @@ def dent(body: Body, angle: float, width: float, particle: float, *, ball: int =
         If the dent is wider than the particle.
     """
     positive("width", width, "it must be positive and finite, in m")
+    plausible("pit width", "particle", positive("particle", particle))
     require(
-        width <= positive("particle", particle),
+        width <= particle,
         "width",
         width,
         f"it must not exceed the particle, {particle!r} m",

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from bearingdyn.checks import number, numbers, require
+from bearingdyn.plausible_ranges import plausible
 
 F_MAX = 20e3  # Hz, the end of what is heard
 
@@ -40,6 +41,8 @@ def check_f_max(f_max: float, *, may_be_zero: bool = True, may_be_infinite: bool
         ", inf for all" if may_be_infinite else "",
     )
     require(good, "f_max", f_max, f"it must be a frequency in Hz{none}{every}")
+    if f_max < math.inf:
+        plausible("band of a part", "f_max", f_max)
 
 
 def _ordered(field: str, value: Any, remedy: str) -> float:

@@ -71,7 +71,7 @@ def pivots(A: Any) -> Array:
 
 
 def order_of(A: Any) -> Index:
-    """For factors of many matrices of one pattern, their order of elimination, found once.
+    """Factors of many matrices of one pattern: the order they share, found once.
 
     Parameters
     ----------

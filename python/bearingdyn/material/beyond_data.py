@@ -31,7 +31,12 @@ def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, firs
     -----
     BeyondData
         Once for each call: it names all layers, and gives the numbers of the first.
+    OutsideBand
+        For a time before those that the band speaks of.
     """
+    layers = list(layers)
+    for name, material in layers:
+        warn_before(material, after, f"{what} of {name}")
     found = [
         (name, material)
         for name, material in layers
@@ -46,6 +51,28 @@ def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, firs
         f"fit_maxwell(pin=...), or measure longer or warmer",
         BeyondData,
     )
+
+
+def warn_before(material: Any, time: float, what: str) -> None:
+    """Warn of a material asked at a time, s, before its data and band begin; zero asks by name for the limit.
+
+    Parameters
+    ----------
+    material, time, what
+        As in `warn_beyond`.
+
+    Warns
+    -----
+    OutsideBand
+        As a point at ω speaks of the time 1/ω, before that of the highest frequency.
+    """
+    band = getattr(material, "band", None)
+    if band is not None and 0 < 2 * math.pi * band[1] * time < 1 / SLACK:
+        warn(
+            f"{what} is asked after {time:.3g} s, before {1 / (2 * math.pi * band[1]):.3g} s, of which the "
+            f"highest frequency of the Maxwell model's band, {band[1]:.4g} Hz, speaks: there it extrapolates",
+            OutsideBand,
+        )
 
 
 @contextmanager
@@ -74,7 +101,11 @@ def band_told_once(laws: Iterable[Any], omega: Array) -> Iterator[None]:
 def _numbers(material: Any, after: float) -> str:
     """The value, what the data reach, and the interval."""
     end: LowEnd = material.low_end
-    value = material.complex_modulus(0.0).real if math.isinf(after) else float(material.relaxation(after))
+    value = (
+        material.complex_modulus(0.0).real
+        if math.isinf(after)
+        else float(material.relaxation(after, doubt=False))
+    )
     low, high = end.bounds(after, value)
     state = "relaxed" if math.isinf(after) else f"after {after:.3g} s"
     at = "" if material.temperature is None else f" at {material.temperature:g} °C"

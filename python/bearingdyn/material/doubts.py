@@ -222,7 +222,7 @@ def _long_times(m: Maxwell, after: float) -> list[Doubt]:
     end = m.low_end
     if end is None or not m.G0 > 0:
         return []
-    value = float(m.relaxation(after))
+    value = float(m.relaxation(after, doubt=False))
     low, high = end.bounds(after, value)
     # a spring may be what the data do not see relax; of a plateau they see all
     late = m.G.sum() if end.plateau else m.G[m.tau >= end.reach].sum()

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import instance, nonnegative, number, positive, real, require, vector
 from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
+from bearingdyn.material.beyond_data import warn_before, warn_beyond
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.doubt import Doubt
@@ -333,6 +334,14 @@ class Maxwell(Retunable, Softening, Drawable):
                 OutsideBand,
             )
 
+    def _warn_of_times(self, t: Array, what: str) -> None:
+        """Warn of times, s, about which the data say nothing: longer by the low end, shorter by the band."""
+        if t.size == 0:
+            return
+        warn_beyond([("the material", self)], float(t.max()), what)
+        if t[t > 0].size:
+            warn_before(self, float(t[t > 0].min()), f"{what} of the material")
+
     def bulk_modulus(self, omega: ArrayLike) -> Complex:
         """Complex bulk modulus K*(ω), Pa, at ω rad/s, any shape; K everywhere without `bulk`."""
         if self.bulk is None:
@@ -349,19 +358,35 @@ class Maxwell(Retunable, Softening, Drawable):
         """The loss factor under its other name, :meth:`loss_factor`."""
         return self.loss_factor(omega)
 
-    def relaxation(self, t: ArrayLike) -> Array:
+    def relaxation(self, t: ArrayLike, *, doubt: bool = True) -> Array:
         """Relaxation modulus G_rel(t), Pa, at times t ≥ 0, s, any shape (paper eq. 6).
 
         The dashpot adds an impulse η0·δ(t) at t = 0, which is left out.
+
+        Parameters
+        ----------
+        t
+            Times, s; 0 gives the instantaneous modulus.
+        doubt
+            Warn of times that the data do not reach.
 
         Raises
         ------
         ValueError
             If a time is negative.
+
+        Warns
+        -----
+        BeyondData
+            For times longer than the data of a fit, or the band of a model that has one, speak of.
+        OutsideBand
+            For times shorter than that band.
         """
         t = np.asarray(t, dtype=np.float64)
         if not np.all(t >= 0):
             raise ValueError("t: a relaxation modulus exists for times t >= 0 s only")
+        if doubt:
+            self._warn_of_times(t, "the relaxation modulus")
         return np.asarray(self.G0 + np.exp(-t[..., None] / self.tau) @ self.G)
 
     def creep(self, t: ArrayLike) -> Array:
@@ -374,7 +399,15 @@ class Maxwell(Retunable, Softening, Drawable):
         ------
         ValueError
             If a time is negative.
+
+        Warns
+        -----
+        BeyondData, OutsideBand
+            As `relaxation`.
         """
+        times = np.asarray(t, dtype=np.float64)
+        if np.all(times >= 0):
+            self._warn_of_times(times, "the creep compliance")
         return creep_compliance(self.G0, self.G, self.tau, self.eta0, t)
 
     def spectrum(self) -> tuple[Array, Array]:

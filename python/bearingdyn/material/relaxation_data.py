@@ -12,12 +12,15 @@ from bearingdyn.checks import vector
 from bearingdyn.material.dma import DMAData, Mode
 from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.relaxation_spectrum import dense_times, solve_strengths
+from bearingdyn.notice import UnlikelyModulus, warn
 from bearingdyn.types import Array
 
 _CONVERTED = (
     "relaxation modulus turned into storage and loss modulus at 1/(2πt) by a non-negative spectrum; within "
     "half a decade of either end of each isotherm the loss modulus is uncertain"
 )
+# a relaxation modulus over the least one before it: beyond the scatter of instruments, and beyond doubt
+_NOISE, _RISES = 1.1, 1.5
 _SPAN = 1e15  # longest over shortest time; a spectrum over more takes minutes and means nothing
 
 
@@ -75,7 +78,13 @@ class RelaxationData(DMAData):
         Raises
         ------
         ValueError
-            If a time or modulus is not positive, lengths differ, or as :class:`DMAData`.
+            If a time or modulus is not positive, lengths differ, the modulus of an isotherm rises by more
+            than half, or as :class:`DMAData`.
+
+        Warns
+        -----
+        UnlikelyModulus
+            Where it rises by more than a tenth.
 
         Examples
         --------
@@ -100,6 +109,7 @@ class RelaxationData(DMAData):
                 f"{source}: times from {t.min():g} to {t.max():g} s: no relaxation is measured over more "
                 f"than {_SPAN:g} in time; is a time wrong?"
             )
+        _check_fall(source, t, g, temperature, run)
         T = np.broadcast_to(np.asarray(temperature, dtype=np.float64), t.shape).copy()
         labels = group_isotherms(T, run) if isotherm is None else isotherm
         modulus = np.zeros(t.size, dtype=np.complex128)
@@ -119,6 +129,31 @@ class RelaxationData(DMAData):
             time=t,
             relaxation=g,
         )
+
+
+def _check_fall(
+    source: str, t: Array, g: Array, temperature: ArrayLike, run: NDArray[np.str_] | None
+) -> None:
+    """Check that the relaxation modulus of each isotherm falls, as that of every passive material does."""
+    T = np.broadcast_to(np.asarray(temperature, dtype=np.float64), t.shape)
+    labels = group_isotherms(T, run)
+    for k in np.unique(labels):
+        own = np.flatnonzero(labels == k)
+        own = own[np.argsort(t[own], kind="stable")]
+        least = np.minimum.accumulate(g[own])
+        rise = g[own] / least
+        j = int(np.argmax(rise))
+        if not rise[j] > _NOISE:
+            continue
+        first = own[int(np.flatnonzero(g[own[: j + 1]] == least[j])[-1])]
+        text = (
+            f"{source}: at {T[own[j]]:g} °C the relaxation modulus rises from {g[first]:.4g} Pa at "
+            f"{t[first]:.4g} s to {g[own[j]]:.4g} Pa at {t[own[j]]:.4g} s; it must fall with time: is it a "
+            "creep compliance, or time in another order, or two runs in one"
+        )
+        if rise[j] > _RISES:
+            raise ValueError(f"{text}?")
+        warn(f"{text}? As noise it is {rise[j] - 1:.0%}", UnlikelyModulus)
 
 
 def _converted(t: Array, g: Array) -> NDArray[np.complex128]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from bearingdyn import analysis
 from bearingdyn.analysis import Equilibrium, equilibrium
 from bearingdyn.application import Application
-from bearingdyn.checks import instance, meant
+from bearingdyn.checks import instance, items, meant
 from bearingdyn.short_repr import short
 
 if TYPE_CHECKING:
@@ -111,6 +111,9 @@ class Model:
 
     def __post_init__(self) -> None:
         instance("application", self.application, Application, "it must be an Application (bd.Application())")
+        for k, asked in enumerate(items("analyses", self.analyses, "it must be a list of bd.Analysis")):
+            remedy = 'it must be a bd.Analysis(name, kind, arguments), as bd.Analysis("modes", "modes")'
+            instance(f"analyses[{k}]", asked, Analysis, remedy)
 
     def __repr__(self) -> str:
         """One line: parts, bearings, and what is asked."""

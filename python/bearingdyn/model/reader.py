@@ -102,7 +102,7 @@ def read_model(path: str | os.PathLike[str], **parameters: float | str) -> Model
 def _load(file: Path, origin: Origin, above: tuple[Path, ...], seen: list[Path]) -> dict[str, Any]:
     """The tables of a file and of those that it includes, each key in one of them."""
     try:
-        text = file.read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
         raise Located(
             f"{file}: byte {error.start + 1} is no UTF-8; a model file must be text in UTF-8"

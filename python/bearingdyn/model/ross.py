@@ -107,7 +107,7 @@ def _rotor(file: Path, speed: float, damping: float, f_max: float) -> Applicatio
 def _elements(file: Path) -> dict[str, dict[str, Any]]:
     """The elements of the file by their names."""
     try:
-        text = file.read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8-sig")
         held = json.loads(text) if text.lstrip().startswith("{") else tomllib.loads(text)
     except (UnicodeDecodeError, ValueError) as error:
         raise ValueError(f"{file} is no TOML or JSON text: {error}; save it by ROSS's rotor.save") from None

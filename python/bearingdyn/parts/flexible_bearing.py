@@ -12,7 +12,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import OPEN_SIDE_REMEDY, BallBearing, BearingKernel, minimum, runs_off
-from bearingdyn.checks import numbers, vector
+from bearingdyn.checks import instance, numbers, vector
 from bearingdyn.cms import Superelement
 from bearingdyn.material import warn_beyond
 from bearingdyn.parts.flexible_ring import FlexibleRing
@@ -48,6 +48,8 @@ class FlexibleBearing:
     ring: FlexibleRing
 
     def __post_init__(self) -> None:
+        instance("bearing", self.bearing, BallBearing, "it must be a bd.BallBearing")
+        instance("ring", self.ring, FlexibleRing, "it must be a bd.FlexibleRing")
         own = self.ring.bearing
         if own is None or own.Z != self.bearing.Z:
             told = "None" if own is None else f"one of {own.Z} balls"

@@ -148,6 +148,11 @@ class Housing:
             if not self.feet.height < self.height:
                 raise ValueError(f"feet.height is {self.feet.height} m; it must be below {self.height} m")
         size = self.element_size
+        if size is not None and size > max(self.width, self.height, self.length):
+            raise ValueError(
+                f"element_size is {size} m; it must not exceed the housing, "
+                f"{self.width:g} × {self.height:g} × {self.length:g} m; is it in mm?"
+            )
         if size is not None and not (size >= 0.01 * self.height and math.isfinite(size)):
             raise ValueError(f"element_size is {size}; it must be {0.01 * self.height:.3g} m or more")
         flange = self.feet.width if self.feet is not None and self.feet.height > 0 else 0.0

@@ -28,7 +28,10 @@ def quasi_static(material: Any, omega: float, after: float | None) -> complex:
             "the static stiffness",
             "ask for stiffness(after=...) at a time that the data reach, ",
         )
-    G = complex(material.complex_modulus(omega) if after is None else float(material.relaxation(after)))
+    if after is None:
+        G = complex(material.complex_modulus(omega))
+    else:
+        G = complex(float(material.relaxation(after, doubt=False)))
     if not abs(G) > 1e-12 * getattr(material, "K", 0.0):
         raise ValueError(
             f"material has |G*| = {abs(G):.3g} Pa at omega = {omega} rad/s: no stiffness "

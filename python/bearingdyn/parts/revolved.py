@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy
@@ -16,16 +15,13 @@ from bearingdyn.checks import named, require, whole
 from bearingdyn.cms import (
     Basis,
     FullModel,
-    Raceway,
     RoundFace,
     Superelement,
-    Viscoelastic,
     check_damping,
     check_f_max,
     check_moduli,
     check_rounds,
     face_of_nodes,
-    modal_damping,
     modulus_levels,
 )
 from bearingdyn.fem import (
@@ -36,10 +32,10 @@ from bearingdyn.fem import (
     NoBalance,
     RevolutionMesh,
     assemble_harmonic,
-    factorise,
     revolution_mesh,
 )
-from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic, constant_bulk, volume_of
+from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic
+from bearingdyn.parts.groove_compliance import carried_compliance, groove_compliances
 from bearingdyn.parts.hoop_stress import hoop_stress_rows
 from bearingdyn.parts.mesh_waves import check_waves
 from bearingdyn.parts.outline import Outline
@@ -52,9 +48,10 @@ from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_
 from bearingdyn.parts.revolved_drawing import section_profile, surface_outline
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.revolved_full import full_basis, full_model
+from bearingdyn.parts.revolved_matrices import reduced, soft_elements
 from bearingdyn.parts.revolved_modes import RevolvedModes, modes_of_order
 from bearingdyn.parts.revolved_shapes import ShapeMaker
-from bearingdyn.parts.revolved_strain import concentrations, strain_of_motion
+from bearingdyn.parts.revolved_strain import strain_of_motion
 from bearingdyn.parts.shape_moduli import moduli_at, shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.strain import Strain
@@ -441,27 +438,17 @@ class Revolved:
         ValueError
             In an order in which nothing holds the body.
         """
-        h = assemble_harmonic(self.mesh, n, AXIAL if n == 0 else ALL_COMPONENTS)
-        held = self._boundaries.held(h)[0]
-        rows = self._boundaries.averages(h, beyond=True)
-        if not held.size and n == 1:
-            raise ValueError("order 1 of a body that nothing holds has no static compliance")
-        if not held.size and n == 0:
-            # it breathes where it is; along the axis it would fly away
-            rows[1::2], held = 0.0, np.array([1], dtype=np.intp)
-        inner = np.setdiff1d(h.free, held)
-        K = h.stiffness(self._bulk, shape_moduli(self.regions, self.moduli)[0])[inner][:, inner]
-        return np.asarray(rows[:, inner] @ factorise(K).solve(np.asarray(rows[:, inner].T, order="F")))
+        shear = shape_moduli(self.regions, self.moduli)[0]
+        return groove_compliances(self.mesh, self._boundaries, self._bulk, shear, n)
 
     def carried_compliance(self, n: int, groove: str, direction: Array) -> float:
         """The same of an order that is carried, from its shapes, which have it exactly: m/N."""
         shear = shape_moduli(self.regions, self.moduli)[0]
         for (order, _), shapes in zip(self._orders, self._ports, strict=True):
             if order.h.order == n and order.h.components != TORSION:
-                Psi = shapes.Psi[:, shapes.faces :]
-                at = 2 * list(self.grooves).index(groove)
-                row = direction @ order.ports[at : at + 2] @ Psi
-                return float(row @ np.linalg.solve(Psi.T @ (order.h.stiffness(self._bulk, shear) @ Psi), row))
+                return carried_compliance(
+                    order, shapes, shear, 2 * list(self.grooves).index(groove), direction
+                )
         raise ValueError(f"order {n} is not carried")
 
     @cached_property
@@ -568,75 +555,17 @@ class Revolved:
         if not self.interfaces and not self.grooves:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
         n = self._size
-        rubbers, owner = self._rubbers
-        bulk = np.array([constant_bulk(q.material) for q in self.regions])
-        shear = np.array([q.material.G if isinstance(q.material, Elastic) else 0.0 for q in self.regions])
-        volumes = {j: v for j, m in enumerate(rubbers) if (v := volume_of(m)) is not None}
-
-        M, K, E = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
-        H = [np.zeros((n, n)) for _ in rubbers]
-        swelling = {j: np.zeros((n, n)) for j in volumes}
-        rows = {name: np.zeros((3, n)) for name in self.outputs}
-        for h, Psi, places in self._placed():
-            parts = [(M, h.mass_matrix(self._density)), (K, h.stiffness(bulk, shear))]
-            parts += [(E, h.stiffness(np.where(owner < 0, bulk, 0.0), shear))]
-            parts += [
-                (H[j], h.matrix((owner == j).astype(float) @ h.deviatoric)) for j in range(len(rubbers))
-            ]
-            parts += [(S, h.matrix(0.5 * (owner == j) @ h.volumetric)) for j, S in swelling.items()]
-            reduced = [(full, Psi.T @ (A @ Psi)) for full, A in parts]
-            whole = h.complete(Psi.copy())
-            for copy, (index, sign) in enumerate(places):
-                for full, a in reduced:
-                    full[np.ix_(index, index)] += np.outer(sign, sign) * 0.5 * (a + a.T)
-                for name, (r, z, phi) in self.outputs.items():
-                    rows[name][:, index] += sign * h.point_rows(r, z, phi, whole, sine=copy == 1)
-        raceways = {name: np.zeros((len(t.series), n)) for name, t in self._boundaries.tracks.items()}
-        for h, Psi, places in self._placed():
-            felt = self._boundaries.averages(h) @ Psi
-            for copy, (index, sign) in enumerate(places):
-                for k, (name, at) in enumerate(self._boundaries.coefficients(h, copy)):
-                    raceways[name][np.ix_(at, index)] = sign * felt[2 * k : 2 * k + 2]
-        loaded = np.arange(6 * len(self.interfaces))
-        K[loaded, loaded] += self._load_terms
-        P = self._free_of_rigid_motion(n)
-        return Superelement(
-            M=M,
-            C=modal_damping(M, P @ E @ P, self.damping),
-            G=np.zeros((n, n)),
-            K=P @ K @ P,
-            interfaces={name: np.arange(6 * i, 6 * i + 6) for i, name in enumerate(self.interfaces)},
-            outputs=rows,
-            viscoelastic=(
-                *(
-                    Viscoelastic(m, P @ h @ P, *concentrations(self.mesh, self._soft(j), self._placed(), n))
-                    for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
-                ),
-                *(Viscoelastic(volumes[j], P @ S @ P) for j, S in swelling.items()),
-            ),
+        return reduced(
+            list(self._placed()),
+            self.mesh,
+            self.regions,
+            self._boundaries,
+            outputs=self.outputs,
+            load_terms=self._load_terms,
+            still=self._free_of_rigid_motion(n),
+            damping=self.damping,
             faces=self.round_faces(),
-            raceways={
-                name: Raceway(t.series, t.arm, raceways[name]) for name, t in self._boundaries.tracks.items()
-            },
         )
-
-    def _soft(self, owner: int | None = None) -> Index:
-        """Elements of the viscoelastic regions, or of one material's, numbered as in the superelement."""
-        _, owners = self._rubbers
-        wanted = owners >= 0 if owner is None else owners == owner
-        return np.flatnonzero(wanted[self.mesh.region])
-
-    @cached_property
-    def _rubbers(self) -> tuple[list[Any], Index]:
-        """The viscoelastic materials, and of each region the number of its own, -1 if it is elastic."""
-        rubbers: list[Any] = []
-        owner = np.full(len(self.regions), -1)
-        for i, q in enumerate(self.regions):
-            if not isinstance(q.material, Elastic):
-                if not any(q.material is m for m in rubbers):
-                    rubbers.append(q.material)
-                owner[i] = next(j for j, m in enumerate(rubbers) if q.material is m)
-        return rubbers, owner
 
     def strain_field(self, motion: ArrayLike, modulus: float | None = None) -> tuple[Array, Array]:
         """Shear strain amplitude γ = √(2 e:e) of the rubber under motions of the interfaces, point by point.
@@ -669,7 +598,7 @@ class Revolved:
                 u, _ = self._shape_maker().constraint_shapes(h, levels[0])
                 yield h, u, [rigid.place(h, copy) for copy in range(copies)]
 
-        return strain_of_motion(self.mesh, self._soft(), placed(), q)
+        return strain_of_motion(self.mesh, soft_elements(self.mesh, self.regions), placed(), q)
 
     def hoop_stress(self, r: float, z: tuple[float, float], azimuth: Array, material: Elastic) -> Array:
         """Stress along a circle on the surface, (azimuths, coordinates); see `hoop_stress_rows`."""

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse
 
-from bearingdyn.checks import name_list
+from bearingdyn.checks import instance, name_list
 from bearingdyn.cms import (
     F_MAX,
     Basis,
@@ -168,6 +168,7 @@ class Solid:
         check_damping(self.damping)
         if self.moduli is not None:
             object.__setattr__(self, "moduli", check_moduli(self.moduli))
+        instance("mesh", self.mesh, SolidMesh, "it must be a bd.SolidMesh, as bd.read_mesh returns it")
         plausible("solid length", "the body's extent", float(np.ptp(self.mesh.points, axis=0).max()))
         self._check_materials()
         if not self.interfaces:

@@ -57,9 +57,8 @@ def layer_strain(layer: Layer, relative: ArrayLike, ax: Axes | None = None) -> A
     corners = mesh.elements[:, [0, 2, 8, 6]]
     with style():
         ax = ax or new_axes()
-        field = PolyCollection(
-            1e3 * np.stack([mesh.z, mesh.r], axis=-1)[corners], cmap="viridis", linewidths=0
-        )
+        shapes = 1e3 * np.stack([mesh.z, mesh.r], axis=-1)[corners]
+        field = PolyCollection([*shapes], cmap="viridis", linewidths=0)
         field.set_array(100 * mean[at])
         field.set_edgecolor("face")
         # bonded corners have no largest strain: their colour would leave one for all the rest

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from bearingdyn.core import Report
-from bearingdyn.results.provenance import inputs_of, stamp, versions
+from bearingdyn.results.provenance import stamp, versions
 
 if TYPE_CHECKING:
     import xarray
@@ -51,63 +50,4 @@ def dataset(
         },
         {name: whole(name, coord) for name, coord in (coords or {}).items()},
         {"made_by": made_by, "made_at": stamp(), **attrs},
-    )
-
-
-def march_dataset(
-    facts: Mapping[str, Any],
-    rows: np.ndarray,
-    state: np.ndarray,
-    report: Report,
-    attrs: Mapping[str, Any] | None = None,
-) -> xarray.Dataset:
-    """Dataset of results for a march: record (time, channel), state, units, and how it ended.
-
-    Parameters
-    ----------
-    facts
-        Channels, units, dt, speed (times and speeds), decimate, settle, steps and, where known, inputs and
-        system_hash, as in a run file's header.
-    rows
-        (samples, channels) recorded.
-    state
-        State at the end, from which a march goes on.
-    report
-        What the core counted.
-    attrs
-        Further attributes.
-    """
-    origin, count = float(state[0]), int(state[1])
-    decimate = int(facts["decimate"])
-    times, speeds = (np.asarray(part, dtype=np.float64) for part in facts["speed"])
-    last = count - count % decimate
-    time = origin + (last - decimate * np.arange(len(rows))[::-1]) * facts["dt"]
-    constant = len(speeds) == 1
-    return dataset(
-        {
-            "record": (("time", "channel"), rows, "", "recorded channels; their units are in `unit`"),
-            "state": ("word", state, "", "state of the march in the core's own order"),
-        },
-        {
-            "analysis": "transient",
-            "speed": float(speeds[0]) if constant else speeds,
-            **({} if constant else {"speed_time": times}),
-            "dt": facts["dt"],
-            "decimate": decimate,
-            **({"filter": int(facts["filter"])} if "filter" in facts else {}),
-            **({"method": facts["method"]} if "method" in facts else {}),
-            "settle": facts["settle"],
-            **report.counts,
-            "steps": max(report.steps - facts["settle"], 0),
-            "complete": int(report.status == 0 and report.steps == facts["settle"] + facts["steps"]),
-            "status": report.text,
-            **inputs_of(facts.get("inputs", "")),
-            **{name: facts[name] for name in ("system_hash",) if name in facts},
-            **(attrs or {}),
-        },
-        {
-            "time": (time, "s"),
-            "channel": (facts["channels"], ""),
-            "unit": ("channel", facts["units"], "", "unit of each channel"),
-        },
     )

@@ -6,6 +6,7 @@ import io
 import os
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from bearingdyn import run_file
 from bearingdyn.checks import existing, meant
-from bearingdyn.results.datasets import march_dataset
+from bearingdyn.results.march_record import march_dataset
 from bearingdyn.results.provenance import stamp
 from bearingdyn.writing import check_target, write_whole
 
@@ -77,6 +78,7 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
             raise ValueError(
                 f"results has the name {name!r}; each part of a name must be a text, as in 'response/mass'"
             )
+        _check_attributes(what, data)
     check_target(path)
     # in memory: HDF5 itself does not survive a disk that fills up under it
     made = io.BytesIO()
@@ -175,6 +177,17 @@ def _run_dataset(path: str | os.PathLike[str]) -> xarray.Dataset:
     rows = np.concatenate([c.rows for c in chunks])
     written = datetime.fromtimestamp(Path(path).stat().st_mtime, UTC)
     return march_dataset(facts, rows, state, run_file.report_of(chunks), {"made_at": stamp(written)})
+
+
+def _check_attributes(what: str, data: Any) -> None:
+    """Check that a file can keep every attribute of a result, and of its variables."""
+    for place, held in (("", data), *((f"[{str(v)!r}]", data[v]) for v in data.variables)):
+        for key, value in held.attrs.items():
+            if not isinstance(value, str | bytes | Real | np.ndarray | np.generic | list | tuple):
+                raise ValueError(
+                    f"{what}{place}.attrs[{key!r}] is {value!r}; a file keeps texts, numbers and arrays of "
+                    f"them: drop it, or write it as a text"
+                )
 
 
 def _plain(data: Any) -> Any:

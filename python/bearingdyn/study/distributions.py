@@ -11,6 +11,7 @@ import numpy as np
 
 from bearingdyn.checks import number, positive, require
 from bearingdyn.material import Doubts, Maxwell, uniforms
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.study.cases import label
 from bearingdyn.types import Array
@@ -80,6 +81,7 @@ class LogNormal:
     def __post_init__(self) -> None:
         positive("LogNormal.median", self.median)
         positive("LogNormal.relative", self.relative, "it must be a positive standard deviation")
+        plausible("spread", "LogNormal.relative", self.relative)
 
     def quantile(self, share: Array) -> Array:
         """Values (n,) below which these shares (n,) of the distribution lie."""

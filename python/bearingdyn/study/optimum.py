@@ -12,6 +12,7 @@ import numpy as np
 import scipy.optimize
 
 from bearingdyn.checks import meant, name_list, named, number, positive, require, whole
+from bearingdyn.notice import UnprovenOptimum, warn
 from bearingdyn.short_repr import short
 from bearingdyn.study.cases import sobol
 from bearingdyn.types import Array
@@ -25,6 +26,8 @@ ACTIVE = 1e-6
 KEPT = 1e-6
 # of a limit: reached
 NEAR = 1e-4
+# of the steepest slope: left at an end that is no optimum; SLSQP's own tolerance of 1e-6 leaves 1e-3
+UNPROVEN = 0.05
 DIFFERENCE = 1e-6
 
 
@@ -46,7 +49,7 @@ class Optimum:
         Of each parameter at an end of its range: the change of the objective per unit by which the end moves.
     kkt
         Residual of the Karush-Kuhn-Tucker conditions: what is left of the scaled objective's gradient after
-        the active limits, over its size; 0 where nothing can be gained.
+        the active limits, over the steepest gradient on the way; 0 where nothing can be gained.
     evaluations
         Calls of the function, with or without derivatives, from all starts together.
     ends
@@ -217,6 +220,11 @@ def optimise(
         For a range, limit or name that is not valid; where limits exclude everything, naming the limit, or
         the pair, that no design keeps; where every start came to a design without a number, naming it.
 
+    Warns
+    -----
+    UnprovenOptimum
+        Where more than 5 % of the steepest slope is left at the best design.
+
     References
     ----------
     D. Kraft, DFVLR-FB 88-28 (1988), by scipy.optimize (SLSQP).
@@ -353,7 +361,17 @@ def _told(problem: _Problem, u: Array, ends: tuple[float, ...], failed: tuple[st
         scale[scale == 0] = 1.0
         weights, residual = scipy.optimize.nnls(A / scale, downhill)
         weights = weights / scale
-    size = float(np.linalg.norm(downhill)) or 1.0
+    # beside the steepest slope on the way: within the ranges no limit holds the objective's own
+    size = max(float(np.linalg.norm(s[problem.objective])) for _, s in problem.known.values()) or 1.0
+    kkt = float(residual) / size
+    if kkt > UNPROVEN:
+        said = ", ".join(f"{k} = {v:.6g}" for k, v in problem.design(u).items())
+        warn(
+            f"the best design, {said}, misses the conditions of an optimum: {kkt:.2g} of the steepest slope "
+            f"of {problem.objective} is left; the function is noisy, jumps, or its slopes are wrong. Take "
+            f"more starts, smoother values, or a study by study.sobol",
+            UnprovenOptimum,
+        )
     prices, at_range = {}, {}
     for (name, side, bound), weight in zip(owners, weights, strict=False):
         if weight > 0:
@@ -369,7 +387,7 @@ def _told(problem: _Problem, u: Array, ends: tuple[float, ...], failed: tuple[st
         objective=(problem.objective, values[problem.objective]),
         prices=prices,
         at_range=at_range,
-        kkt=residual / size,
+        kkt=kkt,
         evaluations=problem.count,
         ends=ends,
         failed=failed,

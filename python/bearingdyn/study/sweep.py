@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import logging
 import multiprocessing
 import os
@@ -21,10 +22,12 @@ from contextlib import contextmanager
 from numbers import Real
 from pathlib import Path
 from types import FrameType
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from bearingdyn import fingerprint
+from bearingdyn.notice import ChangedFunction, warn
 from bearingdyn.progress import Progress, told
 from bearingdyn.study.cases import Case, Parameters, checked
 from bearingdyn.study.store import Store, name_of
@@ -89,6 +92,11 @@ def sweep(
     concurrent.futures.BrokenExecutor
         Where a worker of a pool of processes died. What was finished is in the store. A dask cluster computes
         the cases of a worker that died anew, and gives up a case that killed several.
+
+    Warns
+    -----
+    ChangedFunction
+        Where the processes that compute have another function by that name.
     """
     todo = checked(cases)
     folder = Store(Path(store), function) if store is not None else None
@@ -104,29 +112,68 @@ def sweep(
             advance(len(done), len(todo))
         if ahead:
             with _pool(executor, function, len(ahead)) as pool:
-                for index, case in _run(pool, function, todo, ahead):
+                warned = False
+                for index, case, meant in _run(pool, function, todo, ahead):
                     done[index] = case
+                    if not meant and not warned:
+                        _warn_of_another(function)
+                        warned = True
                     if case.error is not None:
                         log.warning("case %d, %s, failed: %s", index, dict(case.parameters), case.error)
-                    if folder:
+                    if folder and meant:
                         folder.write(case)
                     advance(len(done), len(todo))
     return [done[index] for index in range(len(todo))]
 
 
-def _attempt(function: Study, parameters: dict[str, Any]) -> tuple[dict[str, float], str | None]:
+class _Meant(NamedTuple):
+    """The function that was meant, by its fingerprint, and the process that meant it.
+
+    A function is sent to other processes by its name, and these import its module afresh: what it takes from
+    around it may have been changed since.
+    """
+
+    told: str
+    process: int
+
+    def is_this(self, function: Study) -> bool:
+        """Whether a function is the one, where another process computes."""
+        if os.getpid() == self.process:
+            return True
+        try:
+            return _told_at_first(function) == self.told
+        except TypeError:  # no hash
+            return fingerprint.loose(function) == self.told
+
+
+@functools.lru_cache(maxsize=64)
+def _told_at_first(function: Study) -> str:
+    """Before the first case: a function may keep things in a global of its module as it goes."""
+    return fingerprint.loose(function)
+
+
+class _Result(NamedTuple):
     """Numbers, or the error in words: not every exception survives the way to another process."""
+
+    values: dict[str, float]
+    error: str | None
+    meant: bool = True
+
+
+def _attempt(function: Study, parameters: dict[str, Any], meant: _Meant) -> _Result:
+    """One case, in whatever process."""
+    same = meant.is_this(function)
     try:
         returned = function(dict(parameters))
         if not isinstance(returned, Mapping):
             raise TypeError(
                 f"returned {type(returned).__name__}; the function must return a mapping of numbers"
             )
-        return {str(name): _real(str(name), value) for name, value in returned.items()}, None
+        return _Result({str(name): _real(str(name), value) for name, value in returned.items()}, None, same)
     except KeyboardInterrupt:
         raise KeyboardInterrupt from None
     except BaseException as error:  # sys.exit too ends the case, not the study
-        return {}, f"{type(error).__name__}: {error}"
+        return _Result({}, f"{type(error).__name__}: {error}", same)
 
 
 def _real(name: str, value: Any) -> float:
@@ -137,32 +184,43 @@ def _real(name: str, value: Any) -> float:
     return float(value)
 
 
+def _warn_of_another(function: Study) -> None:
+    warn(
+        f"function {name_of(function)} is not the same in the processes that compute the cases: a global "
+        f"value, a default or an attribute that it uses was changed after its module was imported, and they "
+        f"import it afresh. The cases are those of the module as it stands in its file, and none of them is "
+        f"stored; pass what changes as a parameter of the cases, or give an executor of threads",
+        ChangedFunction,
+    )
+
+
 # ---------------------------------------------------------------- processes
 
 
 def _run(
     pool: Executor, function: Study, todo: list[dict[str, Any]], ahead: list[int]
-) -> Iterator[tuple[int, Case]]:
-    """Cases as they are finished; what ended the study is raised after all that were."""
-    futures: dict[Future[tuple[dict[str, float], str | None]], int] = {}
+) -> Iterator[tuple[int, Case, bool]]:
+    """Cases as they are finished, and whether of the function meant; what ended the study is raised last."""
+    futures: dict[Future[_Result], int] = {}
     ended: BrokenExecutor | CancelledError | None = None
     try:
         try:
             with _worker_environment():  # a worker may be started with every submission
+                meant = _Meant(fingerprint.loose(function), os.getpid())
                 for index in ahead:
-                    futures[pool.submit(_attempt, function, todo[index])] = index
+                    futures[pool.submit(_attempt, function, todo[index], meant)] = index
         except BrokenExecutor as broken:
             ended = broken
         for future in as_completed(futures):
             index = futures[future]
             try:
-                values, error = future.result()
+                result = future.result()
             except (BrokenExecutor, CancelledError) as broken:
                 ended = ended or broken
                 continue
             except Exception as lost:  # the executor's own, as dask's KilledWorker
-                values, error = {}, f"{type(lost).__name__}: {lost}"
-            yield index, Case(todo[index], values, error)
+                result = _Result({}, f"{type(lost).__name__}: {lost}")
+            yield index, Case(todo[index], result.values, result.error), result.meant
         if isinstance(ended, BrokenExecutor):
             ended.add_note(
                 "A worker process died: the function crashed it or used up the memory, or the script "

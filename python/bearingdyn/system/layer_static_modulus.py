@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TypeAlias
 
-from bearingdyn.material import Maxwell
+from bearingdyn.material import Maxwell, warn_beyond
 from bearingdyn.system.terms import LayerTerm
 
 # of layers at rest: "relaxed", "instantaneous", a time after loading, s, or a modulus for each, Pa
@@ -20,9 +20,19 @@ def static_modulus(layer: LayerTerm, modulus: Modulus) -> float:
             f"domain need a Maxwell model: fit one with fit_maxwell"
         )
     if isinstance(modulus, float):
-        return float(layer.material.relaxation(modulus))
+        return float(layer.material.relaxation(modulus, doubt=False))
     if modulus == "relaxed":
         return float(layer.material.G0)
     if modulus == "instantaneous":
         return float(layer.material.G_instantaneous)
     raise ValueError(f'modulus is {modulus!r}; it must be "relaxed" or "instantaneous"')
+
+
+def warn_at_rest(layers: Iterable[LayerTerm], time: float) -> None:
+    """Warn that static moduli of layers at a time, s (inf: relaxed), are beyond what their data cover."""
+    warn_beyond(
+        [(layer.part, layer.material) for layer in layers],
+        time,
+        "the static state",
+        "take equilibrium(app, after=...) at a time that the data reach, ",
+    )

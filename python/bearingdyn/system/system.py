@@ -15,18 +15,21 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.application import COMPONENTS, Channel
-from bearingdyn.bearing import BallBearing
+from bearingdyn.bearing import BallBearing, FilmDamping
 from bearingdyn.checks import meant
 from bearingdyn.cms import coupled_blocks
+from bearingdyn.notice import OilAtOtherSpeed, warn
 from bearingdyn.plausible_ranges import check_speed_value, plausible
 from bearingdyn.system.layer_static_modulus import Modulus, static_modulus
 from bearingdyn.system.natural_modes import natural
 from bearingdyn.system.raceway_channels import raceway_row
 from bearingdyn.system.softening_layer import marched_layer
 from bearingdyn.system.system_matrix_check import check_matrix
-from bearingdyn.system.terms import BearingTerm, LayerTerm, LoadTerm, PartTerm, SpringTerm
+from bearingdyn.system.terms import BearingTerm, Contacts, LayerTerm, LoadTerm, PartTerm, SpringTerm
 from bearingdyn.types import Array, Index
 
+# a speed over that of an oil supply, from which its films are doubted: the film's change is 16 %
+APART = 1.25
 # a test spring in N/m that stands for a bearing when free motions are sought: any stiff value serves
 TEST_SPRING = 1e8
 
@@ -137,11 +140,17 @@ class System:
         ValueError
             For a speed (rad/s) that is not finite, and for any but 0 where the damping of a part that turns
             is known at rest only; names the part.
+
+        Warns
+        -----
+        OilAtOtherSpeed
+            For bearings that were lubricated for a speed more than a quarter off.
         """
         plausible("speed", "speed", speed, "it must be one finite number, in rad/s")
         for term in self.bearings:
             if isinstance(term.bearing, BallBearing):
                 check_speed_value(f"bearing {term.name!r}: speed", speed, term.bearing.Dpw)
+                _doubt_oil(term.name, term.bearing, speed)
         if speed != 0.0 and self.standstill:
             raise ValueError(
                 f"{self.standstill[0]!r} turns with the shaft, and its damping is known for a part at rest "
@@ -245,6 +254,7 @@ class System:
         channels: list[tuple[int, Array | None, int, int]],
         relaxed: bool = True,
         memory: float | None = None,
+        contacts: Contacts = "viscous",
     ) -> core.Model:
         """The core's model.
 
@@ -257,11 +267,13 @@ class System:
             harmonic response: the whole deviatoric stiffness is left to a modulus given per frequency.
         memory
             Time, s, over which layers that soften remember their amplitude; needed for their march.
+        contacts
+            Whether films answer as viscous dampers, or remember.
 
         Raises
         ------
         ValueError
-            Without a memory that is needed.
+            Without a memory that is needed, and as `BearingTerm.kernel`.
         """
         C = self.viscous() if relaxed else self.C
         K = self.stiffness(self.marched_moduli()) if relaxed else self.K
@@ -274,7 +286,25 @@ class System:
             K=K,
             N=self.N,
             layers=layers,
-            bearings=[(t.kernel().packed(), t.B) for t in self.bearings],
+            bearings=[(t.kernel(contacts).packed(), t.B) for t in self.bearings],
             loads=[(t.kind, t.omega, t.p_cos, t.p_sin, t.time, t.value) for t in self.loads],
             channels=channels,
+        )
+
+
+def _doubt_oil(name: str, bearing: BallBearing, speed: float) -> None:
+    """Warn of films and damping that were found at another speed, rad/s (OilAtOtherSpeed)."""
+    damping = bearing.damping
+    inner, outer = bearing.ring_speeds
+    if not isinstance(damping, FilmDamping) or damping.answer is None or speed == 0.0 or inner == outer:
+        return
+    # the speed of entrainment was that of the loaded angle, whose cosine matters little here
+    gamma = bearing.geometry.gamma
+    known = damping.answer.us / (bearing.Dpw / 2 * abs(inner - outer) * (1 - gamma**2))
+    if not 1 / APART <= abs(speed) / known <= APART:
+        warn(
+            f"bearing {name!r} has the films and the damping of {known:.3g} rad/s, of its lubrication, and "
+            f"is asked at a speed more than {APART - 1:.0%} off: films go as speed to the power 0.67; give "
+            "lubrication=OilSupply(..., speed=) of the speed asked",
+            OilAtOtherSpeed,
         )

@@ -4,13 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 from bearingdyn.application import Part
-from bearingdyn.bearing import RIGID, BallBearing, BearingKernel, FilmDamping, LooseFit, RacewaySeries
+from bearingdyn.bearing import (
+    RIGID,
+    BallBearing,
+    BearingKernel,
+    FilmDamping,
+    LooseFit,
+    RacewaySeries,
+    carried,
+)
 from bearingdyn.cms import Superelement
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
+
+Contacts: TypeAlias = Literal["film", "viscous"]
+"""How contacts of a system answer motion: lubricated ones by frequency, or as dampers at any."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +70,34 @@ class BearingTerm:
 
     __repr__ = short
 
-    def kernel(self) -> BearingKernel:
-        """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves."""
+    @property
+    def has_films(self) -> bool:
+        """Whether it is known how its films answer by frequency."""
+        law = getattr(self.bearing, "damping", None)
+        return isinstance(law, FilmDamping) and law.answer is not None
+
+    def kernel(self, contacts: Contacts = "viscous") -> BearingKernel:
+        """The bearing as the contact kernel takes it, its offset in the axial distance of the grooves.
+
+        Parameters
+        ----------
+        contacts
+            Whether films answer as viscous dampers, or remember; those of other bearings have no memory.
+
+        Raises
+        ------
+        ValueError
+            As `FilmMemory.of`, by the bearing's name.
+        """
         kernel = self.bearing.kernel(self.series)
-        if self.give != 0.0:
+        law = getattr(self.bearing, "damping", None)
+        if contacts == "film" and isinstance(law, FilmDamping) and self.has_films:
+            try:
+                kernel = carried(replace(kernel, give=self.give), law)
+            except (ValueError, ArithmeticError) as failure:
+                raise type(failure)(f"bearing {self.name!r}: {failure}") from None
+        elif self.give != 0.0:
             kernel = replace(kernel, give=self.give)
-            law = getattr(self.bearing, "damping", None)
             if isinstance(law, FilmDamping):
                 _, scale, table = law.behind(self.give, kernel.kappa).kernel_fields()
                 kernel = replace(kernel, damping_c=scale, damping_table=table)

@@ -155,7 +155,9 @@ class Balance:
         """Time between samples, s; of several bases, whose samples have none, 1/12 of the fastest line's."""
         if lines.index.shape[1] == 1:
             return float(2 * np.pi / abs(self.bases.frequencies(self.speed)[0]) / lines.samples)
-        return float(2 * np.pi / 12 / np.abs(self.omega).max())
+        # a motion that begins at rest has no line yet
+        fastest = np.abs(self.omega).max() or np.abs(self.bases.frequencies(self.speed)).max()
+        return float(2 * np.pi / 12 / fastest)
 
     def rates(self, z: Complex) -> Complex:
         """Amplitudes of the rate of change."""

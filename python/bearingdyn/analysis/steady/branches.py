@@ -13,6 +13,7 @@ import numpy as np
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
 from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, follow, locate
+from bearingdyn.analysis.steady.located import once
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.stability import (
     FirstOrder,
@@ -229,7 +230,7 @@ class Tracer:
         """The branch through a motion, towards rising (+1) or falling parameter."""
         curve = curve_of(self.task, self.lines, found, self.passages)
         begin = curve.begin(found, parameter, direction)
-        return Branch(self.passages, tuple(self._marks(curve, begin)), origin)
+        return Branch(self.passages, tuple(once(self._marks(curve, begin), self.task.tolerance)), origin)
 
     def _marks(self, curve: Curve, begin: Point) -> Iterator[Mark]:
         task = self.task
@@ -323,7 +324,7 @@ class Tracer:
             return None
         if float(point.tangent @ border) < 0.0:  # away from the flip
             point = replace(point, tangent=-point.tangent, slope=-point.slope)
-        marks = tuple(tracer._marks(grown, point))
+        marks = tuple(once(tracer._marks(grown, point), task.tolerance))
         return Branch(twice, marks, f"flip at {flip.point.parameter:.6g}")
 
 

@@ -124,12 +124,7 @@ def balanced(
     left = np.inf
     found: Found | None = None
     for turn in range(ROUNDS):
-        everything = Lines(np.vstack([zero, offered.index]), lines.steps, lines.samples)
-        pressed = balance.press(z, tangents=False)
-        g = np.zeros((lines.samples, z.shape[1]))
-        for own, along in zip(balance.slots, pressed.bearings, strict=True):
-            g[:, own] = along.g
-        size = weigher.moved(offered.omega, everything.amplitudes(g)[1:])
+        size = _sizes(balance, z, offered, weigher)
         have = {tuple(n) for n in lines.index.tolist()}
         new = np.array([tuple(n) not in have for n in offered.index.tolist()])
         largest = max(float(np.abs(z[1:]).max(initial=0.0)), float(size.max(initial=0.0)), 1e-30)
@@ -152,7 +147,38 @@ def balanced(
         if tell is not None:
             tell(turn + 1, ROUNDS)
     assert found is not None
+    if found.converged:
+        left = max(left, _above(problem, balance, found.z, speed, harmonics))
     return balance, found, left
+
+
+def _sizes(balance: Balance, z: Complex, offered: Candidates, weigher: Weigher) -> Array:
+    """(c,) how far what the balls press on each line would move the bearings."""
+    lines = balance.lines
+    zero = np.zeros((1, lines.index.shape[1]), dtype=np.intp)
+    everything = Lines(np.vstack([zero, offered.index]), lines.steps, lines.samples)
+    pressed = balance.press(z, tangents=False)
+    g = np.zeros((lines.samples, z.shape[1]))
+    for own, along in zip(balance.slots, pressed.bearings, strict=True):
+        g[:, own] = along.g
+    return weigher.moved(offered.omega, everything.amplitudes(g)[1:])
+
+
+def _above(problem: Problem, balance: Balance, z: Complex, speed: float, harmonics: int) -> float:
+    """The largest share of a line above the highest harmonic, up to twice that, which was never offered."""
+    more = candidates(problem, speed, 2 * harmonics)
+    # the same lines on a lattice that tells those above apart
+    grid = lattice(balance.lines.index, more)
+    if len(_apart(grid).index) < len(grid.index):
+        return 0.0
+    above = more.omega > float(candidates(problem, speed, harmonics).omega[-1])
+    if not above.any():
+        return 0.0
+    beyond = Candidates(more.index[above], more.omega[above], more.caps)
+    weigher = Weigher.of(problem, speed, float(beyond.omega[0]), float(beyond.omega[-1]))
+    size = _sizes(problem.balance(grid, speed), z, beyond, weigher)
+    largest = max(float(np.abs(z[1:]).max(initial=0.0)), 1e-30)
+    return float(size.max(initial=0.0)) / largest
 
 
 def _apart(lines: Lines) -> Lines:

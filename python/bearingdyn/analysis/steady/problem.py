@@ -9,7 +9,6 @@ import numpy as np
 
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
-from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.analysis.steady.balance import Balance
 from bearingdyn.analysis.steady.receptances import Receptances
@@ -17,7 +16,7 @@ from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import require
 from bearingdyn.material import Maxwell
-from bearingdyn.system import LayerTerm, System, system_of
+from bearingdyn.system import Contacts, LayerTerm, System, system_of
 from bearingdyn.types import Array, Complex, Index
 
 if TYPE_CHECKING:

@@ -29,6 +29,7 @@ from bearingdyn.analysis.steady.branches import (
     states,
     sweeps,
 )
+from bearingdyn.analysis.steady.located import within
 from bearingdyn.analysis.steady.motion import MOTIONS
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.application import Application
@@ -103,9 +104,10 @@ def speed_map(
     xarray.Dataset
         Over "point", branch by branch and along each: speed, rad/s; branch, its number; passages, after which
         the motion repeats; stable (1, 0, or −1 where it was not computed); multiplier, the largest by size;
-        growth, 1/s; event ("", "fold", "flip", "neimark-sacker" or "failed"); peak_to_peak and rms (point,
-        channel); amplitude (point, order, channel), complex, at multiples of the passage, and of its half
-        where periods doubled.
+        growth, 1/s; event ("", "fold", "flip", "neimark-sacker" or "failed"); located_within, how closely, in
+        the unit of the speed: of folds that crowd at the tip of a branch, which are kinks of contacts between
+        samples, it is what they span; peak_to_peak and rms (point, channel); amplitude (point, order,
+        channel), complex, at multiples of the passage, and of its half where periods doubled.
 
     Raises
     ------
@@ -359,6 +361,12 @@ def _about(task: Task) -> dict[str, object]:
     }
 
 
+def _within(branch: Branch, tolerance: float) -> list[float]:
+    """How closely each event of a branch is located."""
+    marks = branch.marks
+    return within([m.event for m in marks], [m.point.parameter for m in marks], tolerance)
+
+
 def _dataset(
     task: Task, branches: Sequence[Branch], name: str, unit: str, attrs: dict[str, object]
 ) -> xarray.Dataset:
@@ -421,6 +429,12 @@ def _dataset(
                 np.array([m.event for _, _, m in rows], dtype=np.str_),
                 "",
                 "what is located there",
+            ),
+            "located_within": (
+                "point",
+                np.array([w for b in branches for w in _within(b, task.tolerance)]),
+                unit,
+                "how closely the event is located",
             ),
             "passage_frequency": ("point", passing, "Hz", "of the balls, or of the load that drives"),
             "residual": ("point", each(lambda m: m.point.residual), "1", "of the balance, relative"),

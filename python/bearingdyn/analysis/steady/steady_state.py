@@ -11,7 +11,6 @@ import numpy as np
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
-from bearingdyn.analysis.linearised import Contacts
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
@@ -22,8 +21,8 @@ from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability,
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
-from bearingdyn.notice import OutsideBand
-from bearingdyn.system import System
+from bearingdyn.notice import CutHarmonics, OutsideBand, warn
+from bearingdyn.system import Contacts, System
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
@@ -35,6 +34,8 @@ HARMONICS, SEVERAL = 40, 20
 SAMPLES = 256
 # poles of one state are all kept, what the bearings do not feel as well
 ALL = -1.0
+# of a channel's largest line, what harmonics left out may add; and of its mean, below which it is no motion
+CUT, LEAST = 0.02, 1e-6
 # multipliers that are kept
 KEPT = 6
 
@@ -70,7 +71,8 @@ def steady_state(
     record
         Channels as in `transient`.
     harmonics
-        Of the ball pass, 1 or more; 40 by default. The motion of a machine with unbalance, waviness, pits,
+        Of the base frequency, 1 or more; 40 by default. The base is the ball pass, and the cage's turn where
+        a standing ring has waves or pits. The motion of a machine with unbalance, waviness, pits,
         unequal balls or harmonic loads has several base frequencies (shaft, cage, ball spin); its lines up to
         this harmonic (20 by default) are chosen by how far they would move the bearings, and refined.
     subharmonic
@@ -99,7 +101,7 @@ def steady_state(
         on. Attributes: stable (1, 0, or −1 where it was not computed), multiplier (largest size), growth
         (1/s), loss ("fold", "flip" or "neimark-sacker": what the largest multiplier brings where it leaves
         the unit circle), residual, energy_balance (what supply and power leave, relative), lines_left (the
-        share of the largest line that was left out).
+        share of the largest line that was left out, of several bases and up to twice the harmonics asked).
 
     Raises
     ------
@@ -118,6 +120,9 @@ def steady_state(
         Where balls of an angular contact bearing are pressed where it has no shoulder, or none onto it.
     NothingPushes
         Where no ball is pressed, and no load acts.
+    CutHarmonics
+        Where the harmonics next above the last would add more than 2 % of a channel's largest line; of
+        several bases, where a line that would be 2 % of the bearings' largest was left out.
     OutsideBand
         Where a line that counts in a layer's motion lies outside the band of its material.
 
@@ -168,6 +173,7 @@ def steady_state(
         moved = Motion(balance, found).x
     if not found.converged:
         raise _failed(problem, balance, found, result)
+    warn_of_cut(result, f"the steady motion at {speed:g} rad/s", result.attrs["harmonics"])
     warn_of_band(problem.system, balance.omega, moved)
     warn_of_motions([(balance, found.z, f"in the steady motion at {speed:g} rad/s")])
     return result
@@ -222,6 +228,30 @@ def first_order(problem: Problem, balance: Balance) -> FirstOrder:
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))
     return FirstOrder.of(problem.system, 2.0 * FOLLOWS * highest, band, felt=ALL)
+
+
+def warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
+    """Warn (CutHarmonics) of channels of a steady state to which the harmonics left out would add."""
+    amplitude, cut = np.abs(result["amplitude"].values), result["cut"].values
+    largest, whole_size = amplitude[1:].max(axis=0, initial=0.0), amplitude.max(axis=0, initial=0.0)
+    with np.errstate(invalid="ignore"):
+        wanting = (cut > CUT * largest) & (cut > LEAST * whole_size)
+    left = float(result.attrs["lines_left"])
+    if left > CUT:
+        warn(
+            f"{what} wants more than {harmonics} harmonics: a line of {left:.0%} of the largest was left "
+            "out; give more harmonics",
+            CutHarmonics,
+        )
+    if wanting.any():
+        c = int(np.argmax(np.where(wanting, cut / np.maximum(largest, 1e-300), 0.0)))
+        name = str(result["channel"].values[c])
+        warn(
+            f"{what} wants more than {harmonics} harmonics: those next above would add {cut[c]:.2g} to "
+            f"{name!r}, whose largest line is {largest[c]:.2g} {result['unit'].values[c]}; give more "
+            "harmonics",
+            CutHarmonics,
+        )
 
 
 def _failed(problem: Problem, balance: Balance, found: Found, result: xarray.Dataset) -> core.SolverError:

@@ -6,6 +6,7 @@ elliptic, rolling along the minor axis (D = Rx/Ry ≤ 1).
 
 from bearingdyn.bearing.ehl.dimensionless_groups import scales
 from bearingdyn.bearing.ehl.figures import Figures
+from bearingdyn.bearing.ehl.film_decays import DECAYS, FilmDecays
 from bearingdyn.bearing.ehl.lubricated_contact import LubricatedContact, SolvedContact, look_up, solve
 from bearingdyn.bearing.ehl.march import March, march
 from bearingdyn.bearing.ehl.oil import relative_density
@@ -14,7 +15,9 @@ from bearingdyn.bearing.ehl.table_lookup import Lookup, loads_between, lookup, n
 from bearingdyn.bearing.ehl.table_places import turning_load
 
 __all__ = [
+    "DECAYS",
     "Figures",
+    "FilmDecays",
     "Level",
     "Lookup",
     "LubricatedContact",

@@ -3,6 +3,7 @@
 from bearingdyn.bearing.rating.friction import Friction, FrictionModel, Supply, friction
 from bearingdyn.bearing.rating.iso_ratings import (
     Ratings,
+    check_given,
     dynamic_factor,
     dynamic_factors,
     equivalent_load,
@@ -47,6 +48,7 @@ __all__ = [
     "Races",
     "Ratings",
     "Supply",
+    "check_given",
     "contamination_factor",
     "dynamic_factor",
     "dynamic_factors",

@@ -27,8 +27,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from bearingdyn.checks import nonnegative, number, one_of, positive, require
-from bearingdyn.plausible_ranges import plausible
+from bearingdyn.bearing.rating.iso_ratings import radial_and_axial, warn_of_overload
+from bearingdyn.checks import nonnegative, one_of, positive, require
+from bearingdyn.plausible_ranges import check_speed_value, plausible
 
 FrictionModel = Literal["palmgren", "four-term"]
 Supply = Literal["oil mist", "oil bath", "oil jet", "grease"]
@@ -146,6 +147,13 @@ def friction(
     ValueError
         Naming what is out of range.
 
+    Warns
+    -----
+    UnusualMagnitude
+        For sizes, loads, a rating or a speed that no bearing of this size has.
+    BearingWarning
+        For a load above the static rating.
+
     Examples
     --------
     >>> from bearingdyn.bearing.rating import friction
@@ -155,15 +163,20 @@ def friction(
     """
     one_of("model", model, ("palmgren", "four-term"))
     one_of("supply", supply, tuple(_SUPPLY))
-    Fr, Fa = nonnegative("radial", radial), nonnegative("axial", axial)
+    Fr, Fa = radial_and_axial(radial, axial)
     omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
     nu = plausible("kinematic viscosity", "viscosity", positive("viscosity", viscosity)) * 1e6
-    d, D = positive("bore", bore) * 1e3, positive("outside", outside) * 1e3
+    d = plausible("length", "bore", positive("bore", bore)) * 1e3
+    D = plausible("length", "outside", positive("outside", outside)) * 1e3
     require(D > d, "outside", outside, f"it must exceed the bore of {bore!r} m")
-    static = positive("C0", C0)
-    held = nonnegative("seals", seals)
+    static = plausible("rating", "C0", positive("C0", C0))
+    by_size = f"C0 is {static:.6g} N with an outside diameter of {D:.4g} mm; C0/outside²"
+    plausible("rating by size", by_size, static / (D * 1e-3) ** 2)
+    check_speed_value("speed", omega, (d + D) / 2 * 1e-3)
+    held = plausible("moment", "seals", nonnegative("seals", seals))
     churn = nonnegative("drag_factor", drag_factor)
-    degrees = math.degrees(number("contact_angle", contact_angle))
+    degrees = math.degrees(plausible("contact angle", "contact_angle", contact_angle))
+    warn_of_overload(max(0.6 * Fr + 0.5 * Fa, Fr), static)
     n, dm = abs(omega) * 30 / math.pi, (d + D) / 2
     if n == 0:
         return Friction(model, 0.0, 0.0, 0.0, 0.0, 0.0)

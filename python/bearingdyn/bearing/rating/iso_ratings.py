@@ -15,8 +15,10 @@ import numpy as np
 
 from bearingdyn.bearing.geometry import Geometry
 from bearingdyn.bearing.hertz import race_contact
-from bearingdyn.checks import nonnegative, positive, require
+from bearingdyn.checks import nonnegative, positive, require, whole
 from bearingdyn.material import Elastic
+from bearingdyn.notice import BearingWarning, UnusualMagnitude, warn
+from bearingdyn.plausible_ranges import plausible
 
 STATIC_STEEL = Elastic(207e9, 0.3, 7850.0)
 """Steel of the ratings of ISO 76."""
@@ -26,6 +28,8 @@ GROOVES = (0.52, 0.53)
 
 _PRESSURE = 4.2e9
 _INCH = 25.4e-3  # balls above it: Dw^1.4 in place of Dw^1.8
+# a factor between a rating given and that of the balls that is doubted; makers differ by 1.3
+_FAR = 3.0
 _BM = 1.3  # ISO 281: today's steels
 # 98.0665 N mm times .41 (ISO/TR 1281-1), reduced by λ = .95
 _FC = 0.41 * 98.0665 * 0.95
@@ -120,7 +124,7 @@ def iso_ratings(Z: int, Dw: float, Dpw: float, contact_angle: float = 0.0) -> Ra
     Raises
     ------
     ValueError
-        If a value is not positive.
+        If a value is not positive, or of a magnitude that no bearing has.
 
     Examples
     --------
@@ -129,9 +133,10 @@ def iso_ratings(Z: int, Dw: float, Dpw: float, contact_angle: float = 0.0) -> Ra
     >>> round(C), round(C0), round(f0, 1)
     (14032, 7872, 13.9)
     """
-    positive("Z", Z)
-    d, D = positive("Dw", Dw), positive("Dpw", Dpw)
-    cosine = math.cos(nonnegative("contact_angle", contact_angle))
+    whole("Z", Z, 1)
+    d = plausible("ball diameter", "Dw", positive("Dw", Dw))
+    D = plausible("pitch diameter", "Dpw", positive("Dpw", Dpw))
+    cosine = math.cos(plausible("contact angle", "contact_angle", contact_angle))
     gamma = d * cosine / D
     millimetres = d * 1e3
     size = millimetres**1.8 if d <= _INCH else 3.647 * millimetres**1.4
@@ -150,7 +155,7 @@ def dynamic_factors(ratio: float, contact_angle: float = 0.0) -> Thrust:
     contact_angle
         Nominal, rad.
     """
-    degrees = math.degrees(contact_angle)
+    degrees = math.degrees(plausible("contact angle", "contact_angle", contact_angle))
     if degrees < 5:
         return Thrust(0.56, _between(ratio, _RELATIVE, _DEEP_Y), _between(ratio, _RELATIVE, _DEEP_E))
     if degrees < 18:
@@ -174,9 +179,16 @@ def equivalent_load(
         Nominal, rad.
     f0
         Of the bearing, as `iso_ratings` gives it.
+
+    Warns
+    -----
+    BearingWarning
+        Where the static equivalent load exceeds C0: above it, and above Fa = .5 C0, the factors do not hold.
     """
-    Fr, Fa = nonnegative("radial", radial), nonnegative("axial", axial)
-    X, Y, e = dynamic_factors(f0 * Fa / positive("C0", C0), contact_angle)
+    Fr, Fa = radial_and_axial(radial, axial)
+    static = plausible("rating", "C0", positive("C0", C0))
+    X, Y, e = dynamic_factors(positive("f0", f0) * Fa / static, contact_angle)
+    warn_of_overload(equivalent_static_load(Fr, Fa, contact_angle), static)
     return Fr if Fa <= e * Fr else max(X * Fr + Y * Fa, Fr)
 
 
@@ -190,10 +202,67 @@ def equivalent_static_load(radial: float, axial: float, contact_angle: float = 0
     contact_angle
         Nominal, rad; from 15° on X0 = .5 and Y0 by the table.
     """
-    Fr, Fa = nonnegative("radial", radial), nonnegative("axial", axial)
-    degrees = math.degrees(contact_angle)
+    Fr, Fa = radial_and_axial(radial, axial)
+    degrees = math.degrees(plausible("contact angle", "contact_angle", contact_angle))
     X0, Y0 = (0.6, 0.5) if degrees < 5 else (0.5, _between(degrees, _Y0_DEGREES, _Y0))
     return max(X0 * Fr + Y0 * Fa, Fr)
+
+
+def check_given(what: str, given: float, found: float, who: str = "") -> float:
+    """Check a rating that was given, N, against what the standard gives to the bearing's balls.
+
+    Parameters
+    ----------
+    what
+        "C" or "C0".
+    given, found
+        N: the one given, and that of `iso_ratings`.
+    who
+        Of which bearing, for the message.
+
+    Warns
+    -----
+    UnusualMagnitude
+        For a factor of more than 3 between the two; makers differ by 1.3.
+    """
+    value = positive(f"{what}{who}", given, "the rating in N must be positive and finite")
+    if not 1 / _FAR < value / found < _FAR:
+        kilo = 1 / _FAR < 1e3 * value / found < _FAR
+        guess = f"; is it in kN? give {1e3 * value:.4g} N" if kilo else ""
+        warn(
+            f"{what}{who} is {value:.4g} N, and the bearing's balls give {found:.4g} N by ISO{guess}",
+            UnusualMagnitude,
+        )
+    return value
+
+
+def radial_and_axial(radial: float, axial: float) -> tuple[float, float]:
+    """Check the two loads of an equivalent load by the standards, N: of a force's magnitude, none negative.
+
+    Parameters
+    ----------
+    radial, axial
+        Fr and Fa, N.
+    """
+    Fr, Fa = nonnegative("radial", radial), nonnegative("axial", axial)
+    return plausible("force", "radial", Fr), plausible("force", "axial", Fa)
+
+
+def warn_of_overload(P0: float, C0: float) -> None:
+    """Warn (BearingWarning) of a static equivalent load above the static rating of the standard, both N.
+
+    Parameters
+    ----------
+    P0, C0
+        N.
+    """
+    if P0 > C0:
+        kilo = f"; is C0 in kN? give {1e3 * C0:.4g} N" if 30 * C0 < P0 <= 1e3 * C0 else ""
+        warn(
+            f"the static equivalent load is {P0:.4g} N, above the static rating C0 of {C0:.4g} N: the balls "
+            f"dent the races, and what is computed of their life and friction does not hold{kilo}",
+            BearingWarning,
+        )
 
 
 def _between(x: float, at: tuple[float, ...], value: tuple[float, ...]) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.rating.iso_ratings import Ratings, iso_ratings
+from bearingdyn.bearing.rating.iso_ratings import Ratings, check_given, iso_ratings
 from bearingdyn.checks import instance, one_of, positive, require, vector
 from bearingdyn.types import Array
 
@@ -105,6 +105,11 @@ def life_of_loads(
     float
         inf where no ball is loaded.
 
+    Warns
+    -----
+    UnusualMagnitude
+        For a C far from what the balls have by ISO 281.
+
     References
     ----------
     ISO/TS 16281:2008, 4.2.
@@ -117,7 +122,8 @@ def life_of_loads(
     >>> round(life_of_loads(ball, [0, 100.0, 500.0, 800.0, 500.0, 100.0, 0], C=23400.0))
     5087
     """
-    rating = ratings_of(bearing).C if C is None else C
+    found = ratings_of(bearing).C
+    rating = found if C is None else check_given("C", C, found)
     Qc = race_capacities(bearing, rating)
     Qe = equivalent_ball_loads(bearing, inner, inner if outer is None else outer)
     wear = sum((e / c) ** (10 / 3) for e, c in zip(Qe, Qc, strict=True))

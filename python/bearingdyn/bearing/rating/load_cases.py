@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY
+from bearingdyn.bearing.rating.iso_ratings import check_given
 from bearingdyn.bearing.rating.life import Arm, race_capacities, ratings_of, with_arm
 from bearingdyn.checks import instance, number, real
 from bearingdyn.notice import BearingWarning, warn
@@ -102,6 +103,8 @@ def load_cases(
     if f.ndim != 2 or f.shape[1] != 6 or not np.isfinite(f).all():
         raise ValueError(f"loads has the shape {f.shape}; it must be (m, 6), finite, in N and N m")
     held = with_arm(bearing, arm)
+    found = ratings_of(held).C
+    rating = found if C is None else check_given("C", C, found)
     turn = number("angle", angle, "it must be a finite angle in rad")
     R = held.arm
     target = np.column_stack([f[:, 0], f[:, 1], f[:, 2], -f[:, 4] / R, f[:, 3] / R])
@@ -131,7 +134,7 @@ def load_cases(
             f"over 4.2 GPa (ISO 76){more}; the bearing's static radial rating is {held.static_rating:.3g} N",
             BearingWarning,
         )
-    return LoadCases(q, Q, pressure, lives(held, Q, Q, ratings_of(held).C if C is None else C))
+    return LoadCases(q, Q, pressure, lives(held, Q, Q, rating))
 
 
 def lives(bearing: BallBearing, inner: Array, outer: Array, C: float) -> Array:

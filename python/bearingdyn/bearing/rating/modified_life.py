@@ -10,8 +10,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from bearingdyn.bearing.rating.iso_ratings import warn_of_overload
 from bearingdyn.checks import meant, nonnegative, number, positive, require
-from bearingdyn.plausible_ranges import plausible
+from bearingdyn.plausible_ranges import check_speed_value, plausible
 
 LEAST_KAPPA = 0.1
 """Viscosity ratio below which ISO 281 knows no a_ISO."""
@@ -43,9 +44,10 @@ def reference_viscosity(speed: float, Dpw: float) -> float:
     Dpw
         Pitch diameter, m.
     """
-    n = abs(number("speed", speed)) * 30 / math.pi
+    n = abs(plausible("speed", "speed", speed)) * 30 / math.pi
     require(n > 0, "speed", speed, "it must not be zero: at rest there is no film")
-    D = positive("Dpw", Dpw) * 1e3
+    D = plausible("pitch diameter", "Dpw", positive("Dpw", Dpw)) * 1e3
+    check_speed_value("speed", speed, Dpw)
     # as ISO 281 has it, and as others quote it of SKF's catalogue
     return float((45000 * n**-0.83 if n < 1000 else 4500 * n**-0.5) * D**-0.5 * 1e-6)
 
@@ -60,7 +62,11 @@ def fatigue_limit(C0: float, Dpw: float) -> float:
     Dpw
         Pitch diameter, m.
     """
-    return positive("C0", C0) / 22 * min(1.0, math.sqrt(0.1 / positive("Dpw", Dpw)))
+    static = plausible("rating", "C0", positive("C0", C0))
+    pitch = plausible("pitch diameter", "Dpw", positive("Dpw", Dpw))
+    text = f"C0 is {static:.6g} N with a pitch diameter of {1e3 * pitch:.4g} mm; C0/Dpw²"
+    plausible("rating by size", text, static / pitch**2)
+    return static / 22 * min(1.0, math.sqrt(0.1 / pitch))
 
 
 def contamination_factor(contamination: float | str, Dpw: float) -> float:
@@ -198,11 +204,19 @@ def modified_life(
     ------
     ValueError
         Naming what is out of range: κ below .1, e_C outside 0 to 1, a speed of zero.
+
+    Warns
+    -----
+    UnusualMagnitude
+        For a rating, a diameter, a viscosity or a speed that hardly a bearing has.
+    BearingWarning
+        For a load above the static rating.
     """
     nu = plausible("kinematic viscosity", "viscosity", positive("viscosity", viscosity))
     nu1 = reference_viscosity(speed, Dpw)
     kappa, e, Cu = nu / nu1, contamination_factor(contamination, Dpw), fatigue_limit(C0, Dpw)
-    load = nonnegative("P", P)
+    load = plausible("force", "P", nonnegative("P", P))
+    warn_of_overload(load, C0)
     factor = life_factor(kappa, e, Cu, load) if load > 0 else _MOST_FACTOR
     factor *= reliability_factor(reliability)
     revolutions = factor * L10
@@ -219,7 +233,7 @@ def in_hours(revolutions: float, speed: float) -> float:
     speed
         rad/s.
     """
-    turns = abs(number("speed", speed)) / (2 * math.pi)  # per second
+    turns = abs(plausible("speed", "speed", speed)) / (2 * math.pi)  # per second
     return revolutions * 1e6 / turns / 3600 if turns > 0 else math.inf
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from bearingdyn.fem.abaqus_input import Block, blocks, fields, node, whole
 from bearingdyn.fem.mesh_files.abaqus_assembly import BEYOND, KINDS, MULTIPLE, Assembled, NumberSet, Scope
 from bearingdyn.fem.mesh_files.abaqus_coordinates import System, from_polar, moved, system
-from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
+from bearingdyn.fem.mesh_files.raw_mesh import RawMesh, warn_of_lean
 
 SOLID = re.compile(r"C3D(\d+)(V?)")
 # solids of other formulations: a body without them would lack a piece
@@ -30,6 +30,8 @@ REFUSED = {
     "PARAMETER": "numbers of the file may depend on it",
     "IMPERFECTION": "it moves nodes",
 }
+# Elements of mass, stiffness or damping without a volume of their own
+LEAN = re.compile(r"(MASS|ROTARYI|HEATCAP|B[23]\d|PIPE|T[23]D|SPRING|DASHPOT|CONN|JOINTC|GAP|ELBOW|FRAME)")
 
 
 def read_inp(path: Path) -> RawMesh:
@@ -46,6 +48,11 @@ def read_inp(path: Path) -> RawMesh:
     ValueError
         With file and line, for other solid elements, a keyword that makes or moves geometry in another way, a
         number given twice, a set that names something undefined, and a line that cannot be read.
+
+    Warns
+    -----
+    LeftOut
+        For beams, masses, springs and other elements without volume.
     """
     return _Model().read(path)
 
@@ -58,6 +65,7 @@ class _Model:
         self.spelling: dict[str, str] = {}
         self.open = self.root  # what definitions go to
         self.system: System | None = None
+        self.lean: dict[str, int] = {}  # elements without volume, by kind
         self.repeated = 0  # nodes and elements of all instances
 
     def limit(self) -> int:
@@ -78,6 +86,7 @@ class _Model:
                     f"it has the parts {sorted(self.parts)} and no *INSTANCE of them; write the assembly"
                 )
             self.instances = dict(self.parts)
+        warn_of_lean(path, self.lean)
         return Assembled(self.spelling, self.root, self.instances, self.limit()).mesh()
 
     def key(self, name: str) -> str:
@@ -91,6 +100,8 @@ class _Model:
             raise block.fault(
                 f"{REFUSED[keyword]}, which is not followed; write the mesh out with all its nodes"
             )
+        if keyword == "MODEL CHANGE" and "REMOVE" in block.options and "TYPE" not in block.options:
+            raise block.fault("it removes elements, which is not followed; delete them from the file")
         if keyword == "PART":
             self.open = self.parts.setdefault(self.key(block.named("NAME")), Scope())
             self.system = None
@@ -161,6 +172,8 @@ class _Model:
                 f"elements of type {kind}; bricks C3D20 and C3D27, wedges C3D15 and tetrahedra C3D10 are read"
             )
         rows = list(_rows(block, int(solid[1]) + 1 if solid else None))
+        if LEAN.match(kind):
+            self.lean[kind] = self.lean.get(kind, 0) + len(block.lines)
         target = self.open.elements if solid else self.open.skins
         for k, (number, *nodes) in rows:
             if number in self.open.elements or number in self.open.skins:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from bearingdyn.fem.abaqus_input import real, whole
 from bearingdyn.fem.mesh_files.numbered_elements import Numbered
-from bearingdyn.fem.mesh_files.raw_mesh import RawMesh
+from bearingdyn.fem.mesh_files.raw_mesh import RawMesh, warn_of_lean
 
 BRICK = [
     *range(12),
@@ -34,6 +34,10 @@ SOLIDS = {
     "CPYRAM": (5, 13, list(range(13))),
 }
 FACES = {"CTRIA3": 3, "CTRIA6": 6, "CQUAD4": 4, "CQUAD8": 8, "CTRIAR": 3, "CQUADR": 4}
+# cards of mass, stiffness or damping without a volume
+LEAN = re.compile(
+    r"CONM[12]|CMASS\d|CBAR|CBEAM3?|CBEND|CROD|CONROD|CTUBE|CELAS\d|CDAMP\d|CBUSH\w*|CGAP|CVISC|RBE[123]|RBAR\w*"
+)
 WITHOUT_E = re.compile(r"(?<=[\d.])([+-]\d+)$")  # 1.5-3 for 1.5e-3
 CONTINUATIONS = 100  # of a card that is read; a brick has two
 
@@ -46,8 +50,13 @@ def read_bdf(path: Path) -> RawMesh:
     ValueError
         With the line, for a card that cannot be read, INCLUDE, and nodes in a system of coordinates of their
         own.
+
+    Warns
+    -----
+    LeftOut
+        For beams, masses, springs and other elements without volume.
     """
-    found = Numbered()
+    found, lean = Numbered(), dict[str, int]()
     for place, name, fields in _cards(path):
         try:
             if name == "GRID":
@@ -71,10 +80,13 @@ def read_bdf(path: Path) -> RawMesh:
             elif name in FACES:
                 numbers = [whole(n) for n in fields[2 : 2 + FACES[name]] if n]
                 found.add_element(whole(fields[0]), numbers, whole(fields[1] or fields[0]), False)
+            elif LEAN.fullmatch(name):
+                lean[name] = lean.get(name, 0) + 1
             elif name.startswith("INCLUDE") or name == "GRDSET":
                 raise ValueError("it is not followed; write one file with all nodes in the basic system")
         except (ValueError, IndexError) as error:
             raise ValueError(f"{path.name}, line {place}: {name}: {error}") from error
+    warn_of_lean(path, lean)
     return found.mesh()
 
 

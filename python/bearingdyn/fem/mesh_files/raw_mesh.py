@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from bearingdyn.checks import meant, positive
 from bearingdyn.fem.meshes.solid_element import KINDS, OF_CORNERS
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, merged, second_order
+from bearingdyn.notice import LeftOut, warn
 from bearingdyn.types import Array, Index
 
 LESS = {27: 20, 18: 15, 14: 13}  # nodes of an element, and of the one without middles of faces
@@ -41,6 +43,17 @@ class RawMesh:
     regions: Mapping[str, Index]
     surfaces: Mapping[str, Index]
     preferred: tuple[str, ...] = ()
+
+
+def warn_of_lean(path: Path, lean: Mapping[str, int]) -> None:
+    """Warn of a raw mesh's elements without volume, numbers of them by kind, which are left out (LeftOut)."""
+    if lean:
+        told = ", ".join(f"{count} of type {kind}" for kind, count in sorted(lean.items()))
+        warn(
+            f"{path.name}: elements without volume are left out, and with them their mass and stiffness: "
+            f"{told}; add them to the application (bd.RigidBody, Application.spring), or delete them",
+            LeftOut,
+        )
 
 
 def finished(

@@ -18,6 +18,7 @@ from bearingdyn.material.reading.errors import ReadingError
 from bearingdyn.material.reading.request import Request
 from bearingdyn.material.reading.source import Row, read_source, source_of
 from bearingdyn.material.reading.table import TableReader
+from bearingdyn.notice import AssumedMeaning, warn
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -29,6 +30,9 @@ _AREA_SCATTER = 0.05  # of force/(|G| γ) among the points of one sweep
 _STRAIN_TITLE = re.compile(r"strain|dehnung|deformation|^γ$|^ε$|gamma|epsilon", re.IGNORECASE)
 _FORCE_TITLE = re.compile(r"force|kraft", re.IGNORECASE)
 _PERCENT = re.compile(r"%|\bpct\b|percent|prozent", re.IGNORECASE)
+_PEAK_TO_PEAK = re.compile(
+    r"\bp-p\b|\bpp\b|pk[- ]?pk|peak[- ]?(to|2)?[- ]?peak|double amplitude|spitze", re.IGNORECASE
+)
 _FORCE_UNITS = {"n": 1.0, "": 1.0, "mn": 1e-3, "kn": 1e3}
 
 
@@ -170,7 +174,8 @@ def read_strain_sweep(
     """Read a strain sweep from a table with a header, as `read_dma` reads frequency sweeps.
 
     The table has a column of strain (in percent where its title or unit says %, pct or percent, else a
-    fraction), and those of `read_dma`; a column of force is taken along.
+    fraction), and those of `read_dma`; a column of force is taken along. A strain that its title calls
+    peak-to-peak (p-p, pk-pk) is halved.
 
     Parameters
     ----------
@@ -192,6 +197,11 @@ def read_strain_sweep(
     ValueError
         If there are several tables, or the table has no strain, several frequencies, or moduli that
         `read_dma` would refuse.
+
+    Warns
+    -----
+    AssumedMeaning
+        Where nothing says whether the strain is a fraction or in percent.
     """
     wanted, given = dict(columns or {}), dict(units or {})
     own: dict[str, str | int] = {q: wanted.pop(q) for q in ("strain", "force") if q in wanted}
@@ -268,7 +278,16 @@ def _column(
             raise ReadingError(f"{block.source.at(row.number)}, column {text!r}: {cell!r} is not a number")
         values.append(number_of(cell))
     if quantity == "strain":
+        known = units.get("strain", unit) or _PERCENT.search(text.replace("_", " "))
+        if not known and asked is None:
+            warn(
+                f"{block.source.at(block.header.number)}, column {text!r}: no unit for the strain: taken as "
+                "a fraction; units={'strain': '%'} says otherwise",
+                AssumedMeaning,
+            )
         percent = bool(_PERCENT.search(units.get("strain", f"{text.replace('_', ' ')} {unit}")))
-        return np.array(values) * (1e-2 if percent else 1.0)
+        # an amplitude is half of what is read from peak to peak
+        half = 0.5 if _PEAK_TO_PEAK.search(text.replace("_", " ")) else 1.0
+        return np.array(values) * (1e-2 if percent else 1.0) * half
     named = re.split(r"[\s_\[(]+", text.rstrip(")]"))[-1].lower() if not unit else unit.lower()
     return np.array(values) * _FORCE_UNITS.get(named if named in _FORCE_UNITS else "", 1.0)

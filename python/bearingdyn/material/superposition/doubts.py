@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bearingdyn.material.dma import DMAData
-from bearingdyn.notice import MixedRuns, PoorLaw, UnevenShifts, warn
+from bearingdyn.notice import MixedRuns, OddPoints, PoorLaw, UnevenShifts, warn
 from bearingdyn.types import Array
 
 _LAW_MISFIT = 0.3  # decades rms, beyond which a law misleads: a factor of two in frequency
@@ -15,6 +15,8 @@ _TIMES_ERROR, _NOTICED = (
 )  # of the shifts' own errors; decades, 5 % in frequency, that matter at all
 _TIMES_MISFIT = 2.0  # misfit of the moduli by the law over that by the shifts
 _UNEVEN = 2.0  # a step against its neighbours' rates, which through Tg change less between isotherms
+_GAP = 0.3  # decades without a point between isotherms; inside sweeps points stand 0.2 to 0.3 apart
+_APART, _TIMES_SCATTER, _SHOWN = 0.1, 10.0, 3  # a deviation that no scatter makes; how many are named
 _UNEVEN_DECADES = 0.15  # by which a step must stand out; steps are known to a tenth of a decade
 
 
@@ -70,6 +72,48 @@ def doubt_steps(source: str, T: Array, shifts: Array) -> None:
         "isotherm there is shifted wrongly, or belongs to another specimen; leave it out, give its shift by "
         "hand (shifts={T: ...}), or measure it again",
         UnevenShifts,
+    )
+
+
+def doubt_gaps(dma: DMAData, shifts: Array) -> None:
+    """Doubt shifts, decades of each point: warn where neighbouring isotherms, shifted, do not meet."""
+    reduced = np.log10(dma.frequency) + shifts
+    ends = [(reduced[dma.labels == k].min(), reduced[dma.labels == k].max()) for k in np.unique(dma.labels)]
+    T = dma.isotherm_temperatures
+    ends.sort()
+    told, reach = [], ends[0][1]
+    for low, high in ends[1:]:
+        if low - reach > _GAP:
+            told.append(f"{low - reach:.2g} decades about {10 ** ((low + reach) / 2):.3g} Hz")
+        reach = max(reach, high)
+    if told:
+        warn(
+            f"{dma.source}: the {T.size} isotherms leave gaps in the master curve, {', '.join(told)}: over "
+            "these no modulus was measured, and the shifts across them are a guess of a smooth spectrum; "
+            "measure a temperature in between, or a wider range of frequency",
+            UnevenShifts,
+        )
+
+
+def doubt_points(dma: DMAData, deviations: tuple[Array, Array]) -> None:
+    """Doubt points, by their deviations from one causal spectrum: warn of those that stand alone."""
+    told = []
+    for name, off in zip(("G′", "G″"), deviations, strict=True):
+        scatter = 1.4826 * float(np.median(np.abs(off)))
+        for i in np.flatnonzero(np.abs(off) > max(_APART, _TIMES_SCATTER * scatter)):
+            told.append((float(abs(off[i])), name, int(i), scatter))
+    if not told:
+        return
+    told.sort(reverse=True)
+    words = ", ".join(
+        f"{name} at {dma.frequency[i]:.4g} Hz and {dma.temperature[i]:.4g} °C by {size:.0%}"
+        for size, name, i, _ in told[:_SHOWN]
+    )
+    more = f" and {len(told) - _SHOWN} more" if len(told) > _SHOWN else ""
+    warn(
+        f"{dma.source}: {len(told)} moduli stand off the curve that the others make, {words}{more}, where "
+        f"they scatter by {told[0][3]:.2%}; they are kept: measure them again, or leave them out by dma.take",
+        OddPoints,
     )
 
 

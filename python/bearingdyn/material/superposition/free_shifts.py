@@ -109,10 +109,15 @@ class Superposition:
         slope = [np.log(10) * (s @ solution.x[1:])[:, None] for s in branch_slopes(omega, self.tau)]
         return solution.project_out(self._stack(slope[0] * direction, slope[1] * direction))
 
+    def deviations(self, point_shifts: Array) -> tuple[Array, Array]:
+        """Relative deviation of G′ and of G″ of every point from the spectrum at these shifts, (n,)."""
+        storage, loss = np.split(self.solve(point_shifts).residual, 2)
+        return storage, loss / self.weight
+
     def misfit(self, point_shifts: Array) -> tuple[float, float]:
         """rms relative deviation of G′ and of G″."""
-        storage, loss = np.split(self.solve(point_shifts).residual, 2)
-        return float(np.sqrt(np.mean(storage**2))), float(np.sqrt(np.mean((loss / self.weight) ** 2)))
+        storage, loss = self.deviations(point_shifts)
+        return float(np.sqrt(np.mean(storage**2))), float(np.sqrt(np.mean(loss**2)))
 
     def weigh_evenly(self) -> None:
         """Let relative deviations of G′ and of G″ count alike from now on."""

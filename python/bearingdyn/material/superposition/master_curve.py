@@ -20,7 +20,13 @@ from bearingdyn.material.dma import DMAData, Mode, check_range
 from bearingdyn.material.relaxation_data import RelaxationData
 from bearingdyn.material.shear_from_tension import shear_modulus
 from bearingdyn.material.shift_laws import ZERO_CELSIUS, Law, RhoT, ShiftTable
-from bearingdyn.material.superposition.doubts import doubt_law, doubt_runs, doubt_steps
+from bearingdyn.material.superposition.doubts import (
+    doubt_gaps,
+    doubt_law,
+    doubt_points,
+    doubt_runs,
+    doubt_steps,
+)
 from bearingdyn.material.superposition.free_shifts import Superposed, Superposition, first_shifts
 from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, suspects
 from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
@@ -253,6 +259,8 @@ def master_curve(
         missed = fit.misfit(fitted.log_shift(used.temperature) + offset)
         doubt_law(dma.source, law, residual, error, missed, misfit_free)
     doubt_steps(dma.source, T, found.shifts)
+    doubt_gaps(used, found.point_shifts)
+    doubt_points(used, fit.deviations(found.point_shifts))
     frequency = used.frequency * 10 ** (found.point_shifts - offset)
     order = np.argsort(frequency, kind="stable")
     return MasterCurve(

@@ -1,0 +1,82 @@
+"""Events of a branch of steady motions: each kept once, and how closely each is located."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+# of the parameter: folds nearer to one another, one behind the other on a branch, are one tip and its kinks.
+# Contacts open and close between samples of a passage; where a branch is nearly flat in the parameter, that
+# makes many folds of one, whose number and places change with the samples and the steps.
+TIP = 1e-3
+# of a motion's size: what an event may be off and be the same
+SAME = 1e-3
+
+
+class _Placed(Protocol):
+    @property
+    def parameter(self) -> float: ...
+    @property
+    def z(self) -> np.ndarray: ...
+
+
+class _Marked(Protocol):
+    @property
+    def point(self) -> _Placed: ...
+    @property
+    def event(self) -> str: ...
+
+
+_Mark = TypeVar("_Mark", bound=_Marked)
+
+
+def once(marks: Iterable[_Mark], tolerance: float) -> Iterator[_Mark]:
+    """Marks without events that repeat the last one: a crossing on a point is found before it and behind it.
+
+    Parameters
+    ----------
+    marks
+        In order along the branch.
+    tolerance
+        Of the location, in the parameter.
+    """
+    last: _Mark | None = None
+    for mark in marks:
+        if mark.event and last is not None and mark.event == last.event:
+            near = abs(mark.point.parameter - last.point.parameter) <= 2 * tolerance
+            apart = float(np.linalg.norm(mark.point.z - last.point.z))
+            if near and apart <= SAME * float(np.linalg.norm(last.point.z[1:])):
+                continue
+        last = mark if mark.event else last
+        yield mark
+
+
+def within(events: Sequence[str], parameters: Sequence[float], tolerance: float) -> list[float]:
+    """How closely each event of a branch is located, in the parameter; NaN where there is none.
+
+    Parameters
+    ----------
+    events, parameters
+        Of the points of a branch, in order.
+    tolerance
+        Of an event by itself.
+
+    Returns
+    -------
+    list of float
+        `tolerance`; of folds that follow one another within `TIP` of the parameter, what they span together.
+    """
+    found = [tolerance if event not in ("", "failed") else math.nan for event in events]
+    folds = [k for k, event in enumerate(events) if event == "fold"]
+    tip: list[int] = []
+    for k in folds:
+        if tip and abs(parameters[k] - parameters[tip[-1]]) > TIP * abs(parameters[k]):
+            tip = []
+        tip.append(k)
+        places = [parameters[i] for i in tip]
+        for i in tip:
+            found[i] = max(tolerance, max(places) - min(places))
+    return found
