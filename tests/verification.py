@@ -66,6 +66,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Housing in CalculiX": peers.calculix,
     "Reduced parts": reduction.reduction,
     "Sound of spheres": sound.spheres,
+    "Sound intensity of spheres": sound.intensities,
     "Free shaft and ring": structures.free_bodies,
     "Rings under opposed loads": rings.pinched_rings,
     "Flexible ring, stiff and free": rings.stiff_rings,
