@@ -11,6 +11,7 @@ from __future__ import annotations
 import sys
 import time
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,22 +26,22 @@ import bearingdyn as bd
 from bearingdyn import core
 from bearingdyn.analysis.march import March
 from bearingdyn.analysis.recordable_channels import channel_of
+from bearingdyn.examples import paper
 
-ABREAST, STEPS, REPEATS = 8, 12_000, 12
+ABREAST, STEPS, REPEATS = 8, 12_000, 8
 RATIO = 2.2  # target
 
 
 def case(design: Any, k: int, differ: bool) -> core.MarchCall:
     """One march of the motor, its ring-down begun."""
-    plain = motor.bearing
+    plain = paper.plain_6305
     if differ:
-        motor.bearing = lambda name, **given: plain(
-            name, **{**given, "clearance": given["clearance"] + 1e-6 * k}
-        )
+        ball = plain()
+        paper.plain_6305 = lambda: replace(ball, clearance=ball.clearance + 1e-6 * k)
     try:
         eq = bd.equilibrium(motor.motor(design, motor.RADIAL * (1.0 + 0.02 * k)))
     finally:
-        motor.bearing = plain
+        paper.plain_6305 = plain
     march = March.of(eq, speed=motor.SPEED, dt=motor.STEP, steps=1)
     model = march.model([channel_of(march.modal, "shaft.end.y")[0]])
     _, state, _ = core.march(model, march.start(model), march.stepping, 4000, 100, start=True)
