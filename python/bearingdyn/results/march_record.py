@@ -77,12 +77,36 @@ def march_dataset(
 
 
 def recorded(result: object) -> None:
-    """Check the record of a march, what `transient` returned; ValueError for anything else."""
+    """Check the record of a march.
+
+    Parameters
+    ----------
+    result
+        What `transient` returned.
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
     table("result", result, ["record", "channel", "time"], "transient")
 
 
 def signal_of(result: xarray.Dataset, channel: str) -> Array:
-    """Samples (n,) of a recorded channel; ValueError for one that was not recorded."""
+    """Samples (n,) of a channel in a march's record.
+
+    Parameters
+    ----------
+    result
+        What `transient` returned.
+    channel
+        Name of the channel.
+
+    Raises
+    ------
+    ValueError
+        For a channel that was not recorded.
+    """
     recorded(result)
     known = [str(c) for c in result["channel"].values]
     if channel not in known:
@@ -91,10 +115,24 @@ def signal_of(result: xarray.Dataset, channel: str) -> Array:
 
 
 def unit_of(result: xarray.Dataset, channel: str) -> str:
-    """Unit of a channel in a march's record."""
+    """Unit of a channel in a march's record.
+
+    Parameters
+    ----------
+    result
+        What `transient` returned.
+    channel
+        Name of a recorded channel.
+    """
     return str(result["unit"].sel(channel=channel).item())
 
 
 def sampling_time(result: xarray.Dataset) -> float:
-    """Time between two samples of a march's record, s."""
+    """Time between two samples of a march's record, s.
+
+    Parameters
+    ----------
+    result
+        What `transient` returned.
+    """
     return float(result.attrs["dt"]) * int(result.attrs["decimate"])

@@ -29,7 +29,20 @@ def static_modulus(layer: LayerTerm, modulus: Modulus) -> float:
 
 
 def warn_at_rest(layers: Iterable[LayerTerm], time: float) -> None:
-    """Warn that static moduli of layers at a time, s (inf: relaxed), are beyond what their data cover."""
+    """Warn that static moduli of layers are beyond what their data cover.
+
+    Parameters
+    ----------
+    layers
+        Of a system.
+    time
+        After loading, s; inf: relaxed.
+
+    Warns
+    -----
+    BeyondData
+        Once for all layers.
+    """
     warn_beyond(
         [(layer.part, layer.material) for layer in layers],
         time,
