@@ -15,7 +15,7 @@ FOUND = re.compile(r"^from bearingdyn\.material\.(\w+)(\.\w+)? import (.+?)$", r
 
 # A room may import those of earlier rows, by their doors.
 ORDER = (
-    ("log_parameters",),
+    ("doubt", "log_parameters", "random_numbers"),
     ("amplitude", "bulk_relaxation", "isotherms", "low_end", "shear_from_tension", "spread"),
     ("beyond_data", "creep", "dma", "elastic", "fit_report", "relaxation_spectrum", "retuning", "shift_laws"),
     ("maxwell", "relaxation_data"),
