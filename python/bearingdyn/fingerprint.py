@@ -140,7 +140,7 @@ def _array(value: np.ndarray, told: Callable[[Any], Any]) -> Any:
 
 def _object(value: Any, told: Callable[[Any], Any], strict: bool) -> Any:
     kind = type(value)
-    name = f"{kind.__module__}.{kind.__qualname__}"
+    name = f"{_module(kind)}.{kind.__qualname__}"
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = {f.name: told(getattr(value, f.name)) for f in dataclasses.fields(value)}
         return {"class": name, **fields, **_own_code(kind, told)}
@@ -155,7 +155,7 @@ def _object(value: Any, told: Callable[[Any], Any], strict: bool) -> Any:
     if isinstance(value, types.ModuleType | logging.Logger):
         return {"class": name, "name": value.__name__ if isinstance(value, types.ModuleType) else value.name}
     if hasattr(value, "__qualname__"):
-        return f"{value.__module__}.{value.__qualname__}"
+        return f"{_module(value)}.{value.__qualname__}"
     if hasattr(value, "tocoo"):
         coo = value.tocoo()
         return {"class": name, "shape": list(coo.shape), "row": told(coo.row), "col": told(coo.col),
@@ -199,8 +199,14 @@ def _installed(module: str) -> bool:
     return any(os.path.realpath(file).startswith(place + os.sep) for place in places)
 
 
+def _module(value: Any) -> str:
+    """Module of a function or class; a script has one name, which a process spawned by it calls otherwise."""
+    name = str(value.__module__)
+    return "__main__" if name == "__mp_main__" else name
+
+
 def _function(value: types.FunctionType, told: Callable[[Any], Any]) -> Any:
-    name = f"{value.__module__}.{value.__qualname__}"
+    name = f"{_module(value)}.{value.__qualname__}"
     if _installed(value.__module__) and value.__closure__ is None and "<lambda>" not in name:
         return name
     cells = value.__closure__ or ()
@@ -246,7 +252,7 @@ def _class(value: type, told: Callable[[Any], Any]) -> Any:
         and key not in ("__module__", "__doc__", "__qualname__", "__firstlineno__")
     }
     bases = [told(base) for base in value.__bases__ if base is not object]
-    return {"class": f"{value.__module__}.{value.__qualname__}", "own": _digest(own), "bases": bases}
+    return {"class": f"{_module(value)}.{value.__qualname__}", "own": _digest(own), "bases": bases}
 
 
 def _code(code: types.CodeType, told: Callable[[Any], Any]) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import zipfile
+import zlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -67,5 +68,7 @@ def read_arrays(path: Path, names: Iterable[str] | None = None) -> dict[str, Any
     try:
         with np.load(io.BytesIO(raw[START:]), allow_pickle=False) as held:
             return {name: held[name] for name in (held.files if names is None else names)}
-    except (ValueError, LookupError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
+    except (
+        ValueError, LookupError, TypeError, OSError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error
+    ) as error:  # fmt: skip
         raise ValueError(f"{path} holds no arrays of this kind ({error}); delete it") from error

@@ -632,3 +632,55 @@ def test_an_unchanged_function_is_sent_without_a_word(tmp_path):
 def test_a_relative_deviation_in_per_cent_is_refused(relative):
     with pytest.raises(ValueError, match=r"LogNormal.relative is .*; is it in per cent\?"):
         study.LogNormal(1e6, relative)
+
+
+SCRIPT = """
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from bearingdyn import study
+
+GAINS = np.ones(100)
+
+
+@dataclass(frozen=True)
+class Spring:
+    k: float
+
+
+STIFF = Spring(3.0)
+
+
+@cache
+def gain():
+    return float(GAINS.sum())
+
+
+def helper(x):
+    return gain() * STIFF.k * x
+
+
+def design(case):
+    return {"y": helper(case["x"])}
+
+
+if __name__ == "__main__":
+    gain()
+    study.sweep(design, [{"x": 1.0}, {"x": 2.0}], store="kept", progress=False)
+"""
+
+
+def test_a_script_that_calls_its_own_functions_is_the_same_in_its_workers(tmp_path):
+    """Where it runs it is __main__, in the processes that it spawns __mp_main__."""
+    (tmp_path / "script.py").write_text(SCRIPT)
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "script.py"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert len(list((tmp_path / "kept").glob("*.json"))) == 2
