@@ -212,7 +212,7 @@ def one_of(field: str, value: object, choices: Sequence[object]) -> None:
 
 
 def one_speed(speed: Any, rpm: Any, default: float | None = None, what: str = "speed") -> Any:
-    """Check of an argument: a speed given once, in rad/s as `speed` or in revolutions a minute as `rpm`.
+    """Check two arguments of which one must be given: `speed` in rad/s, or `rpm`.
 
     Parameters
     ----------

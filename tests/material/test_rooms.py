@@ -15,9 +15,9 @@ FOUND = re.compile(r"^from bearingdyn\.material\.(\w+)(\.\w+)? import (.+?)$", r
 
 # A room may import those of earlier rows, by their doors.
 ORDER = (
-    ("doubt", "log_parameters", "random_numbers"),
+    ("doubt", "log_parameters", "random_numbers", "relaxation_spectrum"),
     ("amplitude", "bulk_relaxation", "isotherms", "low_end", "shear_from_tension", "spread"),
-    ("beyond_data", "creep", "dma", "elastic", "fit_report", "relaxation_spectrum", "retuning", "shift_laws"),
+    ("creep", "dma", "elastic", "fit_report", "reach_of_data", "retuning", "shift_laws"),
     ("maxwell", "relaxation_data"),
     ("reading", "superposition", "volume"),
     ("doubts", "identification"),

@@ -1,7 +1,6 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
 from bearingdyn.material.amplitude import Payne, PayneFit
-from bearingdyn.material.beyond_data import band_told_once, warn_beyond
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
@@ -16,6 +15,7 @@ from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.random_numbers import normals, uniforms
+from bearingdyn.material.reach_of_data import band_told_once, warn_beyond
 from bearingdyn.material.reading import (
     ReadingError,
     StrainSweep,

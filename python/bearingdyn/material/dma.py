@@ -22,7 +22,7 @@ _UNIT = "is the unit right (Pa, kPa, MPa, GPa)? Give units={'storage': ..., 'los
 
 
 class UnitError(ValueError):
-    """DMA data with moduli that no solid has: their unit is wrong."""
+    """DMA data whose unit is wrong: moduli that no solid has."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

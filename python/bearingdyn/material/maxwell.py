@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import instance, nonnegative, number, positive, real, require, vector
 from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
-from bearingdyn.material.beyond_data import warn_before, warn_beyond
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.creep import creep_compliance
 from bearingdyn.material.doubt import Doubt
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.low_end import LowEnd
+from bearingdyn.material.reach_of_data import warn_before, warn_beyond
 from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
 from bearingdyn.material.spread import Drawable, Spread

@@ -18,7 +18,7 @@ inertia are known."""
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """The profile of a part, or of one of its regions, in the plane x = 0.
+    """Profile of a part in the plane x = 0, or of one of its regions.
 
     Parameters
     ----------

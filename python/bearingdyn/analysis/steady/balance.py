@@ -279,7 +279,7 @@ def flat(z: Complex) -> Array:
 
 
 def unflat(vector: Array, balance: Balance) -> Complex:
-    """Real numbers as amplitudes (L, m) of a harmonic balance."""
+    """For a harmonic balance, real numbers as amplitudes (L, m)."""
     return np.ascontiguousarray(vector).view(np.complex128).reshape(balance.lines.count, -1)
 
 

@@ -102,7 +102,7 @@ class Problem:
 
 
 def motion_of(field: str, problem: Problem, result: xarray.Dataset) -> tuple[Index, Complex]:
-    """For a problem of a steady motion, an earlier one to start from: index, amplitudes; else ValueError."""
+    """Start of a problem: the amplitudes of an earlier steady motion in its terms; else ValueError."""
     require("motion" in result, field, sorted(map(str, result)), "give a result of steady_state")
     index, z = np.asarray(result["index"].values, dtype=np.intp), np.asarray(result["motion"].values)
     names = [b.name for b in problem.bases.bases]

@@ -203,7 +203,7 @@ def solve(
 def look_up(
     contact: PointContact, lubricant: Lubricant, F: float, us: float, temperature: float
 ) -> LubricatedContact:
-    """Lubricated contact in SI units under a load, from the table in microseconds.
+    """Lubricated contact in SI units under a load, not solved but by the table, in microseconds.
 
     Parameters
     ----------
