@@ -119,7 +119,7 @@ class OperatingPoint:
 
 
 def estimated_network(app: Application, ambient: float = 20.0) -> ThermalNetwork:
-    """For an operating point: an estimated thermal network of bearings and layers.
+    """Operating point's thermal network of bearings and layers, estimated.
 
     Each bearing has nodes "name.inner" and "name.outer". Its seats pass heat on as ISO 15312's reference
     does, 320 W/(m² K) of their area; a layer of rubber behind the outer ring lies in between, as a ring of

@@ -302,7 +302,7 @@ def series_of(bearing: BallBearing) -> str | None:
 def bearing(
     designation: str | int, *, clearance: float | None = None, balls: int | None = None, **keywords: Any
 ) -> BallBearing:
-    """BallBearing from the catalogue: internal geometry of a designation.
+    """Catalogue's bearing by its designation: a BallBearing with its internal geometry.
 
     Parameters
     ----------
@@ -354,7 +354,7 @@ def bearing(
 
 
 def from_entry(entry: Entry, *, clearance: float | None = None, **keywords: Any) -> BallBearing:
-    """BallBearing of an Entry of the catalogue, or of one by `estimate`.
+    """Catalogue entry, or one by `estimate`, as a BallBearing.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """The whole surface of a part that may radiate, in its own frame, and how its coordinates move it.
+    """Radiating surface, whole, of a part in its own frame, and how its coordinates move it.
 
     Parameters
     ----------

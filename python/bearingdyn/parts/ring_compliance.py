@@ -31,7 +31,7 @@ _SMOOTH = 40  # periods of Z orders after which the half-space's sums are tapere
 
 @dataclass(frozen=True, eq=False)
 class RingCompliance:
-    """Static compliance of a race, order by order, beyond the half-space's.
+    """Compliance of a ring's race, static, order by order, beyond the half-space's.
 
     Parameters
     ----------

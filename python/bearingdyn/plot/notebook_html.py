@@ -71,12 +71,12 @@ def rows(heads: Sequence[str], cells: Iterable[Sequence[str]]) -> str:
 
 
 def box(title: str, *blocks: str) -> str:
-    """The page of an object in a notebook: a title and blocks below it."""
+    """A box in a notebook: a title and blocks below it."""
     return f'<div class="bearingdyn"><div><strong>{escape(title)}</strong></div>{"".join(blocks)}</div>'
 
 
 def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
-    """The page of any object in a notebook, as HTML.
+    """Any object in a notebook, as HTML.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
 
 
 def application_html(app: Application) -> str:
-    """The page of an application: drawing, parts, joints, loads, and what is to be warned of."""
+    """An application in a notebook: drawing, parts, joints, loads, and what is to be warned of."""
     plan = app.plan
     if not plan.parts:
         return box("Application without parts")
@@ -168,7 +168,7 @@ def _warned(app: Application, told: list[str]) -> str:
 
 
 def bearing_html(bearing: BallBearing) -> str:
-    """The page of a bearing: its section, and what follows from its geometry."""
+    """A bearing in a notebook: its section, and what follows from its geometry."""
     figure, ax = _figure(2.6, 2.6)
     ax.set_aspect("equal")
     ax.axis("off")
@@ -190,7 +190,7 @@ def bearing_html(bearing: BallBearing) -> str:
 
 
 def maxwell_html(material: Maxwell) -> str:
-    """The page of a Maxwell model: its modulus over frequency, where it is known, and its branches."""
+    """A Maxwell model in a notebook: its modulus over frequency, where it is known, and its branches."""
     times = material.tau if material.tau.size else np.array([1.0])
     low, high = 0.01 / (2 * np.pi * times.max()), 100.0 / (2 * np.pi * times.min())
     if material.band is not None:
@@ -244,7 +244,7 @@ def _modulus(material: Any, low: float, high: float, band: tuple[float, float] |
 
 
 def zener_html(material: FractionalZener) -> str:
-    """The page of a fractional Zener model: modulus over six decades about its transition, parameters."""
+    """A fractional Zener model in a notebook: modulus over six decades about its transition, parameters."""
     middle = 1.0 / (2 * np.pi * material.tau)
     facts = [
         ("relaxed modulus G0", f"{material.G0 / 1e6:.4g} MPa"),
@@ -258,7 +258,7 @@ def zener_html(material: FractionalZener) -> str:
 
 
 def power_law_html(material: PowerLaw) -> str:
-    """The page of a power law: modulus over four decades about the frequency it is stated at."""
+    """A power law in a notebook: modulus over four decades about the frequency it is stated at."""
     facts = [
         (f"|G*| at {material.frequency:g} Hz", f"{material.modulus / 1e6:.4g} MPa"),
         ("exponent", f"{material.exponent:.4g}"),
@@ -269,7 +269,7 @@ def power_law_html(material: PowerLaw) -> str:
 
 
 def tabulated_html(material: TabulatedModulus) -> str:
-    """The page of a tabulated modulus: its curve, and where it is known."""
+    """A tabulated modulus in a notebook: its curve, and where it is known."""
     low, high = float(material.frequency[0]), float(material.frequency[-1])
     facts = [("points", f"{material.frequency.size}, {low:.4g} to {high:.4g} Hz"), *_stated(material)]
     picture = _modulus(material, low, high, (low, high))
@@ -281,7 +281,7 @@ def _at(material: Any) -> str:
 
 
 def elastic_html(material: Elastic) -> str:
-    """The page of a metal: its constants."""
+    """A metal in a notebook: its constants."""
     facts = [
         ("E", f"{material.E / 1e9:.4g} GPa"),
         ("ν", f"{material.nu:.4g}"),
@@ -321,7 +321,7 @@ def master_html(curve: MasterCurve) -> str:
 
 
 def equilibrium_html(eq: Equilibrium) -> str:
-    """The page of an equilibrium: how far places move, and what the bearings bear."""
+    """An equilibrium in a notebook: how far places move, and what the bearings bear."""
     layers: list[tuple[str, ...]] = []
     if eq.system.layers:
         found = static_summary(eq)

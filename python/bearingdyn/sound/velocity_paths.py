@@ -98,7 +98,7 @@ def velocity_paths(
 def whole_motion(
     state: Linear, frequency: Array, given: Input, speed: float, progress: Progress | bool | None = None
 ) -> Complex:
-    """Motion (f, n) of the whole system under a unit force, or a unit acceleration of the ground.
+    """For velocity paths, the motion (f, n) of the whole system under a unit force or ground acceleration.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def _velocity(term: PartTerm, motion: Complex, omega: Array, given: Input) -> Co
 
 
 def real_modes(state: Linear, frequency: float) -> tuple[Array, Array]:
-    """Real modes at the frequency whose moduli the layers and bearings have, Hz: frequencies and shapes.
+    """For velocity paths by mode, real modes at the frequency whose moduli layers and bearings have, Hz.
 
     Parameters
     ----------

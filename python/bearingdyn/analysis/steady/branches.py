@@ -161,7 +161,7 @@ SAMPLES, PER_LINE = 96, 4
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """One point on one of the branches of a map: speed, motion and stability."""
+    """Branches' marks: one point on one of them, its speed, motion and stability."""
 
     point: Point
     stability: Stability | None
@@ -329,7 +329,7 @@ class Tracer:
 
 
 def divided(balance: Balance, passages: int) -> Balance:
-    """For branches of doubled period: the balance of what repeats after so many passages only."""
+    """Branches of doubled period: the balance of what repeats after so many passages only."""
     if passages == 1:
         return balance
     bases = balance.bases

@@ -208,7 +208,7 @@ def _found(
 def stability_of(
     problem: Problem, balance: Balance, found: Found, model: FirstOrder | None = None, samples: int = SAMPLES
 ) -> Stability | None:
-    """For `steady_state`: the multipliers of a motion with one base; None for several."""
+    """Steady state of one base: its multipliers; None for several bases."""
     if len(problem.bases.bases) != 1 or not problem.system.bearings:
         return None
     model = model or first_order(problem, balance)
@@ -223,7 +223,7 @@ def stability_of(
 
 
 def first_order(problem: Problem, balance: Balance) -> FirstOrder:
-    """For `steady_state`: the structure in first order, as stability needs it, up to the balance's speed."""
+    """In a steady state's analysis, the structure in first order, up to the balance's speed."""
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))

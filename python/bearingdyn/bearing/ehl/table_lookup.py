@@ -130,13 +130,13 @@ def lookup(M: float, L: float, D: float) -> Lookup:
 
 
 def nearest_in_table(L: float, D: float) -> tuple[float, float]:
-    """The L and D of the table that are nearest to those looked up."""
+    """Table lookup's nearest: the L and D of the table nearest to those asked."""
     _, (L_low, L_high), (D_low, D_high) = _pieces().ends
     return min(max(L, L_low), L_high), min(max(D, math.exp(D_low)), math.exp(D_high))
 
 
 def table_ends(D: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Ends of what can be looked up in the table for D: least and largest M, least and largest L."""
+    """Table lookup's range at D: least and largest M, least and largest L."""
     return loads_between(D), _pieces().ends[1]
 
 
