@@ -125,7 +125,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
         /* the bearings, on their own few numbers */
         if (model->n_bearings > 0)
             bd_turn_bearings(model, work);
-        bd_echoes_trial(model, work, &state);
+        if (model->n_echoes > 0)
+            bd_echoes_trial(model, work, &state);
         report->status = solve_step(model, work, &state, report);
         if (report->status != BD_OK)
             break;
@@ -137,7 +138,8 @@ long long bd_march(const bd_model *model, const bd_scheme *scheme, bd_work *work
             break;
         }
         state.clock.steps++;
-        bd_echoes_commit(model, work, &state);
+        if (model->n_echoes > 0)
+            bd_echoes_commit(model, work, &state);
         if (model->n_softening > 0)
             bd_softening_step(model, work, &state);
         bd_count_open_sides(model, work, t, report);
