@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 _OWN = __name__.partition(".")[0]
+# of this thread (or task), the kinds that `untold` holds back
+_UNTOLD: ContextVar[tuple[type[Warning], ...]] = ContextVar("_UNTOLD", default=())
 
 
 class Notice(UserWarning):
@@ -448,11 +453,26 @@ class UnfinishedLine(Notice):
     """
 
 
+@contextmanager
+def untold(*kinds: type[Notice]) -> Iterator[None]:
+    """Within, in this thread alone, notices of these kinds are not issued: what they would say is told otherwise.
+
+    The filters of `warnings` belong to all threads at once, and changing them within one would silence others.
+    """
+    before = _UNTOLD.set((*_UNTOLD.get(), *kinds))
+    try:
+        yield
+    finally:
+        _UNTOLD.reset(before)
+
+
 def warn(text: str, category: type[Notice]) -> None:
     """Issue a notice at the nearest caller that is not of this package.
 
     The caller is known by its module's name, not its file: the `__init__` of a dataclass has no file.
     """
+    if issubclass(category, _UNTOLD.get()):
+        return
     level, frame = 1, sys._getframe()
     while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] == _OWN:
         level, frame = level + 1, frame.f_back

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
@@ -12,7 +11,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.application import Application
 from bearingdyn.checks import number, reals, require, whole
 from bearingdyn.material import Maxwell, normals
-from bearingdyn.notice import Notice
+from bearingdyn.notice import Notice, untold
 from bearingdyn.system import System, system_of
 from bearingdyn.types import Array
 
@@ -141,6 +140,5 @@ def response_band(
         Share of further draws that the band covers.
     """
     band_of(np.zeros((whole("uncertainty", n, 2), 1)), coverage)
-    with warnings.catch_warnings():  # the response itself has warned
-        warnings.simplefilter("ignore", Notice)
+    with untold(Notice):  # the response itself has warned
         return band_of(np.array([np.abs(response(s)) for s in drawn_sources(source, n)]), coverage)

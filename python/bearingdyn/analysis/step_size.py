@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.driving_periods import rhythms
 from bearingdyn.analysis.equilibrium import Equilibrium
-from bearingdyn.notice import CoarseStep, GrowingStep, OutsideBand, warn
+from bearingdyn.notice import CoarseStep, GrowingStep, OutsideBand, untold, warn
 from bearingdyn.system import System, natural
 from bearingdyn.types import Array
 
@@ -63,9 +62,8 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
     decay += 0.5 * np.einsum("ij,ij->j", z, eq.bearing_C @ z)
     for layer in system.layers:
         material = layer.material if layer.strain is None else layer.material.rest
-        with warnings.catch_warnings():
-            # all modes of the model are looked at, those far above the march's band too
-            warnings.simplefilter("ignore", OutsideBand)
+        # all modes of the model are looked at, those far above the march's band too
+        with untold(OutsideBand):
             loss = np.imag(np.asarray(material.complex_modulus(omega)))
         loss -= omega * getattr(material, "eta0", 0.0)
         decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)

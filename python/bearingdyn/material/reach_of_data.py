@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 from bearingdyn.material.low_end import SLACK, LowEnd
-from bearingdyn.notice import BeyondData, OutsideBand, warn
+from bearingdyn.notice import BeyondData, OutsideBand, untold, warn
 from bearingdyn.types import Array
 
 
@@ -93,8 +92,7 @@ def band_told_once(laws: Iterable[Any], omega: Array) -> Iterator[None]:
     """
     for law in {id(law): law for law in laws}.values():
         law.complex_modulus(omega)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideBand)
+    with untold(OutsideBand):
         yield
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -132,8 +131,7 @@ def _draw_model(ax: Axes, lower: Axes, curve: MasterCurve, maxwell: Maxwell) -> 
     if band is not None:
         low, high = min(low, band[0]), max(high, band[1])
     f = np.geomspace(low, high, 400)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideBand)  # it is drawn dashed
+    with untold(OutsideBand):  # it is drawn dashed
         modulus = maxwell.complex_modulus(2 * np.pi * f)
     if curve.mode == "tension":
         modulus = 9 * maxwell.K * modulus / (3 * maxwell.K + modulus)

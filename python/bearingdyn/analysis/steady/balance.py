@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
 from bearingdyn import core
+from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.analysis.steady.krylov import gmres
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines, body_angles, load_lines
@@ -26,6 +27,9 @@ from bearingdyn.types import Array, Complex
 TINY = 1e-15
 # residual below which only round-off is left
 ROUND_OFF = 1e-14
+# samples for each line at which Newton's iteration asks tangents, at least: a product of tangents and a change
+# on the lines then folds only tangents of more than five times the highest line onto them
+TANGENT_SAMPLES = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,7 +216,7 @@ class _Packed:
         return self.fields
 
 
-@lru_cache(maxsize=8)
+@kept_by_system
 def packed(system: System) -> tuple[_Packed, ...]:
     """Kernels of the bearings for a harmonic balance, packed once for many calls."""
     return tuple(_Packed(term.kernel().packed()) for term in system.bearings)
@@ -227,6 +231,7 @@ class Linearised:
     """
 
     balance: Balance
+    lines: Lines
     tangents: tuple[Array, ...]
     inverse: Complex = field(repr=False)
     R: Complex = field(repr=False)
@@ -239,22 +244,25 @@ class Linearised:
         m = len(reference.K)
         P = np.eye(m) + balance.R @ off
         inverse = np.linalg.inv(P)
+        lines, stride = _sparser(balance.lines)
         tangents = tuple(
-            np.concatenate([a.K - a.K.mean(axis=0), a.C - a.C.mean(axis=0)], axis=2) for a in pressed.bearings
+            np.concatenate([a.K[::stride], a.C[::stride]], axis=2)
+            - np.concatenate([pressed.K[own, own], pressed.C[own, own]], axis=1)
+            for own, a in zip(balance.slots, pressed.bearings, strict=True)
         )
         # P⁻¹ (I + R (T − Z)) = I + P⁻¹ R (T − T̄)
-        return cls(balance, tangents, np.asarray(inverse), np.asarray(inverse @ balance.R))
+        return cls(balance, lines, tangents, np.asarray(inverse), np.asarray(inverse @ balance.R))
 
     def forced(self, z: Complex) -> Complex:
         """What the tangents less their mean make of a change z (L, m)."""
         b = self.balance
         m = z.shape[1]
-        signal = b.lines.signals(np.hstack([z, b.rates(z)]))
-        g = np.zeros((b.lines.samples, m))
+        signal = self.lines.signals(np.hstack([z, b.rates(z)]))
+        g = np.zeros((self.lines.samples, m))
         for own, T in zip(b.slots, self.tangents, strict=True):
             both = np.concatenate([signal[:, own], signal[:, m + own.start : m + own.stop]], axis=1)
             g[:, own] = np.einsum("nij,nj->ni", T, both)
-        return b.lines.amplitudes(g)
+        return self.lines.amplitudes(g)
 
     def product(self, vector: Array) -> Array:
         """P⁻¹ J times a vector."""
@@ -269,6 +277,16 @@ class Linearised:
         """J⁻¹ residual (L, m), and what the solve left, relative."""
         x, left = gmres(self.product, self.prepared(residual), tolerance)
         return unflat(x, self.balance), left
+
+
+def _sparser(lines: Lines) -> tuple[Lines, int]:
+    """Lines of one base on every so manieth of their samples, for tangents, whose errors cost no digits."""
+    count = TANGENT_SAMPLES * lines.count
+    stride = next(
+        (s for s in range(lines.samples // count, 1, -1) if lines.samples % s == 0 and lines.index.shape[1] == 1),
+        1,
+    )
+    return (lines if stride == 1 else Lines(lines.index, lines.steps, lines.samples // stride)), stride
 
 
 def flat(z: Complex) -> Array:

@@ -74,13 +74,14 @@ def pushed(balance: Balance, pressed: Pressed) -> bool:
     return loaded or any(force.any() for _, force in balance.loads)
 
 
-def warn_of_motions(motions: Iterable[tuple[Balance, Complex, str]]) -> None:
+def warn_of_motions(motions: Iterable[tuple[Balance, Complex, str, Pressed | None]]) -> None:
     """Warn of what bearings have borne along steady motions, once for each bearing.
 
     Parameters
     ----------
     motions
-        Balance, amplitudes (L, m), m, and which motion it is, such as "at 100 rad/s".
+        Balance, amplitudes (L, m), m, which motion it is, such as "at 100 rad/s", and what the balls do
+        along it, if that is known.
 
     Warns
     -----
@@ -92,8 +93,8 @@ def warn_of_motions(motions: Iterable[tuple[Balance, Complex, str]]) -> None:
         Where no ball is pressed along a motion, and no load acts.
     """
     worst: dict[str, _Worst] = {}
-    for balance, z, where in motions:
-        pressed = balance.press(z, tangents=False)
+    for balance, z, where, known in motions:
+        pressed = known or balance.press(z, tangents=False)
         if not pushed(balance, pressed):
             warn(
                 f"nothing pushes {where}: no ball is pressed along the motion, and no load acts; every "

@@ -26,6 +26,7 @@ from bearingdyn.analysis.steady.stability import (
 )
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
+from bearingdyn.notice import OutsideBand, untold
 from bearingdyn.types import Complex
 
 # of a motion, by which another at the same parameter must differ to be another
@@ -415,13 +416,15 @@ def done(
     task: Task, job: Job, others: Sequence[Branch], flip: tuple[int, Mark] | None = None, tell: Tell = None
 ) -> list[Branch]:
     """Branches that one job finds and that are not known from others."""
-    if job.kind == "sweep":
-        return _sweep(task, others, job, tell)
-    if job.kind == "state":
-        return _state(task, others, job, tell)
-    assert flip is not None
-    made = Tracer(task, flip[0], others, tell).doubled(flip[1])
-    return [] if made is None or _same_start(made, others) else [made]
+    # what the laws are asked beyond their bands, the map has told; in a worker's own thread it would be told again
+    with untold(OutsideBand):
+        if job.kind == "sweep":
+            return _sweep(task, others, job, tell)
+        if job.kind == "state":
+            return _state(task, others, job, tell)
+        assert flip is not None
+        made = Tracer(task, flip[0], others, tell).doubled(flip[1])
+        return [] if made is None or _same_start(made, others) else [made]
 
 
 def _state(task: Task, others: Sequence[Branch], job: Job, tell: Tell) -> list[Branch]:

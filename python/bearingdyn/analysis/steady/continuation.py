@@ -25,7 +25,7 @@ SLOPE = 1e-6
 CORRECTIONS, WANTED = 16, 9
 # largest turn of the tangent in a step, rad: beyond it the step is taken anew at half the length
 LARGEST_TURN = 0.5
-# of a motion's size, by which a step may change it where the parameter hardly moves
+# of a motion, or of the size of the first, by which a step may change it where the parameter hardly moves
 LONGEST_MOVE = 0.2
 # of a step, by which the corrector may move its point: beyond it another branch was met
 LARGEST_CORRECTION = 0.3
@@ -284,11 +284,15 @@ def follow(curve: Curve, start: Point, low: float, high: float, longest: float, 
     point = start
     bend: Array | None = None
     for _ in range(most):
+        own = False
         while True:
             turning = 0.0 if bend is None else length * float(np.linalg.norm(bend))
             new = curve.step(point, length, bend=bend if turning <= HARD_TURN else None)
             if new is not None and curve.turn(point, new) <= LARGEST_TURN:
                 break
+            if not own:
+                # a tangent by a neighbour's slope may point past the curve, and no shorter step mends that
+                point, bend, own = curve.with_tangent(point, point.tangent, point.slope), None, True
             length *= 0.5
             if length < SHORTEST * biggest:
                 return
@@ -301,7 +305,9 @@ def follow(curve: Curve, start: Point, low: float, high: float, longest: float, 
         wish = 1.5 if new.iterations < WANTED and turned < EASY_TURN else 1.0
         if new.iterations > WANTED + 2 or turned > HARD_TURN:
             wish = 0.6
-        length = min(max(biggest, min(LONGEST_MOVE, biggest / max(abs(point.slope), 1e-12))), wish * length)
+        moving = max(1.0, float(np.linalg.norm(point.z[1:])) / curve.size)
+        most_moved = min(LONGEST_MOVE * moving, biggest / max(abs(point.slope), 1e-12))
+        length = min(max(biggest, most_moved), wish * length)
 
 
 def locate(

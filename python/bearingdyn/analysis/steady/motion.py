@@ -36,14 +36,12 @@ class Motion:
     def x(self) -> Complex:
         """Amplitudes (L, n) of the coordinates."""
         b = self.balance
-        rows = np.eye(b.system.n)
-        B = b.receptances.B
         h = b.excess(self.found.z, self.found.pressed.g)
-        gives = b.receptances.answer(b.omega, b.speed, rows, B)
-        x = -(gives @ h[:, :, None])[:, :, 0]
-        for line, force in b.loads:
-            x[line] += b.receptances.answer(b.omega[line : line + 1], b.speed, rows, force[None])[0, :, 0]
-        return np.asarray(x)
+        force = -(h @ b.receptances.B)
+        for line, load in b.loads:
+            force[line] += load
+        z = b.driven - (b.R @ h[:, :, None])[:, :, 0]
+        return b.receptances.moved(b.omega, b.speed, force, z)
 
     @cached_property
     def films(self) -> Complex:
@@ -168,9 +166,9 @@ class Motion:
             return out
         last = b.lines.count - 1
         count = min(BEYOND, b.lines.samples // 2 - 1 - last)
-        more = Lines(np.arange(last + count + 1)[:, None], b.lines.steps, b.lines.samples * FINER)
+        more = Lines(np.arange(last + count + 1)[:, None], b.lines.steps, b.lines.samples)
         g = np.zeros((more.samples, len(self.found.z[0])))
-        for own, along in zip(b.slots, self.fine.bearings, strict=True):
+        for own, along in zip(b.slots, self.found.pressed.bearings, strict=True):
             g[:, own] = along.g
         force = more.amplitudes(g)[last + 1 :]
         omega = np.arange(last + 1.0, last + count + 1.0) * float(b.bases.frequencies(b.speed)[0])

@@ -11,20 +11,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from bearingdyn.analysis.linearised import Linear
+from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.material import Maxwell
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
 # digits that joining floating blocks may cost, as in csrc/harmonic.c
 LARGEST_JOINT = 1e6
+# of the largest amplitude, by which a motion found block by block may miss the bearings' coefficients
+LARGEST_MISS = 1e-10
 # of a block's answer, by which its poles may miss it: else it is solved frequency by frequency
 POLES_AGREE = 1e-10
+# reference stiffnesses of a system of which D at 0 Hz is kept
+REFERENCES = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +87,10 @@ class Poles:
         at = 1.0 / (1j * omega[:, None] - self.values)
         return np.asarray((at @ residues).reshape(len(omega), len(rows), forces.shape[1]))
 
+    def moved(self, omega: Array, forces: Complex) -> Complex:
+        """D⁻¹ forces (f, n), one of each ω."""
+        return np.asarray(((forces @ self.left.T) / (1j * omega[:, None] - self.values)) @ self.right.T)
+
 
 def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
     """Receptances' inverse, the dynamic stiffness D (f, n, n) of a system without its bearings."""
@@ -133,15 +142,45 @@ class Block:
         right = np.broadcast_to(forces, (len(omega), *forces.shape)).astype(np.complex128)
         return np.asarray(rows @ np.linalg.solve(D, right))
 
+    def moved(self, omega: Array, speed: float, forces: Complex) -> Complex:
+        """D⁻¹ forces (f, n), one of each ω."""
+        if self.poles is not None:
+            return self.poles.moved(omega, forces)
+        D = dynamic_stiffness(self.system, omega, speed)
+        return np.asarray(np.linalg.solve(D, forces[:, :, None])[:, :, 0])
 
-@lru_cache(maxsize=4)
-def taken_apart(system: System) -> tuple[System, Array, tuple[Block, ...]]:
-    """For receptances at many speeds, a system once in its modes, x = T q, T and its blocks."""
+
+@dataclass(frozen=True, eq=False)
+class Apart:
+    """For receptances at many speeds, a system in its modes, x = T q, and its blocks.
+
+    Parameters
+    ----------
+    modal
+        The system in modes, or None where it is left in its own coordinates.
+    T
+        (n, n).
+    blocks
+        The blocks.
+    at_rest
+        By the bytes of a reference stiffness, D (n, n) at 0 Hz with it.
+    """
+
+    modal: System | None
+    T: Array
+    blocks: tuple[Block, ...]
+    at_rest: dict[bytes, Array] = field(default_factory=dict)
+
+
+@kept_by_system
+def taken_apart(system: System) -> Apart:
+    """Take a system apart for its receptances, once."""
     if any(not isinstance(t.material, Maxwell) for t in system.layers):
-        modal, T = system, np.eye(system.n)
-    else:
-        modal, T = system.modal()
-    return modal, T, tuple(Block.of(modal, index) for index in modal.blocks())
+        return Apart(
+            None, np.eye(system.n), tuple(Block.of(system, index) for index in system.blocks())
+        )
+    modal, T = system.modal()
+    return Apart(modal, T, tuple(Block.of(modal, index) for index in modal.blocks()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,12 +210,13 @@ class Receptances:
     @property
     def blocks(self) -> tuple[Block, ...]:
         """The blocks of the structure."""
-        return taken_apart(self.system)[2]
+        return taken_apart(self.system).blocks
 
     @property
     def modal(self) -> tuple[System, Array]:
         """The system in modes of its own, x = T q, in which blocks are well scaled."""
-        return taken_apart(self.system)[:2]
+        apart = taken_apart(self.system)
+        return apart.modal or self.system, apart.T
 
     def reference(self, omega: Array) -> Complex:
         """Z (f, m, m) = K + iωC of the reference, with what lubricated balls add."""
@@ -203,9 +243,47 @@ class Receptances:
             out[~rest] = self._joined(omega[~rest], speed, rows, forces)
         return out
 
+    def moved(self, omega: Array, speed: float, force: Complex, z: Complex) -> Complex:
+        """Motions x (f, n) with the reference on, under forces (f, n), one of each ω.
+
+        The bearings' coefficients z (f, m) of these motions are known; where x, rounded, would miss them, it
+        is found from all coordinates at once.
+        """
+        out = np.zeros((len(omega), self.system.n), dtype=np.complex128)
+        rest = omega == 0.0
+        if rest.any():
+            turned = self._at_rest + speed * self.system.N if self.system.N.any() else self._at_rest
+            out[rest] = np.linalg.solve(turned, force[rest].T).T
+        moving = np.flatnonzero(~rest)
+        if not moving.size:
+            return out
+        _, T = self.modal
+        held = (self.reference(omega[moving]) @ z[moving][:, :, None])[:, :, 0]
+        driven = (force[moving] - held @ self.B) @ T
+        q = np.zeros_like(driven)
+        for block in self.blocks:
+            own = driven[:, block.index]
+            if own.any():
+                q[:, block.index] = block.moved(omega[moving], speed, own)
+        out[moving] = q @ T.T
+        missed = np.abs(out[moving] @ self.B.T - z[moving]).max(axis=1, initial=0.0)
+        lost = moving[~(missed <= LARGEST_MISS * np.abs(z).max(initial=0.0))]
+        for k in lost:
+            rows = np.eye(self.system.n)
+            out[k] = self._whole(omega[k : k + 1], speed, rows, force[k : k + 1])[0, :, 0]
+        return out
+
     @cached_property
     def _at_rest(self) -> Array:
         """D (n, n) at 0 Hz with the reference on, and springs on free motions that no bearing feels."""
+        known, key = taken_apart(self.system).at_rest, self.K.tobytes()
+        if key not in known:
+            if len(known) >= REFERENCES:
+                known.clear()
+            known[key] = self._found_at_rest()
+        return known[key]
+
+    def _found_at_rest(self) -> Array:
         linear = Linear(self.system, self.K, self.C)
         moduli = np.array(
             [np.asarray(t.material.complex_modulus(np.zeros(1)))[0] for t in self.system.layers]

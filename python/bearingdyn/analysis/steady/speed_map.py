@@ -13,7 +13,7 @@ import numpy as np
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.march_state import system_hash
 from bearingdyn.analysis.recordable_channels import channel_of
-from bearingdyn.analysis.steady.balance import Balance
+from bearingdyn.analysis.steady.balance import Balance, Pressed
 from bearingdyn.analysis.steady.borne import PUSH, pushed, warn_of_motions
 from bearingdyn.analysis.steady.branch_files import BranchFiles
 from bearingdyn.analysis.steady.branches import (
@@ -341,14 +341,14 @@ def _known(branch: Branch, others: Sequence[Branch]) -> bool:
     return bool(points) and hits > 0.9 * len(points)
 
 
-def _motions(task: Task, branches: Sequence[Branch], where: str) -> Iterator[tuple[Balance, Complex, str]]:
+def _motions(task: Task, branches: Sequence[Branch], where: str) -> Iterator[tuple[Balance, Complex, str, Pressed]]:
     """Every motion found, with its balance and the words for its place."""
     for branch in branches:
         lines = task.lines(branch.passages)
         for mark in branch.marks:
             if mark.event != "failed":
                 balance = divided(task.at(mark.point.parameter, lines), branch.passages)
-                yield balance, mark.point.z, where.format(mark.point.parameter)
+                yield balance, mark.point.z, where.format(mark.point.parameter), mark.point.pressed
 
 
 def _about(task: Task) -> dict[str, object]:

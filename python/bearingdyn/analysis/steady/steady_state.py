@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -21,7 +20,7 @@ from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability,
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
-from bearingdyn.notice import CutHarmonics, OutsideBand, warn
+from bearingdyn.notice import CutHarmonics, OutsideBand, untold, warn
 from bearingdyn.system import Contacts, System
 from bearingdyn.units import takes
 
@@ -162,20 +161,19 @@ def steady_state(
     problem = Problem.of(source, subharmonic, contacts)
     problem.system.check_speed(speed)
     channels = [channel_of(problem.system, name) for name in record]
-    with warnings.catch_warnings():
-        # of the lines that are tried, few move a layer; those are told of below
-        warnings.simplefilter("ignore", OutsideBand)
+    # of the lines that are tried, few move a layer; those are told of below
+    with untold(OutsideBand):
         balance, found, left = _found(problem, speed, harmonics, subharmonic, start, tolerance)
         state = stability_of(problem, balance, found) if stability and found.converged else None
         several = len(problem.bases.bases) > 1
         asked = {"harmonics": harmonics or (SEVERAL if several else HARMONICS), "subharmonic": subharmonic}
-        result = _dataset(problem, balance, found, record, channels, state, {**asked, "lines_left": left})
-        moved = Motion(balance, found).x
+        motion = Motion(balance, found)
+        result = _dataset(problem, motion, record, channels, state, {**asked, "lines_left": left})
     if not found.converged:
         raise _failed(problem, balance, found, result)
     warn_of_cut(result, f"the steady motion at {speed:g} rad/s", result.attrs["harmonics"])
-    warn_of_band(problem.system, balance.omega, moved)
-    warn_of_motions([(balance, found.z, f"in the steady motion at {speed:g} rad/s")])
+    warn_of_band(problem.system, balance.omega, motion.x)
+    warn_of_motions([(balance, found.z, f"in the steady motion at {speed:g} rad/s", found.pressed)])
     return result
 
 
@@ -272,8 +270,7 @@ def _failed(problem: Problem, balance: Balance, found: Found, result: xarray.Dat
 
 def _dataset(
     problem: Problem,
-    balance: Balance,
-    found: Found,
+    motion: Motion,
     record: Sequence[str],
     channels: Sequence[tuple[tuple[int, object, int, int], str]],
     state: Stability | None,
@@ -281,7 +278,7 @@ def _dataset(
 ) -> xarray.Dataset:
     from bearingdyn.results import dataset, inputs_of
 
-    motion = Motion(balance, found)
+    balance, found = motion.balance, motion.found
     asked = [c for c, _ in channels]
     amplitude = motion.amplitudes(asked)  # type: ignore[arg-type]
     times = motion.times()
