@@ -290,7 +290,7 @@ def layer_names(system: System) -> list[str]:
 
 
 def memory_of(system: System, drive: float | tuple[Array, Array], memory: float | None) -> float | None:
-    """Time, s, over which layers that soften remember their amplitude in a march; None where none does.
+    """Softening in a march: time, s, over which layers remember their amplitude; None where none softens.
 
     Unless given, it is five periods of the slowest thing that moves the system: the shaft at its slowest
     speed, and harmonic loads.

@@ -220,7 +220,7 @@ def packed(system: System) -> tuple[_Packed, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Balance of harmonics, linearised at a motion: P⁻¹ J times vectors; P has the mean tangent alone.
+    """Harmonic balance, linearised at a motion: P⁻¹ J times vectors; P has the mean tangent alone.
 
     Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's
     imaginary part is kept at zero.
