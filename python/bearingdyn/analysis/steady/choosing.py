@@ -74,7 +74,7 @@ def candidates(problem: Problem, speed: float, harmonics: int) -> Candidates:
 
 @dataclass(frozen=True, eq=False)
 class Weigher:
-    """Weighs lines for choosing: how far a force on each would move the bearings, interpolated."""
+    """Choosing among lines: how far a force on each would move the bearings, interpolated."""
 
     omega: Array
     answer: Array

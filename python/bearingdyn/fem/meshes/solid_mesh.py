@@ -35,7 +35,7 @@ MIDDLE = 0.3  # a middle node may lie this far from the middle of its edge, in l
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceSamples:
-    """A surface of a solid mesh by its integration points: Σ weights·f is ∫ f dA.
+    """Solid mesh, one surface of it by integration points: Σ weights·f is ∫ f dA.
 
     Parameters
     ----------
