@@ -214,7 +214,7 @@ class _Packed:
 
 @lru_cache(maxsize=8)
 def packed(system: System) -> tuple[_Packed, ...]:
-    """Kernels of the bearings for a harmonic balance, packed once for many calls."""
+    """Harmonic balance's kernels of the bearings, packed once for many calls."""
     return tuple(_Packed(term.kernel().packed()) for term in system.bearings)
 
 
