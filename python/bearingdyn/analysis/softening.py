@@ -281,7 +281,7 @@ def moduli_of(system: System, modulus: Complex) -> dict[tuple[str, int], Complex
 
 
 def layer_names(system: System) -> list[str]:
-    """Names, in results of softening, of the layers: the part's, numbered where it has several."""
+    """Softening results' names of layers: the part's, numbered where it has several."""
     parts = [system.layers[k].part for k in softening_layers(system)]
     return [
         name if parts.count(name) == 1 else f"{name} {parts[: k + 1].count(name)}"

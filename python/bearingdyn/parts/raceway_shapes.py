@@ -104,7 +104,7 @@ class Order:
 
 
 def felt(D: Complex, L: Array, faces: int) -> Complex:
-    """What raceway shapes make felt: reactions of the faces, motions of the ports, (faces + ports) square.
+    """For choosing raceway shapes: reactions of faces and motions of ports, (faces + ports) square.
 
     Under unit motions of the faces and unit loads on the ports, of a small model of dynamic stiffness D and
     ports L.

@@ -34,7 +34,7 @@ _Mark = TypeVar("_Mark", bound=_Marked)
 
 
 def once(marks: Iterable[_Mark], tolerance: float) -> Iterator[_Mark]:
-    """Events each once: without those that repeat the last one, found before a point and behind it.
+    """Accuracy of events: each once, without those that repeat the last one, found before a point and behind it.
 
     Parameters
     ----------
