@@ -455,9 +455,9 @@ class UnfinishedLine(Notice):
 
 @contextmanager
 def untold(*kinds: type[Notice]) -> Iterator[None]:
-    """Within, in this thread alone, notices of these kinds are not issued: what they would say is told otherwise.
+    """Hold notices of these kinds back, in this thread alone: what they would say is told otherwise.
 
-    The filters of `warnings` belong to all threads at once, and changing them within one would silence others.
+    The filters of `warnings` belong to all threads at once: one that changes them silences others.
     """
     before = _UNTOLD.set((*_UNTOLD.get(), *kinds))
     try:

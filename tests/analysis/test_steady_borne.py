@@ -108,7 +108,7 @@ def test_a_steady_motion_onto_the_open_side_is_warned_of():
     (axial,) = np.flatnonzero((kernel.axial == 1) & (kernel.order == 0))
     z[1, axial] = -0.5e-3
     with pytest.warns(OpenSideWarning, match="bearing 'front': at 100 rad/s, for 0.* of the time"):
-        warn_of_motions([(problem.balance(lines, 100.0), z, "at 100 rad/s")])
+        warn_of_motions([(problem.balance(lines, 100.0), z, "at 100 rad/s", None)])
 
 
 def test_only_lines_that_move_a_layer_are_told_of_outside_its_band():

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.material import DMAData, MasterCurve, Maxwell, OutsideBand, ShiftTable
+from bearingdyn.notice import untold
 from bearingdyn.plot.arguments import figure, maybe, one
 from bearingdyn.plot.frame import COLOURS, finish, frame_log, halve, new_axes, style
 from bearingdyn.plot.temperature_colours import (

@@ -27,8 +27,8 @@ from bearingdyn.types import Array, Complex
 TINY = 1e-15
 # residual below which only round-off is left
 ROUND_OFF = 1e-14
-# samples for each line at which Newton's iteration asks tangents, at least: a product of tangents and a change
-# on the lines then folds only tangents of more than five times the highest line onto them
+# samples for each line at which Newton's iteration asks tangents, at least: of a product of tangents and a
+# change on the lines, only tangents of more than five times the highest line then fold onto them
 TANGENT_SAMPLES = 6
 
 
@@ -50,6 +50,11 @@ class Pressed:
     g: Complex
     K: Array
     C: Array
+
+    def without_tangents(self) -> Pressed:
+        """The same, to be kept of many motions: the bearings' tangents sample by sample are most of it."""
+        none = np.zeros((0, 0, 0))
+        return replace(self, bearings=tuple(replace(a, K=none, C=none) for a in self.bearings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,9 +206,9 @@ class Balance:
         h = self.excess(z, pressed.g)
         return np.asarray(z + (self.R @ h[:, :, None])[:, :, 0] - self.driven)
 
-    def linearised(self, pressed: Pressed) -> Linearised:
-        """The derivative of the residual, preconditioned."""
-        return Linearised.of(self, pressed)
+    def linearised(self, pressed: Pressed, sparse: bool = False) -> Linearised:
+        """The derivative of the residual, preconditioned; or nearly it, from fewer samples."""
+        return Linearised.of(self, pressed, *(_sparser(self.lines) if sparse else (self.lines, 1)))
 
 
 @dataclass(frozen=True)
@@ -237,14 +242,13 @@ class Linearised:
     R: Complex = field(repr=False)
 
     @classmethod
-    def of(cls, balance: Balance, pressed: Pressed) -> Linearised:
+    def of(cls, balance: Balance, pressed: Pressed, lines: Lines, stride: int) -> Linearised:
         reference = balance.receptances
         omega = balance.omega[:, None, None]
         off = (pressed.K - reference.K) + 1j * omega * (pressed.C - reference.C)
         m = len(reference.K)
         P = np.eye(m) + balance.R @ off
         inverse = np.linalg.inv(P)
-        lines, stride = _sparser(balance.lines)
         tangents = tuple(
             np.concatenate([a.K[::stride], a.C[::stride]], axis=2)
             - np.concatenate([pressed.K[own, own], pressed.C[own, own]], axis=1)
@@ -280,13 +284,12 @@ class Linearised:
 
 
 def _sparser(lines: Lines) -> tuple[Lines, int]:
-    """Lines of one base on every so manieth of their samples, for tangents, whose errors cost no digits."""
-    count = TANGENT_SAMPLES * lines.count
-    stride = next(
-        (s for s in range(lines.samples // count, 1, -1) if lines.samples % s == 0 and lines.index.shape[1] == 1),
-        1,
-    )
-    return (lines if stride == 1 else Lines(lines.index, lines.steps, lines.samples // stride)), stride
+    """Lines of one base on every so manieth of their samples: for tangents, whose errors cost no digits."""
+    if lines.index.shape[1] != 1:
+        return lines, 1
+    most = lines.samples // (TANGENT_SAMPLES * lines.count)
+    stride = next((s for s in range(most, 1, -1) if lines.samples % s == 0), 1)
+    return Lines(lines.index, lines.steps, lines.samples // stride), stride
 
 
 def flat(z: Complex) -> Array:
@@ -357,7 +360,7 @@ def newton(
             return Found(z, pressed, size, line, iteration, True)
         # as exact as the quadratic convergence can use, no more
         forcing = min(1e-2, max(0.03 * size, 0.1 * tolerance / size))
-        step, _ = balance.linearised(pressed).solve(r, forcing)
+        step, _ = balance.linearised(pressed, sparse=True).solve(r, forcing)
         share = 1.0
         while True:
             trial = z - share * step

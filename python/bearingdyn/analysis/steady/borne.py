@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from bearingdyn.types import Array, Complex
 
 COUNTS = 0.01
 """Of the largest displacement or velocity of a layer: lines below are not told of."""
+Borne: TypeAlias = tuple[Balance, Complex, str, Pressed | None]
+"""A motion that was borne: its balance, amplitudes, which it is, and what the balls do along it if known."""
 PUSH = "Add what pushes (app.gravity, app.load, app.unbalance)"
 
 
@@ -74,7 +77,7 @@ def pushed(balance: Balance, pressed: Pressed) -> bool:
     return loaded or any(force.any() for _, force in balance.loads)
 
 
-def warn_of_motions(motions: Iterable[tuple[Balance, Complex, str, Pressed | None]]) -> None:
+def warn_of_motions(motions: Iterable[Borne]) -> None:
     """Warn of what bearings have borne along steady motions, once for each bearing.
 
     Parameters

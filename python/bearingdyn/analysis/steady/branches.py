@@ -219,7 +219,8 @@ class Tracer:
         """A point with its stability and what moves."""
         balance = curve.at(point.parameter)
         state = self.stability(balance, point.z, fine)
-        return Mark(point, state, balance.moved(point.z, point.pressed.g), event)
+        moved = balance.moved(point.z, point.pressed.g)
+        return Mark(replace(point, pressed=point.pressed.without_tangents()), state, moved, event)
 
     def stability(self, balance: Balance, z: Complex, fine: int = 1) -> Stability | None:
         """Multipliers, or None without bearings."""
@@ -416,7 +417,7 @@ def done(
     task: Task, job: Job, others: Sequence[Branch], flip: tuple[int, Mark] | None = None, tell: Tell = None
 ) -> list[Branch]:
     """Branches that one job finds and that are not known from others."""
-    # what the laws are asked beyond their bands, the map has told; in a worker's own thread it would be told again
+    # what laws are asked beyond their bands the map has told, and a worker's own thread knows nothing of that
     with untold(OutsideBand):
         if job.kind == "sweep":
             return _sweep(task, others, job, tell)

@@ -24,13 +24,13 @@ SLOPE = 1e-6
 # corrections of a point, and how many are wanted: more shorten the next step, fewer lengthen it
 CORRECTIONS, WANTED = 16, 9
 # largest turn of the tangent in a step, rad: beyond it the step is taken anew at half the length
-LARGEST_TURN = 0.5
+LARGEST_TURN = 0.7
 # of a motion, or of the size of the first, by which a step may change it where the parameter hardly moves
 LONGEST_MOVE = 0.2
 # of a step, by which the corrector may move its point: beyond it another branch was met
 LARGEST_CORRECTION = 0.3
 # turns below which the next step may be longer, and above which it is shorter
-EASY_TURN, HARD_TURN = 0.15, 0.3
+EASY_TURN, HARD_TURN = 0.25, 0.45
 # of the speed, within which receptances go straight on from one to the next correction
 NEAR = 1e-4
 # of the residual that a correction with an earlier derivative may leave, before the derivative is made anew
@@ -305,8 +305,10 @@ def follow(curve: Curve, start: Point, low: float, high: float, longest: float, 
         wish = 1.5 if new.iterations < WANTED and turned < EASY_TURN else 1.0
         if new.iterations > WANTED + 2 or turned > HARD_TURN:
             wish = 0.6
-        moving = max(1.0, float(np.linalg.norm(point.z[1:])) / curve.size)
-        most_moved = min(LONGEST_MOVE * moving, biggest / max(abs(point.slope), 1e-12))
+        moving = float(np.linalg.norm(point.z[1:]))
+        # without bearings nothing moves, and size is 0
+        share = max(1.0, moving / curve.size) if moving else 1.0
+        most_moved = min(LONGEST_MOVE * share, biggest / max(abs(point.slope), 1e-12))
         length = min(max(biggest, most_moved), wish * length)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -36,12 +36,10 @@ class Motion:
     def x(self) -> Complex:
         """Amplitudes (L, n) of the coordinates."""
         b = self.balance
-        h = b.excess(self.found.z, self.found.pressed.g)
-        force = -(h @ b.receptances.B)
-        for line, load in b.loads:
-            force[line] += load
-        z = b.driven - (b.R @ h[:, :, None])[:, :, 0]
-        return b.receptances.moved(b.omega, b.speed, force, z)
+        n = b.system.n
+        if b.rows is None or len(b.rows) != n:
+            b = replace(b, rows=np.eye(n))
+        return b.moved(self.found.z, self.found.pressed.g)
 
     @cached_property
     def films(self) -> Complex:

@@ -13,8 +13,7 @@ import numpy as np
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.march_state import system_hash
 from bearingdyn.analysis.recordable_channels import channel_of
-from bearingdyn.analysis.steady.balance import Balance, Pressed
-from bearingdyn.analysis.steady.borne import PUSH, pushed, warn_of_motions
+from bearingdyn.analysis.steady.borne import PUSH, Borne, pushed, warn_of_motions
 from bearingdyn.analysis.steady.branch_files import BranchFiles
 from bearingdyn.analysis.steady.branches import (
     Branch,
@@ -37,14 +36,14 @@ from bearingdyn.checks import name_list, number, one_speed, require, vector, who
 from bearingdyn.material import band_told_once
 from bearingdyn.progress import Progress, told
 from bearingdyn.system import System
-from bearingdyn.types import Array, Complex
+from bearingdyn.types import Array
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
 
 # harmonics of a passage in a map, samples for each, points of a branch at most
-HARMONICS, PER, MOST = 24, 16, 1000
+HARMONICS, PER, MOST = 24, 16, 5000
 # of the range, to which events are located
 LOCATED = 1e-6
 # of a made application's number, over which slopes are taken: its parts are meshed and reduced anew
@@ -341,21 +340,23 @@ def _known(branch: Branch, others: Sequence[Branch]) -> bool:
     return bool(points) and hits > 0.9 * len(points)
 
 
-def _motions(task: Task, branches: Sequence[Branch], where: str) -> Iterator[tuple[Balance, Complex, str, Pressed]]:
+def _motions(task: Task, branches: Sequence[Branch], where: str) -> Iterator[Borne]:
     """Every motion found, with its balance and the words for its place."""
     for branch in branches:
         lines = task.lines(branch.passages)
         for mark in branch.marks:
             if mark.event != "failed":
                 balance = divided(task.at(mark.point.parameter, lines), branch.passages)
-                yield balance, mark.point.z, where.format(mark.point.parameter), mark.point.pressed
+                # of what a store holds only the motion is known
+                pressed = mark.point.pressed if mark.point.pressed.bearings else None
+                yield balance, mark.point.z, where.format(mark.point.parameter), pressed
 
 
 def _about(task: Task) -> dict[str, object]:
     """What tells one map from another."""
     ends = [task.family.at(p) for p in (task.low, task.high)]
     return {
-        "systems": [system_hash(problem.receptances.modal[0]) for problem, _ in ends],
+        "systems": [system_hash(problem.system) for problem, _ in ends],
         "speeds": [speed for _, speed in ends],
         "task": [task.places, task.low, task.high, task.longest, task.harmonics, task.per, task.most],
     }

@@ -28,8 +28,11 @@ from bearingdyn.material import Maxwell
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
-# modes above so many times the highest line that counts follow at once
-FOLLOWS = 1.5
+# modes above so many times the highest line that counts follow at once: a tangent of the harmonic k shakes
+# modes up to k/2 of the base by itself, so that those left out need tangents of twice the lines
+FOLLOWS = 1.0
+# the same of one motion by itself, whose multipliers may take longer
+FOLLOWS_ONE = 3.0
 # modes of a block that are kept however slowly it runs
 ALWAYS = 10
 # of a block's static flexibility, below which the bearings do not feel one of its poles
@@ -278,13 +281,11 @@ class Propagator:
         S[:, m:] = np.linalg.solve(np.eye(2 * m) + felt[:, :, m:], right)
         return S
 
-    def over(self, S: Array, U: Array) -> Array:
-        """U (n, k) after all steps."""
-        n = len(self.after)
-        both = np.concatenate([self.after, self.free])
+    def over(self, S: Array) -> Array:
+        """What all steps make of u (n, n)."""
+        U = np.eye(len(self.after))
         for s in S:
-            X = both @ U
-            U = X[:n] - self.W @ (s @ X[n:])
+            U = (self.after - self.W @ (s @ self.free)) @ U
         return U
 
     def along(self, S: Array, u: Array) -> Array:
@@ -437,7 +438,7 @@ def floquet(
     propagator = Propagator.of(model, speed, period / count, K0, C0)
     K, C = K - K0, C - C0
     S = propagator.steps(np.concatenate([K, K[:1]]), np.concatenate([C, C[:1]]))
-    once = propagator.over(S, np.eye(model.size))
+    once = propagator.over(S)
     values = np.asarray(np.linalg.eigvals(once), dtype=np.complex128)
     order = np.argsort(-np.abs(values))[:kept]
     return Floquet(Stability(values[order], period), once, propagator, S)
@@ -476,4 +477,4 @@ def first_order(problem: Problem, balance: Balance) -> FirstOrder:
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))
-    return FirstOrder.of(problem.system, 2.0 * FOLLOWS * highest, band, felt=ALL)
+    return FirstOrder.of(problem.system, FOLLOWS_ONE * highest, band, felt=ALL)

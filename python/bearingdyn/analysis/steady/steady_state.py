@@ -184,7 +184,8 @@ def _found(
     if len(problem.bases.bases) > 1:
         return balanced(problem, speed, harmonics or SEVERAL, tolerance, begun)
     lines = Lines.harmonics((harmonics or HARMONICS) * subharmonic)
-    balance = problem.balance(lines, speed)
+    # what all coordinates answer comes with what the bearings do
+    balance = problem.balance(lines, speed, np.eye(problem.system.n))
     if begun is not None:
         own = Lines(begun[0], lines.steps, lines.samples)
         z = own.moved(begun[1], lines, 1)
