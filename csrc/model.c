@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "partition.h"
-
 const char *bd_status_text(bd_status status)
 {
 #define BD_STATUS_TEXT(name, value, text)                                                          \
@@ -364,7 +362,7 @@ bd_model *bd_model_create(const bd_model_data *data, bd_status *status)
     *status = bd_model_check(data);
     if (*status != BD_OK)
         return NULL;
-    if (!bd_partition_find(data, &parts)) {
+    if (!bd_partition_create(data, &parts)) {
         *status = BD_NO_MEMORY;
         return NULL;
     }

@@ -3,22 +3,7 @@
 #define BD_MODEL_H
 
 #include "bearing.h"
-
-/* A run of indices of a padded vector, as the columns and as the rows of products. */
-typedef struct bd_span {
-    int first, n;  /* indices first ... first + n; n is 0 where there are none */
-    int row, rows; /* whole lanes of the vector, with them all */
-} bd_span;
-
-/* Coordinates that the linear structure or a layer joins. */
-typedef struct bd_block {
-    int n, padded;       /* coordinates, and the same in whole lanes */
-    int first;           /* in block order without padding: bd_model.order[first ... first + n) */
-    int offset;          /* in padded vectors */
-    int layer, n_layers; /* its layers are layer ... layer + n_layers of bd_model.layers */
-    int band, n_bands;   /* its coordinates are bands band ... band + n_bands of bd_model.bands */
-    size_t matrix;       /* of its n x n row-major matrices in M, C, G, K, N */
-} bd_block;
+#include "partition.h"
 
 typedef struct bd_layer {
     int source; /* index in the caller's list */

@@ -161,7 +161,7 @@ static void place_layers(bd_partition *parts, const bd_model_data *data, const i
     }
 }
 
-bool bd_partition_find(const bd_model_data *data, bd_partition *parts)
+bool bd_partition_create(const bd_model_data *data, bd_partition *parts)
 {
     const size_t n = (size_t)data->n, n_layers = (size_t)data->n_layers;
     *parts = (bd_partition){.memory = malloc(n * (sizeof(bd_block) + sizeof(bd_span)) +

@@ -1,4 +1,4 @@
-"""Bands of a layer: the orders of a ring, which do not couple, are taken one by one, and nothing changes by it."""
+"""Bands of a layer: the orders of a ring, which do not couple, are marched one by one, to the same end."""
 
 from __future__ import annotations
 
