@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 
 SECONDS, BYTES = 5.0, 1 << 30
-# a reader that asks for more and is refused says OSError, which would pass: it gets more, and what it takes counts
+# a refused request would come out as an OSError and pass: a reader gets more, and what it takes is counted
 LIMIT = 3 << 30
 SEED = 20261129
 # what people and broken programs write for a number

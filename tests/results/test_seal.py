@@ -1,4 +1,4 @@
-"""The seal of a saved result: damage that HDF5 reads as numbers is refused, other programs are not disturbed."""
+"""The seal of a saved result: damage that HDF5 reads as numbers is refused; other programs see none."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_flipped_bit_of_a_number_is_no_other_number(saved: Path) -> None:
 
 @pytest.mark.parametrize("tail", [20, 51, 52, 1500])
 def test_a_tail_of_zeros_is_no_number(saved: Path, tail: int) -> None:
-    """What a power cut leaves: the length is right, the last blocks are not; the seal itself may be among them."""
+    """What a power cut leaves: the length is right, the last blocks are not, the seal may be among them."""
     content = saved.read_bytes()
     saved.write_bytes(content[:-tail] + bytes(tail))
     with pytest.raises(ValueError, match="its content is not what was saved"):

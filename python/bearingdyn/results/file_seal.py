@@ -1,8 +1,8 @@
 """The seal at the end of a saved result: a digest of the file, so that a damaged one is refused, not read.
 
-HDF5 finds some damage itself, and reads other damage as numbers: a flipped bit, a stretch of zeros. The digest
-stands behind what HDF5 takes for the end of its file, where other programs do not look; one that writes into
-the file cuts the seal off, and leaves a file like any other.
+HDF5 finds some damage itself, and reads other damage as numbers: a flipped bit, a stretch of zeros. The
+digest stands behind what HDF5 takes for the end of its file, where other programs do not look; one that
+writes into the file cuts the seal off, and leaves a file like any other.
 """
 
 from __future__ import annotations

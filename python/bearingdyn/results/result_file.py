@@ -37,7 +37,8 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     results do.
 
     Behind the content stands its SHA-256, which `open_result` compares: a file damaged since is refused, not
-    read. Other programs can open the file: a complex number is stored along a last axis of two, real and imaginary.
+    read. Other programs can open the file: a complex number is stored along a last axis of two, real and
+    imaginary.
 
     Parameters
     ----------
