@@ -407,6 +407,16 @@ class OilAtOtherSpeed(Notice):
     """
 
 
+class StandingUnbalance(Notice):
+    """One of the notices: an unbalance is on a part that stands.
+
+    When: an application is joined in which some part turns (one with gyroscopic forces, what is connected to
+    it, a ring that turns), and an unbalance is on another, that no connection joins to these.
+
+    Remedy: the unbalance on the part that turns; or, where its part does turn, `rotating=True`.
+    """
+
+
 class ChangedFunction(Notice):
     """One of the notices: processes of a study computed another function than the one at hand.
 
