@@ -105,7 +105,7 @@ def test_kernel_and_twin_agree() -> None:
                 np.testing.assert_allclose(each, other, rtol=1e-9, atol=1e-12)
 
 
-def by_ode(ball: OneBall, mass: float, load: object, times: np.ndarray) -> np.ndarray:
+def by_ode(ball: OneBall, mass: float, load: object, times: np.ndarray, velocity: float = 0.0) -> np.ndarray:
     """δ − rest, m, at times from the mass and the echoes themselves, by an adaptive method of order 8."""
     film = ball.film
     rows = film.echoes
@@ -120,7 +120,7 @@ def by_ode(ball: OneBall, mass: float, load: object, times: np.ndarray) -> np.nd
         slope = -decay * q + b * y[1]
         return np.concatenate([[y[1], (load(t) - force) / mass], slope.real, slope.imag])  # type: ignore[operator]
 
-    start = np.concatenate([[ball.rest, 0.0], np.zeros(2 * n)])
+    start = np.concatenate([[ball.rest, velocity], np.zeros(2 * n)])
     found = scipy.integrate.solve_ivp(
         rates, (0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-11, atol=1e-17, max_step=times[0]
     )
@@ -147,6 +147,26 @@ def test_march_is_that_of_the_differential_equations(leaves: bool) -> None:
     assert errors[-1] < 1e-4
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     # a closing film has F ∝ s^1.5, which costs no order; the load's samples lie within steps
+    assert ((orders > 1.7) & (orders < 2.3)).all()
+
+
+def test_a_sudden_velocity_finds_films_that_had_settled() -> None:
+    """From a blow, second order in the step: the film remembers nothing of it when it begins."""
+    ball = OneBall.of(100.0, 10.0)
+    mass = ball.stiffness * ball.passage**2
+    velocity = 0.2 * ball.F / ball.stiffness / ball.passage
+    span = 8 * ball.passage
+
+    def load(t: float) -> float:
+        return ball.F
+
+    exact = by_ode(ball, mass, load, span * np.arange(1, 801) / 800, velocity)
+    errors = []
+    for steps in (200, 400, 800):
+        found, _ = ball.march(ball.film, mass, load, span / steps, steps, velocity)
+        errors.append(np.abs(found - exact[800 // steps - 1 :: 800 // steps]).max() / np.abs(found).max())
+    assert errors[-1] < 1e-4
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert ((orders > 1.7) & (orders < 2.3)).all()
 
 

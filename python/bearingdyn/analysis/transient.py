@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
@@ -242,7 +243,10 @@ def transient(
     elif motion is not None:
         from bearingdyn.analysis.steady import beginning
 
-        state = march.begun(model, beginning(source, motion, speed))
+        begun = beginning(source, motion, speed, contacts)
+        if contacts == "film" and isinstance(source, Equilibrium):  # about where its films let it rest
+            begun = replace(begun, x=begun.x + (march.x - source.x))
+        state = march.begun(model, begun)
     else:
         state = march.start(model, places)
     facts = march.facts(record, [unit for _, unit in found])
