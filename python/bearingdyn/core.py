@@ -362,8 +362,12 @@ def bearing_along(
     g, loads, heat, pressing, turning, K, C, pressed = _core.bearing_along(
         kernel.packed(), z, z_rate, angle, speed, window, tangents
     )
-    K, C = (np.zeros((0, 0, 0)) if each is None else each for each in (K, C))
-    pressed = np.zeros((0, 0)) if pressed is None else pressed
+    none, still = np.zeros((0, 0, 0)), np.zeros((0, 0))
+    K, C, pressed = (
+        none if K is None else K,
+        none if C is None else C,
+        still if pressed is None else pressed,
+    )
     return Along(g, loads, heat, pressing, turning, K, C, pressed)
 
 

@@ -9,7 +9,7 @@ import pytest
 import scipy
 
 from bearingdyn import core
-from bearingdyn.bearing import FilmDamping, FilmMemory, Lubricant, Walther, ehl, lubricate
+from bearingdyn.bearing import BearingKernel, FilmDamping, FilmMemory, Lubricant, Walther, ehl, lubricate
 from bearingdyn.bearing.catalogue import bearing
 from one_ball import OneBall
 from twins import bearing_twin
@@ -171,24 +171,40 @@ def test_a_sudden_velocity_finds_films_that_had_settled() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("omega", "film", "viscous"), [(0.2, 2e-3, 0.025), (1.0, 4e-3, 0.025), (2.0, 0.01, 0.08)]
-)
-def test_march_is_that_of_reynolds_equation_in_time(omega: float, film: float, viscous: float) -> None:
-    """A free ball under a load that leaps by 5 %, at ωa/um, against `ehl.march`; viscous ones are far off."""
+@pytest.mark.parametrize("omega", [0.2, 1.0, 2.0])
+@pytest.mark.parametrize("push", ["leap", "blow"])
+def test_march_is_that_of_reynolds_equation_in_time(omega: float, push: str) -> None:
+    """A free ball, at ωa/um, under a load that leaps by 5 % or after a blow, against `ehl.march`.
+
+    The bound: in the 8 rad of the run an error e of the stiffness turns the swing by 4 e of its amplitude,
+    half of the largest displacement after a leap and all of it after a blow. e is what the decays leave of
+    K̂, and what K0/K_Hertz changes under 5 % more load, from the table. The steps of both are of second order
+    and alike; what they leave is found by halving them here.
+    """
     ball = OneBall.of(100.0, 10.0)
-    start = ehl.steady(100, 10, grid=65)
-    dt, steps = 0.25 / omega * 0.2, 160
-    found = ehl.march(start, dt=dt, steps=steps, mass=omega**-2, load=1.05)
-    swing = (found.approach[1:] - found.approach[0]) * 2 * ball.contact.approach(ball.F)
+    unit = 2 * ball.contact.approach(ball.F)
+    dt, steps, velocity = 0.25 / omega * 0.2, 160, 0.03 * omega
+    load, moved = (1.05, 0.0) if push == "leap" else (1.0, velocity)
+    found = ehl.march(
+        ehl.steady(100, 10, grid=65), dt=dt, steps=steps, mass=omega**-2, load=load, velocity=moved
+    )
+    swing = (found.approach[1:] - found.approach[0]) * unit
+    largest = np.abs(swing).max()
     mass = omega**-2 * ball.stiffness * ball.passage**2
-    off = []
-    for kernel in (ball.film, ball.viscous):
-        got, _ = ball.march(kernel, mass, lambda t: 1.05 * ball.F, dt * ball.passage, steps)
-        off.append(np.abs(got - swing).max() / np.abs(swing).max())
-    # of the swing: what the fit of K̂ leaves, and twice that
-    assert off[0] < film
-    assert off[1] > viscous
+
+    def marched(kernel: BearingKernel, finer: int = 1) -> np.ndarray:
+        h, v = dt * ball.passage / finer, moved * unit / ball.passage
+        return ball.march(kernel, mass, lambda t: load * ball.F, h, steps * finer, v)[0][finer - 1 :: finer]
+
+    film = marched(ball.film)
+    left_by_steps = 4 / 3 * np.abs(film - marched(ball.film, 2)).max() / largest
+    softer = ehl.lookup(105.0, 10.0, 1.0).K0 - ehl.lookup(100.0, 10.0, 1.0).K0
+    turned = (2 if push == "leap" else 4) * (FilmMemory.of(ball.law, ball.kappa).error + softer)
+    bound = turned + left_by_steps
+    assert bound < 0.01
+    assert np.abs(film - swing).max() < bound * largest
+    # the viscous ball must be told from it
+    assert np.abs(marched(ball.viscous) - swing).max() > 3 * bound * largest
 
 
 @pytest.mark.slow
@@ -210,5 +226,7 @@ def test_march_is_that_of_reynolds_equation_through_lost_contact() -> None:
             kernel, mass, lambda t: ball.F * load(t / ball.passage), dt * ball.passage, steps
         )
         off.append(np.abs(force / ball.F - found.force[1:]).max())
+    # of the load. Nothing derives what decays leave where a film breaks off and is made anew; measured: 0.3 %,
+    # and 4 % of viscous films
     assert off[0] < 0.01
     assert off[1] > 0.03
