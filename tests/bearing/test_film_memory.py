@@ -226,7 +226,7 @@ def test_march_is_that_of_reynolds_equation_through_lost_contact() -> None:
             kernel, mass, lambda t: ball.F * load(t / ball.passage), dt * ball.passage, steps
         )
         off.append(np.abs(force / ball.F - found.force[1:]).max())
-    # of the load. Nothing derives what decays leave where a film breaks off and is made anew; measured: 0.3 %,
-    # and 4 % of viscous films
+    # of the load. Nothing derives what decays leave where a film breaks off and is made anew. Measured:
+    # 0.3 %, of viscous films 4 %
     assert off[0] < 0.01
     assert off[1] > 0.03
