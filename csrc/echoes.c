@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "newton.h"
+
 void bd_echoes_settle(const bd_model *model, bd_work *work, bd_state *state)
 {
     const size_t m = (size_t)model->coefs;
