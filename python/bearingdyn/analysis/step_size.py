@@ -10,6 +10,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.driving_periods import rhythms
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.material import answer_of
 from bearingdyn.notice import CoarseStep, GrowingStep, OutsideBand, untold, warn
 from bearingdyn.system import System, natural
 from bearingdyn.types import Array
@@ -64,7 +65,7 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
         material = layer.material if layer.strain is None else layer.material.rest
         # all modes of the model are looked at, those far above the march's band too
         with untold(OutsideBand):
-            loss = np.imag(np.asarray(material.complex_modulus(omega)))
+            loss = np.imag(answer_of(material, omega))
         loss -= omega * getattr(material, "eta0", 0.0)
         decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)
     gain = np.maximum(share, 0.0) * (omega * dt) ** 4 / (48.0 * dt)

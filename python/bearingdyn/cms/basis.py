@@ -16,7 +16,7 @@ from bearingdyn.cms.full_model import FullModel
 from bearingdyn.cms.reduction_options import check_f_max, check_moduli, check_rounds
 from bearingdyn.cms.viscoelastic import ComplexModulus
 from bearingdyn.fem import factorise, lowest_modes
-from bearingdyn.material import Maxwell
+from bearingdyn.material import Maxwell, answer_of
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
@@ -218,7 +218,7 @@ def modulus_levels(
     low, high = [], []
     for material in materials:
         tau = np.asarray(getattr(material, "tau", ()), dtype=np.float64)
-        G0 = abs(complex(material.complex_modulus(0.0)))
+        G0 = abs(complex(answer_of(material, 0.0)))
         if tau.size == 0:
             if not G0 > 0:
                 raise ValueError(
