@@ -110,14 +110,15 @@ class FirstOrder:
         flexibility = np.zeros((len(B), len(B)))
         for index in modal.blocks():
             touched = np.flatnonzero(np.abs(B[:, index]).any(axis=1))
-            if not touched.size:
+            # what no bearing feels is no motion of theirs; of one state it is told, but for what floats
+            if not touched.size and not (felt < 0.0 and (squares[index] > 0.0).all()):
                 continue
             rank = np.argsort(np.argsort(squares[index]))
             slow = (squares[index] <= fastest**2) | (rank < ALWAYS)
             kept, fast = index[slow], index[~slow]
             flexibility += (B[:, fast] / squares[fast]) @ B[:, fast].T
             chunk = _chunk(modal, kept, touched, squares, FLOATING * fastest)
-            if len(chunk.A) > 2 * len(kept):
+            if touched.size and len(chunk.A) > 2 * len(kept):
                 chunk, gives = _felt_alone(chunk, felt)
                 flexibility[np.ix_(touched, touched)] += gives
             chunks.append(chunk)
