@@ -23,6 +23,7 @@ from bearingdyn import plot
 from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_state, transient
 from bearingdyn.analysis.steady import branches as tracing
 from bearingdyn.analysis.steady.balance import flat, newton, unflat
+from bearingdyn.analysis.steady.continuation import follow
 from bearingdyn.analysis.steady.event_accuracy import once, within
 from bearingdyn.analysis.steady.factored import Factored, jacobian
 from bearingdyn.analysis.steady.problem import Problem
@@ -333,6 +334,26 @@ def test_a_corrector_that_lands_far_from_its_predictor_is_refused() -> None:
     away[2 * point.z.shape[1]] = 2.0 / length  # the predictor leaves the tangent by the length of the step
     assert curve.step(point, length, bend=away) is None
     assert curve.step(point, length, exact=True, bend=away) is not None  # it does come back to the curve
+
+
+def test_a_tangent_that_points_past_the_curve_is_taken_anew_and_the_branch_goes_on() -> None:
+    """A neighbour's slope gives a tangent that may be off; the bare motor's branch once ended there."""
+    problem = Problem.of(equilibrium(rotors.held_jis_rotor()))
+    lines = Lines.harmonics(12, 16)
+    speed = 8000 * RPM
+    found = newton(problem.balance(lines, speed), problem.standing(lines), tolerance=1e-10)
+    curve = curve_of(lambda p: problem.balance(lines, p), found, speed)
+    point = curve.begin(found, speed, -1.0)
+    off = point.tangent.copy()
+    off[2 * point.z.shape[1]] += 1.0
+    size = math.hypot(float(np.linalg.norm(off)), point.slope)
+    wrong = replace(point, tangent=off / size, slope=point.slope / size)
+    assert all(curve.step(wrong, length) is None for length in (1e-2, 1e-3, 1e-4))  # no shorter step mends it
+    points = list(follow(curve, wrong, 7900 * RPM, speed, 2.0, 4))
+    assert len(points) == 4
+    for p in points:
+        alone = newton(problem.balance(lines, p.parameter), problem.standing(lines), tolerance=1e-10)
+        np.testing.assert_allclose(p.z, alone.z, rtol=0, atol=1e-8 * np.abs(alone.z).max())
 
 
 def test_multipliers_of_a_map_are_those_of_its_motions() -> None:

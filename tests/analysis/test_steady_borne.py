@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import math
 import warnings
+import weakref
+from threading import Thread
 
 import numpy as np
 import pytest
@@ -14,7 +17,7 @@ from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.bearing import samples_off
 from bearingdyn.bearing.open_side import runs_off
-from bearingdyn.notice import BearingWarning, NothingPushes, OpenSideWarning, OutsideBand
+from bearingdyn.notice import BearingWarning, NothingPushes, OpenSideWarning, OutsideBand, untold, warn
 
 MAP = {"several": False, "doublings": 0, "harmonics": 8, "points": 6, "progress": False}
 Y = ["rotor.centre.y"]
@@ -138,3 +141,48 @@ def test_many_samples_are_judged_as_one_by_one():
     each = [runs_off(kernel, a, b, t) is not None for a, b, t in zip(z, loads, turn, strict=True)]
     assert 0 < sum(each) < 197
     assert samples_off(kernel, z, loads, turn).tolist() == each
+
+
+def test_a_notice_held_back_in_one_thread_is_issued_in_another() -> None:
+    """The filters of `warnings` are all threads' own; what a search holds back is its thread's alone."""
+
+    def elsewhere() -> None:
+        warn("asked beyond the band", OutsideBand)
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        with untold(OutsideBand):
+            before = warnings.filters[:]
+            warn("asked beyond the band", OutsideBand)
+            with untold(NothingPushes):
+                warn("asked beyond the band", OutsideBand)
+            assert not caught
+            warn("nothing pushes", NothingPushes)
+            other = Thread(target=elsewhere)
+            other.start()
+            other.join()
+            assert warnings.filters == before
+        warn("asked beyond the band", OutsideBand)
+    assert [w.category for w in caught] == [NothingPushes, OutsideBand, OutsideBand]
+
+
+def test_what_steady_motions_keep_of_a_system_goes_with_it() -> None:
+    eq = bd.equilibrium(rotor(load=100.0))
+    bd.steady_state(eq, speed=300.0, record=Y, harmonics=8, stability=False)
+    system = weakref.ref(eq.system)
+    del eq
+    gc.collect()
+    assert system() is None
+
+
+def test_a_motion_that_turns_backwards_mirrors_the_one_that_turns_forwards() -> None:
+    """Its lines have negative frequencies; the rotor and its load are symmetrical to the plane of x = 0."""
+    eq = bd.equilibrium(rotor(load=100.0))
+    asked = {"record": ["rotor.centre.x", "rotor.centre.y"], "harmonics": 8, "stability": False}
+    forwards, backwards = (bd.steady_state(eq, speed=s, **asked)["amplitude"].values for s in (300.0, -300.0))
+    size = np.abs(forwards[1:]).max()
+    # a line at -omega is the conjugate of one at omega
+    for axis in range(2):
+        np.testing.assert_allclose(
+            np.abs(backwards[:, axis]), np.abs(forwards[:, axis]), rtol=0, atol=1e-9 * size
+        )
