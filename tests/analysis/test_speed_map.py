@@ -22,8 +22,8 @@ from bearingdyn import plot
 from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_state, transient
 from bearingdyn.analysis.steady import branches as tracing
 from bearingdyn.analysis.steady.balance import flat, newton, unflat
+from bearingdyn.analysis.steady.event_accuracy import once, within
 from bearingdyn.analysis.steady.factored import Factored, jacobian
-from bearingdyn.analysis.steady.located import once, within
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.reaching import curve_of
 from bearingdyn.analysis.steady.torus import Lines

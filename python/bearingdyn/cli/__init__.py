@@ -46,7 +46,7 @@ NEGATIVE = re.compile(r"-([0-9]+\.?[0-9]*|\.[0-9]+)e[+-]?[0-9]+|-inf(inity)?|-na
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command, by default that of sys.argv, and return its exit code."""
+    """Run a command of the command line, by default that of sys.argv, and return its exit code."""
     parser = _parser()
     given = sys.argv[1:] if argv is None else argv
     try:

@@ -29,7 +29,7 @@ from bearingdyn.analysis.steady.branches import (
     states,
     sweeps,
 )
-from bearingdyn.analysis.steady.located import within
+from bearingdyn.analysis.steady.event_accuracy import within
 from bearingdyn.analysis.steady.motion import MOTIONS
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.application import Application
@@ -155,7 +155,7 @@ def parameter_map(
     progress: Progress | bool | None = None,
     rpm: float | None = None,
 ) -> xarray.Dataset:
-    """Follow all steady motions at one speed over a number that the application is made from.
+    """As `speed_map`, at one speed: all steady motions over a number that the application is made from.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced
 from bearingdyn.analysis.steady.motion import Motion
 from bearingdyn.analysis.steady.problem import Problem, motion_of
-from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability, floquet, pooled
+from bearingdyn.analysis.steady.stability import Stability, stability_of
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
@@ -30,14 +30,8 @@ if TYPE_CHECKING:
 
 # harmonics where none are asked for: of the ball pass, or of the highest of several bases
 HARMONICS, SEVERAL = 40, 20
-# samples of a period for its stability, at least
-SAMPLES = 256
-# poles of one state are all kept, what the bearings do not feel as well
-ALL = -1.0
 # of a channel's largest line, what harmonics left out may add; and of its mean, below which it is no motion
 CUT, LEAST = 0.02, 1e-6
-# multipliers that are kept
-KEPT = 6
 
 
 @takes(speed="rad/s")
@@ -203,31 +197,6 @@ def _found(
 
         found = reached(problem, lines, speed, tolerance) or found
     return balance, found, math.nan
-
-
-def stability_of(
-    problem: Problem, balance: Balance, found: Found, model: FirstOrder | None = None, samples: int = SAMPLES
-) -> Stability | None:
-    """Steady state of one base: its multipliers; None for several bases."""
-    if len(problem.bases.bases) != 1 or not problem.system.bearings:
-        return None
-    model = model or first_order(problem, balance)
-    lines = balance.lines
-    count = max(samples, 2 * (lines.samples // 2))
-    pressed = balance.press(found.z, lines=Lines(lines.index, lines.steps, count))
-    m = found.z.shape[1]
-    period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
-    K = pooled([a.K for a in pressed.bearings], m)
-    C = pooled([a.C for a in pressed.bearings], m)
-    return floquet(model, balance.speed, period, K, C, KEPT).stability
-
-
-def first_order(problem: Problem, balance: Balance) -> FirstOrder:
-    """In a steady state's analysis, the structure in first order, up to the balance's speed."""
-    highest = float(np.abs(balance.omega).max())
-    lowest = float(np.abs(balance.omega[1:]).min())
-    band = (lowest / (20 * np.pi), highest / (2 * np.pi))
-    return FirstOrder.of(problem.system, 2.0 * FOLLOWS * highest, band, felt=ALL)
 
 
 def warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
