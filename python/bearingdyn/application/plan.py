@@ -53,6 +53,17 @@ class Plan:
         self.temperatures: dict[str, float] = {}
         self._rigid: dict[str, Array | None] = {}
 
+    def __repr__(self) -> str:
+        told = {
+            "parts": self.parts,
+            "bearings": self.bearings,
+            "joints": [*self.connections, *self.supports, *self.springs, *self.fits],
+            "loads": self.loads,
+        }
+        listed = [f"{len(held)} {kind}" for kind, held in told.items()]
+        names = f" ({', '.join([*self.parts, *self.bearings])})" if self.parts else ""
+        return f"<Plan: {', '.join(listed)}{names}>"
+
     def copy(self) -> Plan:
         """A plan of the same parts, joints and loads, to which more can be written."""
         other = Plan()
