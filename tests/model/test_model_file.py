@@ -234,6 +234,8 @@ def test_every_kind_of_joint_and_load_comes_back(tmp_path: Path) -> None:
     bd.write_model(app, tmp_path / "all.toml")
     back = bd.read_model(tmp_path / "all.toml").application
     assert back.summary() == app.summary()
+    assert {str(c) for c in back.plan.unjudged} == {str(c) for c in app.plan.unjudged}
+    assert len(back.plan.unjudged) == 1
     march: dict[str, Any] = {
         "speed": 100.0,
         "dt": 1e-5,
@@ -242,6 +244,15 @@ def test_every_kind_of_joint_and_load_comes_back(tmp_path: Path) -> None:
     }
     one, other = (bd.transient(bd.equilibrium(a), **march) for a in (app, back))
     assert np.array_equal(one["record"].values, other["record"].values)
+
+
+def test_who_edits_a_diameter_of_a_written_file_is_told_that_it_fits_no_more(tmp_path: Path) -> None:
+    """The check of fits is left out where it was waived, and nowhere else."""
+    text = (Path(bd.examples.__file__).parent / "motor.toml").read_text(encoding="utf-8")
+    assert "fits" not in text
+    (tmp_path / "edited.toml").write_text(text.replace("[0.017, 0.04, 0.012]", "[0.020, 0.04, 0.012]", 1))
+    with pytest.raises(ValueError, match=r"edited\.toml, line \d+, .*17 mm.*20 mm|.*20 mm.*17 mm"):
+        bd.read_model(tmp_path / "edited.toml")
 
 
 def test_the_rows_of_a_set_come_back_to_their_places(tmp_path: Path) -> None:

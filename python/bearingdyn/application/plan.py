@@ -37,6 +37,8 @@ class Plan:
         Interfaces left unjoined on purpose, and raceways without balls.
     temperatures
         °C, of the parts that were given one.
+    unjudged
+        Bearings by name, and connections, that were joined with fits=False.
     """
 
     def __init__(self) -> None:
@@ -51,6 +53,7 @@ class Plan:
         self.free_interfaces: set[Place] = set()
         self.springs: list[Bush] = []
         self.temperatures: dict[str, float] = {}
+        self.unjudged: set[str | Connection] = set()
         self._rigid: dict[str, Array | None] = {}
 
     def __repr__(self) -> str:

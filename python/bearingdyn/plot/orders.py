@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.plot.arguments import figure, result, results
-from bearingdyn.plot.frame import DASHES, RPM, colour, engineering, finish, halve, new_axes, some, style
+from bearingdyn.plot.frame import (
+    DASHES,
+    RPM,
+    called,
+    colour,
+    engineering,
+    finish,
+    halve,
+    new_axes,
+    some,
+    style,
+)
 from bearingdyn.plot.phase_axis import continuous_phase, finish_phase
 
 if TYPE_CHECKING:
@@ -19,13 +30,13 @@ DEPTH = 1e-6  # of the largest line: 120 dB, as in `spectrum`
 
 
 @figure(datasets=results("bd.order_spectrum", "amplitude"))
-def order_spectrum(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
+def order_spectrum(datasets: xarray.Dataset | Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
     """Draw amplitudes by bd.order_spectrum over orders of the shaft speed, several by label, 120 dB deep.
 
     Parameters
     ----------
     datasets
-        Results of `bd.order_spectrum` by label, in one unit.
+        A result of `bd.order_spectrum`, or several by label, in one unit.
     ax
         Axes to draw into; None: those of a new figure.
 
@@ -39,9 +50,10 @@ def order_spectrum(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = Non
     ValueError
         For a result that has no orders, or results in different units.
     """
-    for label, data in some(datasets).items():
+    datasets = some(datasets)
+    for label, data in datasets.items():
         if "order" not in data.coords or "time" in data.coords:
-            raise ValueError(f"{label!r} is no spectrum over orders; make it with bd.order_spectrum")
+            raise ValueError(f"{called(label)} is no spectrum over orders; make it with bd.order_spectrum")
     units = {str(data["amplitude"].attrs["units"]) for data in datasets.values()}
     if len(units) > 1:
         raise ValueError(f"spectra in {sorted(units)} do not go into one figure; draw one of each")
