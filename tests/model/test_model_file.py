@@ -303,6 +303,18 @@ BAD = [
     ("count = 3\n", "coutn = 3\n", 45, "analyses[1]", "did you mean 'count'"),
     ('type = "modes"', 'type = "mods"', 44, "analyses[1].type", "did you mean 'modes'"),
     ("count = 3, spacing", "count = 0, spacing", 50, "analyses[2].frequency", "count is 0"),
+    ('["rotor.centre.y"]', '["rotor.mid.y"]', 51, "analyses[2].inputs", "there are ['layer.inner'"),
+    ('outputs = ["rotor.centre.y"]', 'outputs = ["rotor.y"]', 52, "analyses[2].outputs", "'rotor.centre.y'"),
+    ('outputs = ["rotor.centre.y"]', 'outputs = ["rotor.centre.r"]', 52, "analyses[2].outputs", "not 'r'"),
+    (
+        '{ from = 10, to = 1000, count = 3, spacing = "log" }',
+        '"geomspace(10, 2000, 200)"',
+        50,
+        "analyses[2].frequency",
+        "numbers in Hz, or a grid: {from = 10",
+    ),
+    ("count = 3\n", 'count = "three"\n', 45, "analyses[1].count", "it must be a number"),
+    ('"16 mm"', '"16mm"', 26, "parts.layer.width", "write '16 mm'"),
     ("format = 1", "format = 2", 1, "format", "another version"),
     ("[[analyses]]\n", "[[analysis]]\n", 43, "analysis", "did you mean 'analyses'"),
     ('title = "a rotor on a layer"', 'title = "a rotor', 2, "title", "line 2"),
@@ -347,8 +359,24 @@ def test_what_an_analysis_refuses_is_told_with_its_line(bench: Path) -> None:
     bench.write_text(
         bench.read_text("utf-8").replace('outputs = ["rotor.centre.y"]', 'outputs = ["rotor.centr.y"]')
     )
-    with pytest.raises(ValueError, match=r"line 47, analyses\[2\]: .*rotor\.centr"):
+    with pytest.raises(ValueError, match=r"analyses\[2\]\.outputs: .*rotor\.centr.*mean 'rotor\.centre'"):
+        bd.read_model(bench)
+
+
+def test_what_an_analysis_alone_knows_is_told_with_its_line(bench: Path) -> None:
+    """A force on a bearing along no axis passes the reader, and not the analysis."""
+    bench.write_text(
+        bench.read_text("utf-8").replace('outputs = ["rotor.centre.y"]', 'outputs = ["ball.force.q"]')
+    )
+    with pytest.raises(ValueError, match=r"line 47, analyses\[2\]: .*ball\.force\.q"):
         bd.read_model(bench).run()
+
+
+def test_a_file_without_its_format_is_told_the_line_to_add(bench: Path) -> None:
+    """It is no file of another version."""
+    bench.write_text(bench.read_text("utf-8").replace("format = 1", ""))
+    with pytest.raises(ValueError, match=r"format is missing; the file must begin with a line format = 1"):
+        bd.read_model(bench)
 
 
 def mutated(text: str, draw: random.Random) -> str:
