@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sized
 
 import numpy as np
 
@@ -57,7 +58,7 @@ class Plan:
         self._rigid: dict[str, Array | None] = {}
 
     def __repr__(self) -> str:
-        told = {
+        told: dict[str, Sized] = {
             "parts": self.parts,
             "bearings": self.bearings,
             "joints": [*self.connections, *self.supports, *self.springs, *self.fits],

@@ -91,6 +91,8 @@ def quantity(text: str, unit: str) -> float | None:
         require(given in ("°C", "K"), "unit", given, "it must be °C or K")
         return number - units.KELVIN if given == "K" else number
     own = units.read(given)
+    if unit == "rad/s" and given in ("1/min", "/min", "min⁻¹", "min^-1", "min-1", "U/min", "rev/min"):
+        raise ValueError(f"{text!r} is in {given}; write '{found[1]} rpm'")
     if not own.alike(units.read(unit)):
         raise ValueError(
             f"{text!r} is in {given}; it must be in {unit or 'no unit'}, or one that measures the same"

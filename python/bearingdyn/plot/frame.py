@@ -183,7 +183,7 @@ def is_result(datasets: object) -> bool:
     return hasattr(datasets, "data_vars")
 
 
-def some(datasets: Mapping[str, Any], name: str = "datasets") -> Mapping[str, Any]:
+def some(datasets: xarray.Dataset | Mapping[str, Any], name: str = "datasets") -> Mapping[str, Any]:
     """Frame of a figure: the results it shows, by label, a lone one by none; ValueError if there are none."""
     if is_result(datasets):
         return {"": datasets}

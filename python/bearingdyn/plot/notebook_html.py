@@ -199,6 +199,7 @@ def maxwell_html(material: Maxwell) -> str:
     facts = [
         ("relaxed modulus G0", f"{material.G0 / 1e6:.4g} MPa"),
         ("at once", f"{(material.G0 + material.G.sum()) / 1e6:.4g} MPa"),
+        *([("dashpot η0 (raises G″)", f"{material.eta0:.4g} Pa s")] if material.eta0 else []),
         *_stated(material),
     ]
     if material.fit is not None:
