@@ -183,7 +183,7 @@ def is_result(datasets: object) -> bool:
     return hasattr(datasets, "data_vars")
 
 
-def some(datasets: xarray.Dataset | Mapping[str, Any], name: str = "datasets") -> Mapping[str, Any]:
+def some(datasets: Any, name: str = "datasets") -> Mapping[str, Any]:
     """Frame of a figure: the results it shows, by label, a lone one by none; ValueError if there are none."""
     if is_result(datasets):
         return {"": datasets}
@@ -191,7 +191,8 @@ def some(datasets: xarray.Dataset | Mapping[str, Any], name: str = "datasets") -
         raise ValueError(
             f"{name} is empty, there is nothing to draw; give at least one result with its label"
         )
-    return datasets
+    by_label: Mapping[str, Any] = datasets
+    return by_label
 
 
 def called(label: str) -> str:
