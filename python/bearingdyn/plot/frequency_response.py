@@ -118,7 +118,7 @@ def frequency_response(
             if lower is not None:
                 lower.plot(f, continuous_phase(value), **look)
         if decibels:
-            ax.set_ylabel(f"{kind} level, zero-to-peak, dB re {REFERENCES[kind][1]}, input of 1")
+            ax.set_ylabel(f"{kind} level, zero-to-peak,\ndB re {REFERENCES[kind][1]}, input of 1")
         else:
             ax.set_yscale("log")
             ax.set_ylabel(f"{kind}, zero-to-peak, {unit}")
@@ -164,7 +164,7 @@ def _response_unit(quantity: str, output: str, input: str) -> str:
     found, given = Channel.parse(output), Channel.parse(input)
     below = given.motion_unit(quantity) if given.of_ground else given.force_unit
     if found.is_force:
-        return f"({found.force_unit})/({below})"
+        return "1" if found.force_unit == below else f"({found.force_unit})/({below})"
     above = found.motion_unit(quantity)
     if given.of_ground:
         return f"({above})/({below})"

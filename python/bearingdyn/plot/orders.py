@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
+FEW = 60  # pieces of a run-up, up to which each is marked
 DEPTH = 1e-6  # of the largest line: 120 dB, as in `spectrum`
 
 
@@ -128,11 +129,14 @@ def orders(
     with style():
         ax = ax or new_axes(height=4.8 if phase else 3.4)
         lower = halve(ax, share=0.3) if phase else None
+        mark = "." if across.size <= FEW else None  # straight lines between them are drawn, not known
         for k, order in enumerate(chosen):
-            dash = DASHES[k % len(DASHES)]
-            ax.plot(across, np.abs(found[:, k]), color=colour(k), linestyle=dash, label=f"{order:g}×")
+            look: dict[str, Any] = {
+                "color": colour(k), "linestyle": DASHES[k % len(DASHES)], "marker": mark, "markersize": 4,
+            }  # fmt: skip
+            ax.plot(across, np.abs(found[:, k]), label=f"{order:g}×", **look)
             if lower is not None:
-                lower.plot(across, continuous_phase(found[:, k]), color=colour(k), linestyle=dash)
+                lower.plot(across, continuous_phase(found[:, k]), **look)
         size = np.abs(found)
         if size.any():
             ax.set_yscale("log")
