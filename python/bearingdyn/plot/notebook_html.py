@@ -163,7 +163,7 @@ def _warned(app: Application, told: list[str]) -> str:
     except ValueError as error:
         notes.append(str(error))
     # every rotor is free to spin: that is no reason for alarm
-    spins = {f"{name} θz": name for name, element in app.plan.parts.items() if element.G.any()}
+    spins = {f"{name} θz": name for name in app.plan.turning_parts()}
     loose = loose_motions(app.plan)
     free = [motion for motion in loose if all(one in spins for one in motion.split(", "))]
     notes += [f"nothing holds: {motion}" for motion in loose if motion not in free]
