@@ -261,7 +261,7 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             (0.0, 20.0),
             (0.0, 5.0),
             "√(inertia/mass), the radius of gyration, lies within the part",
-            (Slip("mm, the inertia in kg mm²,", 1e-3),),
+            (_MM,),
         ),
         "gyration ratio": Magnitude("", (0.0, 300.0), (0.0, 30.0), "wheels and rods reach ten or twenty"),
         "stiffness": Magnitude(
@@ -344,7 +344,7 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             (0.0, 0.5),
             (0.0, 0.01),
             "unbalance over the mass that turns is 0.1 to 100 µm (ISO 21940)",
-            (Slip("mm, the unbalance in g mm or kg mm,", 1e-3), Slip("µm, the unbalance in g mm,", 1e-6)),
+            (Slip("mm", 1e-3), Slip("µm", 1e-6)),
         ),
         "pressure": Magnitude(
             "Pa",
@@ -385,9 +385,9 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "speed value n·dm": Magnitude(
             "mm/min",
             (0.0, 2e7),
-            (0.0, 3e6),
-            "speed times pitch diameter; the fastest ball bearings reach 3e6 mm/min",
-            (Slip("rpm (the speed),", math.pi / 30),),
+            (0.0, 1.5e6),
+            "speed times pitch diameter; ball bearings reach 0.5e6 in grease, 1e6 in oil, and the fastest "
+            "spindles 3e6 mm/min, with ceramic balls",
         ),
         "frequency": Magnitude("Hz", (1e-12, 1e12), (1e-9, 1e9), "machines sound from 1e-3 to 1e5 Hz"),
         "band of a part": Magnitude(
@@ -414,7 +414,7 @@ SOFTEST = MAGNITUDES["Young's modulus"].possible[0]
 LARGEST_BODY = MAGNITUDES["length"].possible[1]
 
 
-def plausible(kind: str, field: str, value: object, remedy: str = "") -> float:
+def plausible(kind: str, field: str, value: object, remedy: str = "", hint: str | None = None) -> float:
     """The value as a float of a magnitude that can be meant.
 
     Parameters
@@ -427,6 +427,8 @@ def plausible(kind: str, field: str, value: object, remedy: str = "") -> float:
         In the row's unit.
     remedy
         What would be right where it is no finite number at all.
+    hint
+        Instead of the row's own guess of the unit, where the value follows from what was given.
 
     Warns
     -----
@@ -443,9 +445,10 @@ def plausible(kind: str, field: str, value: object, remedy: str = "") -> float:
     if row.within(x, row.usual) and row.within(x, row.possible):
         return x
     told = f"{field} is {x:.6g} {row.unit}".rstrip()
+    guess = row.guess(x) if hint is None else hint
     if not row.within(x, row.possible):
-        raise ValueError(f"{told}; it must be {row.span(row.possible, x)} ({row.reason}){row.guess(x)}")
-    text = f"{told}; usual is {row.span(row.usual, x)} ({row.reason}){row.guess(x)}"
+        raise ValueError(f"{told}; it must be {row.span(row.possible, x)} ({row.reason}){guess}")
+    text = f"{told}; usual is {row.span(row.usual, x)} ({row.reason}){guess}"
     warn(text, UnusualMagnitude)
     return x
 
@@ -486,8 +489,13 @@ def check_waves(field: str, modulus: float, density: float) -> None:
 
 def check_speed_value(field: str, speed: float, pitch: float) -> None:
     """Check the magnitude of a shaft's speed, rad/s, with the pitch diameter, m, of a bearing on it: n·dm."""
-    value = abs(speed) * 30 / math.pi * pitch * 1e3
-    plausible("speed value n·dm", f"{field} is {speed:.6g} rad/s; n·dm", value)
+    turns = speed * 30 / math.pi
+    value, row = abs(turns) * pitch * 1e3, MAGNITUDES["speed value n·dm"]
+    meant = row.within(value * math.pi / 30, row.usual)
+    hint = (
+        f"; is the speed in rpm? give {speed * math.pi / 30:.6g} rad/s, or rpm={speed:.6g}" if meant else ""
+    )
+    plausible("speed value n·dm", f"{field} is {speed:.6g} rad/s, {turns:.6g} rpm; n·dm", value, hint=hint)
 
 
 def check_gyration(field: str, inertia: float, mass: float) -> None:
@@ -498,7 +506,9 @@ def check_gyration(field: str, inertia: float, mass: float) -> None:
     """
     radius, side = math.sqrt(inertia / mass), (mass / 7850.0) ** (1 / 3)
     name = f"{field} is {inertia:.6g} kg m² with a mass of {mass:.6g} kg; its radius of gyration"
-    plausible("gyration", name, radius)
+    known = MAGNITUDES["gyration"]
+    slip = f"; is the inertia in kg mm²? give {inertia * 1e-6:.4g} kg m²"
+    plausible("gyration", name, radius, hint=slip if known.within(radius * 1e-3, known.usual) else "")
     row = MAGNITUDES["gyration ratio"]
     # a body of less than 0.1 g stands for none, and its moments for nothing
     if mass > 1e-4 and not row.within(radius / side, row.usual):

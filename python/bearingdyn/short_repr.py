@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, fields
 from typing import Any
 
 import numpy as np
 
 FEW = 6  # numbers that are written out
 LONG = 60  # letters of anything else
+LINE = 160  # letters of a mapping or a list of names that is written out
 
 
 def short(self: Any) -> str:
@@ -32,10 +33,22 @@ def _told(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, Mapping):
-        return f"<{len(value)}: {_cut(', '.join(map(str, value)))}>"
-    if is_dataclass(value) or not isinstance(value, tuple | list) or len(value) <= FEW:
-        return _cut(repr(value))
-    return f"<{len(value)} of {type(value[0]).__name__}>"
+        whole = "{" + ", ".join(f"{key}: {_told(one)}" for key, one in value.items()) + "}"
+        return whole if len(whole) <= LINE else f"<{len(value)}: {_cut(', '.join(map(str, value)))}>"
+    if type(value) in (tuple, list):  # a tuple with names tells itself
+        return _row(value)
+    return _cut(repr(value))
+
+
+def _row(values: tuple[Any, ...] | list[Any]) -> str:
+    """A tuple or list: written out where it is short, or its names make a line."""
+    ends = ("(", ",)" if len(values) == 1 else ")") if isinstance(values, tuple) else ("[", "]")
+    named = all(isinstance(one, str) for one in values)
+    if len(values) <= FEW or named:
+        whole = ends[0] + ", ".join(map(_told, values)) + ends[1]
+        if len(whole) <= LINE:
+            return whole
+    return f"<{len(values)} of {type(values[0]).__name__}>"
 
 
 def _array(x: np.ndarray) -> str:

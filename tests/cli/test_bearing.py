@@ -16,8 +16,20 @@ def test_it_prints_the_sheet(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bearing", *LINE]) == 0
     out = capsys.readouterr().out
     assert "basic dynamic rating C, N                                      14000" in out
-    assert "C and C0 are as NSK prints them" in out
+    assert "C as NSK prints it (computed" in out
+    assert "C0 as NSK prints it (computed" in out
     assert "viscosity, mm²/s                                     11.19" in out
+
+
+def test_a_heading_without_rows_and_a_name_said_twice_are_not_printed(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["bearing", "6206", "--radial", "1000"]) == 0
+    out = capsys.readouterr().out
+    assert "Film and friction" not in out  # without an oil
+    assert "6206: 6206:" not in out
+    # the ratings as printed, and as computed: a report of the same bearing shows them the other way round
+    assert "6206: C as NSK prints it (computed 19456 N); C0 as NSK prints it (computed 11256 N)" in out
 
 
 def test_json_has_si_numbers(capsys: pytest.CaptureFixture[str]) -> None:

@@ -66,16 +66,18 @@ def test_a_large_machine_passes():
     bd.BallBearing(Z=200, Dw=0.08, Dpw=6.0, fi=0.52, fo=0.53, clearance=2e-3)
 
 
-@pytest.mark.parametrize("clearance", [10, 1e-3])
-def test_clearance_in_micrometres_is_refused(clearance):
+@pytest.mark.parametrize(("clearance", "unit"), [(10, "µm"), (1e-3, "mm"), (0.012, "mm")])
+def test_clearance_in_another_unit_is_refused(clearance, unit):
+    """12 µm in mm are 0.012, and nobody gives 0.012 µm."""
     with pytest.raises(
-        ValueError, match=f"clearance is {clearance}; it must be at most Dw/10, 0.000794 m: is it in µm"
+        ValueError,
+        match=rf"clearance is {clearance}; it must be at most Dw/10, 0.000794 m; is it in {unit}\? give ",
     ):
         bd.BallBearing(**BALLS, clearance=clearance)
 
 
 def test_balls_that_would_yield_and_clearance_that_is_eaten_are_told():
-    with pytest.raises(ValueError, match=r"clearance is -0.001; it must be at least -Dw/50.* µm"):
+    with pytest.raises(ValueError, match=r"clearance is -0.001; it must be at least -Dw/50.* in mm"):
         bd.BallBearing(**BALLS, clearance=-1e-3)
     with pytest.warns(UnusualMagnitude, match=r"clearance.*clamped by Dw/200 have 2.4 GPa"):
         bd.BallBearing(**BALLS, clearance=-6e-5)

@@ -72,7 +72,7 @@ def good() -> dict[str, dict[str, object]]:
         },
         "film_map": {"contact": solved},
         "frequency_response": {
-            "datasets": bd.frequency_response(eq, frequency, [y], [y]), "output": y, "input": y,
+            "datasets": bd.frequency_response(eq, frequency, [y], [y]),
         },
         "isotherms": {"dma": dma},
         "layer_stiffness": {"layers": {"a": bd.Layer(0.02, 0.024, 0.015, RUBBER)}, "frequency": frequency},
@@ -98,7 +98,7 @@ def good() -> dict[str, dict[str, object]]:
         "strain_softening": {"law": bd.fit_payne(SWEEP, strain_of_isotherms=1.5e-3, lowest_trusted=1e-3)},
         "time": {"datasets": {"a": run}},
         "trade_off": {"study": study, "x": "m", "y": "n"},
-        "unbalance_response": {"datasets": {"a": bd.unbalance_response(app, [10.0, 20.0], [y])}, "output": y},
+        "unbalance_response": {"datasets": {"a": bd.unbalance_response(app, [10.0, 20.0], [y])}},
         "van_gurp_palmen": {"data": dma},
         "waterfall": {"data": bd.waterfall(run, y, length=0.01)},
     }  # fmt: skip

@@ -16,6 +16,8 @@ import pytest
 import bearingdyn as bd
 from bearingdyn.cli import main
 from bearingdyn.notice import Notice
+from bearingdyn.reporting.of_results import everything
+from bearingdyn.reporting.shapes import first_elastic
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +49,43 @@ def curves(page: Path, title: str) -> list[tuple[str, np.ndarray, np.ndarray]]:
     return [
         (c["name"], grids[c["x"]], np.frombuffer(base64.b64decode(c["y"]), "<f4")) for c in held["curves"]
     ]
+
+
+def test_an_equilibrium_gets_a_page(tmp_path: Path) -> None:
+    """It is what an engineer has first; ratings are told as computed and as printed."""
+    ball = bd.catalogue.bearing("6206")
+    eq = bd.analysis.single_bearing(ball, radial=1000.0, name="front")
+    told = text_of(bd.report(eq, tmp_path / "rest.html", title="A 6206 under 1 kN"))
+    for said in ("At rest", "front", "Rating and life", "C computed by ISO 281 (NSK prints 19500 N)"):
+        assert said in told, said
+
+
+def test_a_material_with_a_dashpot_shows_it() -> None:
+    """It raises G″ at high frequency, which no other row explains."""
+    with_it = bd.Maxwell(G0=1e6, G=[1e6], tau=[1e-3], eta0=12.0, K=2e9, density=1150.0)
+    without = bd.Maxwell(G0=1e6, G=[1e6], tau=[1e-3], K=2e9, density=1150.0)
+    assert "12 Pa s" in with_it._repr_html_()
+    assert "dashpot" not in without._repr_html_()
+
+
+def test_the_shapes_open_with_the_first_elastic_mode() -> None:
+    """The spin of the rotor, near 0 Hz, is the first of the list and nothing to look at."""
+    xarray = pytest.importorskip("xarray")
+    for frequency, first in (
+        ([1e-4, 145.0, 437.0, 700.0], 1),
+        ([0.0, 1e-3, 90.0, 99.0, 120.0], 2),
+        ([9.0], 0),
+    ):
+        found = xarray.Dataset({"frequency": ("mode", frequency)})
+        assert first_elastic(found, len(frequency)) == first
+
+
+def test_a_range_of_one_number_is_that_number() -> None:
+    """Layers that rested equally long say 60 s, not 60 to 60 s."""
+    xarray = pytest.importorskip("xarray")
+    data = xarray.Dataset({"time": ("layer", [60.0, 60.0], {"units": "s"})})
+    assert "60 s" in everything(data)
+    assert "60 to 60" not in everything(data)
 
 
 def test_the_page_shows_the_resonance_of_a_mass_on_a_spring(mass: bd.Application, tmp_path: Path) -> None:

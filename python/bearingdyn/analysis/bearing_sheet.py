@@ -20,6 +20,7 @@ from bearingdyn.bearing import (
     FrictionModel,
     Lubricant,
     Phase,
+    Ratings,
     Supply,
     check_given,
     contamination_factor,
@@ -154,6 +155,7 @@ def bearing_sheet(
     columns: dict[str, list[float]] = {name: [] for name in MEANING}
     told: list[str] = []
     sources: list[str] = []
+    ratings: list[str] = []
     for name, bearing in hung.items():
         T = given["temperature"].get(name, 40.0) if isinstance(temperature, Mapping) else temperature
         with _rating_told_once():
@@ -185,7 +187,9 @@ def bearing_sheet(
         for doubt in doubts:
             warn(f"bearing {name!r}: {doubt}", BearingWarning)
         told.append("; ".join(doubts))
-        sources.append(_source(bearing))
+        source, printed = _source(bearing)
+        sources.append(source)
+        ratings.append(_rated(bearing, {k: given[k].get(name) for k in ("C", "C0")}, printed))
 
     from bearingdyn.results import dataset, inputs_of
 
@@ -194,6 +198,7 @@ def bearing_sheet(
         for name, values in columns.items()
     }
     variables["source"] = ("bearing", sources, "", "where the geometry comes from")
+    variables["rating_source"] = ("bearing", ratings, "", "where C and C0 come from")
     variables["warnings"] = ("bearing", told, "", "what is doubted")
     return dataset(
         variables,
@@ -240,15 +245,29 @@ def _hung(eq: Equilibrium) -> dict[str, BallBearing]:
     return found
 
 
-def _source(bearing: BallBearing) -> str:
-    """What the geometry rests on, where it is one of the catalogue's."""
+def _source(bearing: BallBearing) -> tuple[str, Ratings | None]:
+    """What the geometry rests on, and ratings as its maker prints them, if it is one of the catalogue's."""
     for name, one in listed.CATALOGUE.items():
         same = (one.Z, one.Dw, one.Dpw, one.fi, one.fo, (one.bore, one.outside, one.width)) == (
             bearing.Z, bearing.Dw, bearing.Dpw, bearing.fi, bearing.fo, bearing.boundary,
         )  # fmt: skip
         if same and (one.contact_angle is None) == (bearing.contact_angle is None):
-            return f"{name}: {one.support}"
-    return "geometry as given"
+            return f"{name}: {one.support}", one.printed
+    return "geometry as given", None
+
+
+def _rated(bearing: BallBearing, given: Mapping[str, float | None], printed: Ratings | None) -> str:
+    """Where the ratings on the sheet come from, and what the others are."""
+    iso, told = ratings_of(bearing), []
+    for key, value in given.items():
+        by_iso, made = getattr(iso, key), getattr(printed, key, None)
+        if value is None:
+            other = f" (NSK prints {made:.0f} N)" if made else ""
+            told.append(f"{key} computed by {'ISO 281' if key == 'C' else 'ISO 76'}{other}")
+        else:
+            who = "as NSK prints it" if made == value else "as given"
+            told.append(f"{key} {who} (computed {by_iso:.0f} N)")
+    return "; ".join(told)
 
 
 def _angles(kernel: BearingKernel, z: Array, psi: Array) -> Array:

@@ -308,10 +308,16 @@ def _warn_of_strained_layers(app: Application, eq: Equilibrium) -> None:
             continue
         e = float(source.eccentricity(eq.displacement(f"{part}.outer") - eq.displacement(f"{part}.inner")))
         if not HARDENING * 3.0 * e**2 <= STRAINED:
+            own = HARDENING * e**2
+            told = (
+                f"its linear stiffness is about {own:.1%} low for the state itself, and {3 * own:.1%} for a "
+                "small motion about it"
+                if e < 0.5
+                else "its linear stiffness says nothing of such a state: make the layer stiffer, thicker or "
+                "larger, or the load smaller"
+            )
             warn(
-                f"layer {part!r} is displaced across the axis by {e:.1%} of its thickness here; "
-                f"its linear stiffness is about {HARDENING * e**2:.1%} low for the state itself, and "
-                f"{3.0 * HARDENING * e**2:.1%} for a small motion about it",
+                f"layer {part!r} is displaced across the axis by {e:.1%} of its thickness here; {told}",
                 StrainedLayer,
             )
 

@@ -27,13 +27,15 @@ def sheet_text(sheet: xarray.Dataset) -> str:
     lines: list[str] = []
     width = max(12, *(len(n) + 2 for n in names))
     for heading, rows in sheet_rows(sheet).items():
+        if not rows:
+            continue
         lines += ["", f"{heading:<58}" + "".join(f"{n:>{width}}" for n in names)]
         for label, values, unit in rows:
             title = f"{label}, {unit}" if unit else label
             lines.append(f"  {title:<56}" + "".join(f"{v:>{width}}" for v in values))
     for name in names:
         one = sheet.sel(bearing=name)
-        lines += ["", f"{name}: {one['source'].item()}"]
+        lines += ["", _of(name, one["source"].item()), f"{name}: {one['rating_source'].item()}"]
         if one["warnings"].item():
             lines.append(f"{name}, warnings: {one['warnings'].item()}")
     return "\n".join(lines[1:])
@@ -69,12 +71,15 @@ def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
 
     body: list[str] = []
     for heading, rows in sheet_rows(sheet).items():
+        if not rows:
+            continue
         body.append(f"<tr>{cells('th', [heading, '', *names])}</tr>")
         body += [f"<tr>{cells('td', [label, unit, *values])}</tr>" for label, values, unit in rows]
     notes = []
     for name in names:
         one = sheet.sel(bearing=name)
-        notes.append(f"<p><b>{html.escape(name)}</b>: {html.escape(one['source'].item())}</p>")
+        for said in (one["source"].item(), one["rating_source"].item()):
+            notes.append(f"<p><b>{html.escape(name)}</b>: {html.escape(said.removeprefix(f'{name}: '))}</p>")
         if one["warnings"].item():
             notes.append(
                 f"<p class=warning><b>{html.escape(name)}</b>: {html.escape(one['warnings'].item())}</p>"
@@ -90,6 +95,11 @@ def sheet_html(sheet: xarray.Dataset, title: str = "Bearings") -> str:
         f"<table>{''.join(body)}</table>{''.join(notes)}<p>{html.escape(sheet.attrs['made_by'])}, "
         f"{html.escape(sheet.attrs['made_at'])}</p></body></html>\n"
     )
+
+
+def _of(name: str, said: str) -> str:
+    """What is said of a bearing, by its name once."""
+    return said if said.startswith(f"{name}: ") else f"{name}: {said}"
 
 
 def _names(sheet: Any) -> list[str]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bearingdyn.results import sampling_time, signal_of, unit_of
+from bearingdyn.results import recorded_channel, sampling_time, signal_of, unit_of
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 WINDOWS = ("hann", "none")
 
 
-def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarray.Dataset:
+def spectrum(result: xarray.Dataset, channel: str | None = None, window: str = "hann") -> xarray.Dataset:
     """Spectrum of a recorded channel: one-sided amplitudes (zero-to-peak), its mean removed.
 
     A sine of amplitude A whose frequency is on a line of the spectrum shows as A, whatever the window. The
@@ -27,7 +27,7 @@ def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarr
     result
         As `transient` returns it.
     channel
-        Name of a recorded channel.
+        Name of a recorded channel; None: the only one.
     window
         "hann" or "none".
 
@@ -42,6 +42,7 @@ def spectrum(result: xarray.Dataset, channel: str, window: str = "hann") -> xarr
         For an unknown channel or window, and for fewer than four samples.
     """
     check_window(window)
+    channel = recorded_channel(result, channel)
     signal = signal_of(result, channel)
     n = signal.size
     if n < 4:

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 @takes(speeds="rad/s")
 def unbalance_response(
     source: Equilibrium | Application | System,
-    speeds: ArrayLike | None,
-    outputs: Sequence[str],
+    speeds: ArrayLike | None = None,
+    outputs: Sequence[str] = (),
     *,
     quantity: str = "displacement",
     rpm: ArrayLike | None = None,
@@ -42,7 +42,7 @@ def unbalance_response(
     speeds
         (s,) rad/s of the shaft, ≥ 0; the response has this frequency. None where `rpm` is given.
     outputs
-        Channels of motions and forces, as in `frequency_response`.
+        One or more channels of motions and forces, as in `frequency_response`.
     quantity
         "displacement", "velocity" or "acceleration", of motions.
     rpm

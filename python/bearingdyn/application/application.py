@@ -248,6 +248,8 @@ class Application:
         joint = Connection(first, second)
         if truth("fits", fits):
             check_connection((first, second), (self.plan.faces(first), self.plan.faces(second)))
+        else:
+            self.plan.unjudged.add(joint)
         self.plan.connections.append(joint)
 
     @takes(stiffness=STIFFNESS, damping=DAMPING, offset=OFFSET)
@@ -396,6 +398,8 @@ class Application:
                 check_beside(joint, [b for b in others if b.inner.part == ends[0].part], self.plan.faces)
             joints.append(joint)
         self.plan.bearings |= {joint.name: joint for joint in joints}
+        if not fits:
+            self.plan.unjudged |= {joint.name for joint in joints}
 
     def fit(self, name: str, fit: LooseFit, *, ring: str, bore: str) -> None:
         """Set a flexible ring loosely in a bore, or on a shaft.

@@ -148,11 +148,11 @@ def _check_radii(
     off = _misfit(r_inside, r_around)
     if abs(off) <= DOUBTFUL:
         return
-    what = "overlap" if off > 0 else "gap"
+    what, size = "overlap" if off > 0 else "gap", ".2g" if abs(off) < 0.1 else ".0f"
     text = (
         f"{inside} has a radius of {r_inside:.6g} m, Ø{2e3 * r_inside:.6g} mm, and sits in {around} with a "
         f"radius of {r_around:.6g} m, Ø{2e3 * r_around:.6g} mm: {what} of "
-        f"{1e3 * abs(r_inside - r_around):.4g} mm, {100 * abs(off):.2g} % of the radius"
+        f"{1e3 * abs(r_inside - r_around):.4g} mm, {100 * abs(off):{size}} % of the radius"
     )
     ratio = max(r_inside / r_around, r_around / r_inside)
     if abs(ratio - 2.0) <= 2 * IMPOSSIBLE:

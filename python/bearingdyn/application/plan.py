@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sized
 
 import numpy as np
 
@@ -37,6 +38,8 @@ class Plan:
         Interfaces left unjoined on purpose, and raceways without balls.
     temperatures
         °C, of the parts that were given one.
+    unjudged
+        Bearings by name, and connections, that were joined with fits=False.
     """
 
     def __init__(self) -> None:
@@ -51,7 +54,19 @@ class Plan:
         self.free_interfaces: set[Place] = set()
         self.springs: list[Bush] = []
         self.temperatures: dict[str, float] = {}
+        self.unjudged: set[str | Connection] = set()
         self._rigid: dict[str, Array | None] = {}
+
+    def __repr__(self) -> str:
+        told: dict[str, Sized] = {
+            "parts": self.parts,
+            "bearings": self.bearings,
+            "joints": [*self.connections, *self.supports, *self.springs, *self.fits],
+            "loads": self.loads,
+        }
+        listed = [f"{len(held)} {kind}" for kind, held in told.items()]
+        names = f" ({', '.join([*self.parts, *self.bearings])})" if self.parts else ""
+        return f"<Plan: {', '.join(listed)}{names}>"
 
     def copy(self) -> Plan:
         """A plan of the same parts, joints and loads, to which more can be written."""

@@ -9,10 +9,10 @@ which matters from milliradians on (1.7 % in a pure-moment case of 4 mrad).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
-from typing import NamedTuple, TypeAlias, TypeVar
+from functools import cached_property, wraps
+from typing import Any, NamedTuple, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -59,6 +59,25 @@ def _changed(given: _Frozen, **values: object) -> _Frozen:
     for own in fields(given):
         object.__setattr__(made, own.name, values.get(own.name, getattr(given, own.name)))
     return made
+
+
+_Init = TypeVar("_Init", bound=Callable[..., None])
+
+
+def _by_measures(init: _Init) -> _Init:
+    """Making a bearing by its measures, which says where those of a designation are found."""
+
+    @wraps(init)
+    def checked(self: BallBearing, *args: Any, **kwargs: Any) -> None:
+        Z = args[0] if args else kwargs.get("Z")
+        if isinstance(Z, str):
+            raise ValueError(
+                f"Z is {Z!r}; it must be the number of balls, before Dw, Dpw, fi and fo; a bearing by its "
+                f"designation is bd.catalogue.bearing({Z!r})"
+            )
+        init(self, *args, **kwargs)
+
+    return cast(_Init, checked)
 
 
 @takes(
@@ -182,6 +201,7 @@ class BallBearing:
             f"{self.fi:g} and {self.fo:g}, {play}{film}>"
         )
 
+    @_by_measures
     def __init__(
         self,
         Z: int,

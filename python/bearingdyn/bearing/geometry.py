@@ -12,7 +12,7 @@ from functools import cached_property
 
 from bearingdyn.bearing.characteristic_frequencies import Frequencies
 from bearingdyn.checks import nonnegative, number, positive, require
-from bearingdyn.plausible_ranges import plausible
+from bearingdyn.plausible_ranges import MAGNITUDES, plausible
 
 CLAMPED = 0.02
 """Of Dw: rings that clamp their balls by so much press them with 4.6 to 4.9 GPa, above ISO 76's 4.2 GPa."""
@@ -82,13 +82,20 @@ class Geometry:
         )
         if self.clearance is not None:
             Pd = number("clearance", self.clearance, "it must be finite, in m")
+            row = MAGNITUDES["clearance"]
+            meant = [
+                f"; is it in {unit}? give {Pd * scale:.4g} m"
+                for unit, scale in (("mm", 1e-3), ("µm", 1e-6))
+                if row.within(Pd * scale / self.Dw, row.usual)
+            ]
+            hint = meant[0] if meant else ""
             least = (
                 f"it must be at least -Dw/50, {-CLAMPED * self.Dw:.6g} m, for rings that clamp their balls "
-                "harder make them yield: is it in µm? give m"
+                f"harder make them yield{hint}"
             )
             require(Pd >= -CLAMPED * self.Dw, "clearance", self.clearance, least)
-            unit = f"it must be at most Dw/10, {0.1 * self.Dw:.6g} m: is it in µm? give m"
-            require(Pd <= 0.1 * self.Dw, "clearance", self.clearance, unit)
+            most = f"it must be at most Dw/10, {0.1 * self.Dw:.6g} m{hint}"
+            require(Pd <= 0.1 * self.Dw, "clearance", self.clearance, most)
             plausible("clearance", "clearance", Pd / self.Dw)
             require(
                 Pd < 2 * self.A,

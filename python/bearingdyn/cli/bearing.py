@@ -42,7 +42,7 @@ def run_bearing(arguments: argparse.Namespace) -> tuple[str, int]:
     rating = "by ISO 281 and ISO 76" if printed is None else "as NSK prints them"
     if arguments.json:
         return json.dumps(_plain(sheet, name, designation, rating), indent=1), GOOD
-    text = f"{sheet_text(sheet)}\n\nC and C0 are {rating}"
+    text = sheet_text(sheet)
     return text if arguments.html is None else f"{text}; page in {arguments.html}", GOOD
 
 

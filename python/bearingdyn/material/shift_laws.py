@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import number, positive, require
 from bearingdyn.notice import OutsideIsotherms, warn
+from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
 GAS_CONSTANT = 8.31446261815324
@@ -81,6 +82,8 @@ class WLF:
     covariance: Covariance | None = field(default=None, compare=False)
     measured: Range | None = field(default=None, compare=False)
 
+    __repr__ = short
+
     def __post_init__(self) -> None:
         _check_range("WLF", self.measured)
         number("WLF.T_ref", self.T_ref, "it must be a finite temperature, °C")
@@ -129,6 +132,8 @@ class Arrhenius:
     T_ref: float
     variance: float | None = field(default=None, compare=False)
     measured: Range | None = field(default=None, compare=False)
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         _check_range("Arrhenius", self.measured)
@@ -179,6 +184,8 @@ class Joined:
     covariance: Covariance | None = field(default=None, compare=False)
     measured: Range | None = field(default=None, compare=False)
 
+    __repr__ = short
+
     def __post_init__(self) -> None:
         _check_range("Joined", self.measured)
         for name, unit in (("C1", ""), ("C2", ", K"), ("Ea", ", J/mol")):
@@ -224,6 +231,8 @@ class ShiftTable:
     T: tuple[float, ...]
     log_aT: tuple[float, ...]
     T_ref: float
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "T", tuple(float(v) for v in self.T))
@@ -278,6 +287,8 @@ class RhoT:
 
     T_ref: float
     expansion: float = 0.0
+
+    __repr__ = short
 
     def __post_init__(self) -> None:
         _above_zero("RhoT.T_ref", self.T_ref)

@@ -25,6 +25,10 @@ _TWO: dict[type, Callable[[Any, Any], Any]] = {
 _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s+(\S.*?)\s*$")
 
 
+# "50mm": what comes behind the number begins with a letter, and is no exponent
+_CLOSE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)([^\W\d_eE][^\s]*|[°%].*)\s*$")
+
+
 def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     """Value of a model file's notation: an expression of numbers, parameters, units and + - * / **.
 
@@ -78,12 +82,17 @@ def quantity(text: str, unit: str) -> float | None:
     """
     found = _QUANTITY.match(text)
     if found is None:
+        close = _CLOSE.match(text)
+        if close is not None:
+            raise ValueError(f"{text!r} lacks the space before its unit; write '{close[1]} {close[2]}'")
         return None
     number, given = float(found[1]), found[2]
     if unit == units.CELSIUS:
         require(given in ("°C", "K"), "unit", given, "it must be °C or K")
         return number - units.KELVIN if given == "K" else number
     own = units.read(given)
+    if unit == "rad/s" and given in ("1/min", "/min", "min⁻¹", "min^-1", "min-1", "U/min", "rev/min"):
+        raise ValueError(f"{text!r} is in {given}; write '{found[1]} rpm'")
     if not own.alike(units.read(unit)):
         raise ValueError(
             f"{text!r} is in {given}; it must be in {unit or 'no unit'}, or one that measures the same"

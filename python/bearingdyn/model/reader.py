@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from bearingdyn.analysis import equilibrium
-from bearingdyn.application import Application
+from bearingdyn.application import Application, Plan
 from bearingdyn.bearing import BallBearing, catalogue
 from bearingdyn.checks import existing, meant, named, number, require
 from bearingdyn.material import Maxwell, fit_maxwell, master_curve, read_dma, sample_dma_path
+from bearingdyn.model.asked_channels import CHANNELS, check_argument, check_channels
 from bearingdyn.model.key_lines import Key, key_lines
 from bearingdyn.model.model import Analysis, Model, analyses
 from bearingdyn.model.notation import grid
@@ -88,7 +89,7 @@ def read_model(path: str | os.PathLike[str], **parameters: float | str) -> Model
     _joints(shelf, app, held)
     _loads(shelf, app, held)
     state = _state(shelf, held)
-    asked = _analyses(shelf, held)
+    asked = _analyses(shelf, held, app.plan)
     with at(origin, ("parts",), app.plan.parts):
         app.plan.check_joints()
     title = held.get("title", "")
@@ -124,6 +125,8 @@ def _load(file: Path, origin: Origin, above: tuple[Path, ...], seen: list[Path])
         remedy = (
             f"this is a file of another version; it must be {FORMAT}, that of this package: format = {FORMAT}"
         )
+        if version is None:
+            raise ValueError(f"format is missing; the file must begin with a line format = {FORMAT}")
         require(version == FORMAT and not isinstance(version, bool), "format", version, remedy)
     included = held.pop("include", [])
     with at(own, ("include",)):
@@ -395,8 +398,9 @@ def _state(shelf: Shelf, held: Mapping[str, Any]) -> dict[str, Any]:
 _UNITS = {"frequency": "Hz", "speed": "rad/s", "speeds": "rad/s", "dt": "s", "memory": "s"}
 
 
-def _analyses(shelf: Shelf, held: Mapping[str, Any]) -> list[Analysis]:
+def _analyses(shelf: Shelf, held: Mapping[str, Any], plan: Plan) -> list[Analysis]:
     found: list[Analysis] = []
+    known = analyses()
     for k, table in enumerate(_list(shelf.origin, held, "analyses")):
         key: Key = ("analyses", k)
         with at(shelf.origin, key):
@@ -411,7 +415,10 @@ def _analyses(shelf: Shelf, held: Mapping[str, Any]) -> list[Analysis]:
                 is_grid = isinstance(plain, dict) and "from" in plain
                 if field == "speed" and isinstance(plain, list):
                     plain = tuple(plain)  # times and speeds
+                check_argument(known.get(str(table["type"])), field, plain, _UNITS.get(field))
                 given[field] = grid(plain) if is_grid else plain
+                if field in CHANNELS:
+                    check_channels(plan, field, plain)
         with at(shelf.origin, key, table):
             name = table.get("name", table["type"])
             require(isinstance(name, str) and bool(name), "name", name, "it must be a text")

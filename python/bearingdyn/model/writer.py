@@ -105,8 +105,10 @@ def model_text(model: Model) -> str:
         else:
             own = table_of(joint.bearing, materials.name, f"bearing {name!r}", "BallBearing")
             balls[id(joint.bearing)] = name
-        # what was checked when it was hung is not judged again
-        blocks.append(_section(("bearings", name), {**own, **ends, "fits": False}))
+        # a row of a set has its place, and was judged with its neighbours when the set was hung
+        if name in plan.unjudged or joint.place:
+            ends["fits"] = False
+        blocks.append(_section(("bearings", name), {**own, **ends}))
     for name, fit in plan.fits.items():
         own = table_of(fit.fit, materials.name, f"fit {name!r}", "LooseFit")
         blocks.append(_section(("fits", name), {**own, "ring": str(fit.ring), "bore": str(fit.bore)}))
@@ -127,7 +129,10 @@ def model_text(model: Model) -> str:
 
 def _joints(model: Model) -> list[dict[str, Any]]:
     plan = model.application.plan
-    rows: list[dict[str, Any]] = [{"connect": [str(c.a), str(c.b)], "fits": False} for c in plan.connections]
+    rows: list[dict[str, Any]] = [
+        {"connect": [str(c.a), str(c.b)], **({"fits": False} if c in plan.unjudged else {})}
+        for c in plan.connections
+    ]
     for support in plan.supports.values():
         rows.append({"ground": str(support.interface), **_springs(support)})
     for bush in plan.springs:

@@ -37,7 +37,8 @@ class Disc:
     Ip: float
 
     def __post_init__(self) -> None:
-        number("Disc z", self.z, "it must be a position in m")
+        if abs(number("Disc z", self.z, "it must be a position in m")) > 1.0:
+            plausible("shaft length", "Disc z", self.z)
         plausible("mass", "Disc mass", positive("Disc mass", self.mass, "it must be a positive mass in kg"))
         nonnegative("Disc Id", self.Id, "it must be a moment in kg m², not negative")
         nonnegative("Disc Ip", self.Ip, "it must be a moment in kg m², not negative")

@@ -123,7 +123,8 @@ class Shaft:
         places += [(f"discs[{i}].z", d.z) for i, d in enumerate(self.discs)]
         for name, z in places:
             if not -1e-9 * L <= z <= L * (1.0 + 1e-9):
-                raise ValueError(f"{name} is at z = {z} m; it must lie on the shaft, 0 to {L:.6g} m")
+                slip = f"; is it in mm? give {1e-3 * z:.6g} m" if 0 <= 1e-3 * z <= L and z >= 1 else ""
+                raise ValueError(f"{name} is at z = {z} m; it must lie on the shaft, 0 to {L:.6g} m{slip}")
         for name in self.points:
             if name in self.seats:
                 raise ValueError(f"points has {name!r}, the name of a seat already; choose another name")

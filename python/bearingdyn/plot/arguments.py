@@ -24,7 +24,7 @@ from bearingdyn.checks import (
     vector,
     whole,
 )
-from bearingdyn.plot.frame import some
+from bearingdyn.plot.frame import is_result, some
 from bearingdyn.results import check_dataset
 
 P = ParamSpec("P")
@@ -47,7 +47,10 @@ def figure(**given: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
         @functools.wraps(draw)
         def drawn(*args: P.args, **kwargs: P.kwargs) -> R:
-            bound = signature.bind(*args, **kwargs).arguments
+            try:
+                bound = signature.bind(*args, **kwargs).arguments
+            except TypeError as error:
+                raise TypeError(f"plot.{draw.__name__}: {error}") from None
             for name in bound:
                 if name in checks:
                     checks[name](name, bound[name])
@@ -78,11 +81,11 @@ def result(maker: str, *holding: str) -> Check:
     return lambda name, value: check_dataset(name, value, holding, maker)
 
 
-def results(maker: str, *holding: str, alone: bool = False) -> Check:
-    """An argument that maps labels to results of `maker`, with these variables; or is one, where `alone`."""
+def results(maker: str, *holding: str) -> Check:
+    """An argument that is a result of `maker`, with these variables, or maps labels to several."""
 
     def check(name: str, value: object) -> None:
-        if alone and hasattr(value, "data_vars"):
+        if is_result(value):
             return check_dataset(name, value, holding, maker)
         for label, each in _by_label(name, value, f"the result of `{maker}`").items():
             check_dataset(f"{name}[{label!r}]", each, holding, maker)
@@ -133,8 +136,7 @@ def _by_label(name: str, value: object, maker: str) -> Mapping[str, object]:
     remedy = f"it must be a mapping, label -> {maker}"
     require(isinstance(value, Mapping), name, value, remedy)
     labelled: Mapping[str, object] = value  # type: ignore[assignment]
-    if not hasattr(value, "data_vars"):
-        require(all(isinstance(label, str) for label in labelled), name, value, remedy)
+    require(all(isinstance(label, str) for label in labelled), name, value, remedy)
     return some(labelled, name)
 
 

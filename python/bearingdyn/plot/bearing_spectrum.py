@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @figure(datasets=results("bd.spectrum", "frequency", "amplitude"))
 def bearing_spectrum(
-    datasets: Mapping[str, xarray.Dataset],
+    datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
     bearing: BallBearing,
     speed: float,
     ax: Axes | None = None,
@@ -37,7 +37,7 @@ def bearing_spectrum(
     Parameters
     ----------
     datasets
-        Spectra by label, as `spectrum` takes them.
+        Spectra, as `spectrum` takes them.
     bearing
         The bearing whose lines are named.
     speed

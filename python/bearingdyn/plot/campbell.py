@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 # a mode that whirls at least as round as this is drawn as forward or backward
 ROUND = 0.1
+BEYOND = 1.5  # of the highest order at the highest speed, up to which modes are drawn
+LEAST = 3  # modes that are drawn all the same
+FREE = 1e-3  # of the highest mode, below which one is a free motion
 ROOM = 1.12  # above the highest mode of a Campbell diagram, for the names of the orders
 NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, points
 
@@ -69,6 +72,11 @@ def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes 
             named.add(kind)
             ax.plot(rpm, frequency[:, k], color=colour(shade), linestyle=dash, label=label)
         top = float(frequency.max(initial=0.0)) * ROOM
+        highest = max((each * float(rpm[-1]) / 60 for each in orders), default=0.0)
+        reached = np.sort(frequency.max(axis=0, initial=0.0))
+        reached = reached[reached > FREE * reached[-1]] if reached.size else reached
+        if highest > 0 and reached.size:  # what lies far above every order is met by none
+            top = min(top, max(BEYOND * highest, ROOM * float(reached[:LEAST][-1])))
         for each in orders:
             ax.plot(rpm, each * rpm / 60, color="0.6", linewidth=0.7)
             leaves = 60 * top / each if each > 0 else np.inf  # order 0 never does

@@ -106,8 +106,8 @@ def finish(ax: Axes, title: str = "", legend: bool = False) -> None:
     for axis in (ax.xaxis, ax.yaxis):
         axis.label.set_fontsize(STYLE["axes.labelsize"])
     rows = 0
-    if legend:
-        handles, labels = ax.get_legend_handles_labels()
+    handles, labels = ax.get_legend_handles_labels()  # of curves with a label that is not empty
+    if legend and labels:
         # about twelve letters an inch, five for the sample of the line
         room = max(1, int(12 * ax.bbox.width / ax.figure.dpi / (max(map(len, labels)) + 5)))
         columns = min(len(labels), LEGEND_COLUMNS, room)
@@ -183,17 +183,37 @@ def is_result(datasets: object) -> bool:
     return hasattr(datasets, "data_vars")
 
 
-def some(datasets: Mapping[str, Any], name: str = "datasets") -> Mapping[str, Any]:
-    """Frame of a figure: the results it shows, by label; ValueError if there are none, or one without."""
+def some(datasets: Any, name: str = "datasets") -> Mapping[str, Any]:
+    """Frame of a figure: the results it shows, by label, a lone one by none; ValueError if there are none."""
     if is_result(datasets):
-        raise ValueError(
-            f'{name} is a result without a label; give results by label, such as {{"run": result}}'
-        )
+        return {"": datasets}
     if not datasets:
         raise ValueError(
             f"{name} is empty, there is nothing to draw; give at least one result with its label"
         )
-    return datasets
+    by_label: Mapping[str, Any] = datasets
+    return by_label
+
+
+def called(label: str) -> str:
+    """For a figure's frame, a result in a message: by its label, if it has one."""
+    return repr(label) if label else "datasets"
+
+
+def one_of_result(kind: str, wanted: str | None, data: xarray.Dataset, label: str) -> str:
+    """For a figure's frame, the "output" or "input" that is wanted of a result, or the only one it has.
+
+    Raises
+    ------
+    ValueError
+        For one that the result does not have, and for None where it has several.
+    """
+    known = [str(c) for c in data[kind].values]
+    if wanted is None and len(known) != 1:
+        raise ValueError(f"{kind} is None; it must be one of those of {called(label)}: {known}")
+    if wanted is not None and wanted not in known:
+        raise ValueError(f"{called(label)} has no {kind} {wanted!r}; there are {known}")
+    return known[0] if wanted is None else wanted
 
 
 def kind_of(data: xarray.Dataset) -> str:

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn.application import RATES, Channel
-from bearingdyn.plot.arguments import figure, results
+from bearingdyn.plot.arguments import figure, maybe, results, text
 from bearingdyn.plot.frame import (
     DASHES,
+    called,
     colour,
     finish,
     halve,
-    is_result,
     kind_of,
     new_axes,
+    one_of_result,
     some,
     style,
 )
@@ -37,11 +38,15 @@ REFERENCES = {
 }
 
 
-@figure(datasets=results("bd.frequency_response", "response", alone=True))
+@figure(
+    datasets=results("bd.frequency_response", "response"),
+    output=maybe(text),
+    input=maybe(text),
+)
 def frequency_response(
     datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
-    output: str,
-    input: str,
+    output: str | None = None,
+    input: str | None = None,
     ax: Axes | None = None,
     *,
     phase: bool = False,
@@ -57,9 +62,9 @@ def frequency_response(
     datasets
         A result of `bd.frequency_response`, or several by label.
     output
-        Channel of the response.
+        Channel of the response; None: the only one there is.
     input
-        Channel of its cause.
+        Channel of its cause; None: the only one there is.
     ax
         Axes to draw into; None: those of a new figure.
     phase
@@ -80,20 +85,19 @@ def frequency_response(
         over the speed, which `unbalance_response` draws.
     """
     curves = {}
-    alone = is_result(datasets)
-    several: Any = {"response": datasets} if alone else datasets
-    for label, data in some(several).items():
+    datasets = some(datasets)
+    for label, data in datasets.items():
         if "frequency" not in data.coords:
             hint = "; draw it with plot.unbalance_response" if "speed" in data.coords else ""
             raise ValueError(
-                f"{label!r} is no response over the frequency, its kind is {kind_of(data)!r}{hint}"
+                f"{called(label)} is no response over the frequency, its kind is {kind_of(data)!r}{hint}"
             )
-        for kind, wanted in (("output", output), ("input", input)):
-            known = [str(c) for c in data[kind].values]
-            if wanted not in known:
-                raise ValueError(f"{label!r} has no {kind} {wanted!r}; there are {known}")
+        output = one_of_result("output", output, data, label)
+        input = one_of_result("input", input, data, label)
         curves[label] = data.sel(output=output, input=input)
-    quantity = one_quantity(several)
+    assert output is not None  # there is a result at least
+    assert input is not None
+    quantity = one_quantity(datasets)
     unit = _response_unit(quantity, output, input)
     kind = "force" if is_force(output) else quantity
     reference = REFERENCES[kind][0]
@@ -114,7 +118,7 @@ def frequency_response(
             if lower is not None:
                 lower.plot(f, continuous_phase(value), **look)
         if decibels:
-            ax.set_ylabel(f"{kind} level, zero-to-peak, dB re {REFERENCES[kind][1]}, input of 1")
+            ax.set_ylabel(f"{kind} level, zero-to-peak,\ndB re {REFERENCES[kind][1]}, input of 1")
         else:
             ax.set_yscale("log")
             ax.set_ylabel(f"{kind}, zero-to-peak, {unit}")
@@ -123,7 +127,7 @@ def frequency_response(
         _span(bottom, *(c["frequency"].values for c in curves.values()))
         if lower is not None:
             finish_phase(lower)
-        finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=not alone)
+        finish(ax, f"Response at {output} to a {_cause(input)} at {input}", legend=True)
     return ax
 
 
@@ -160,7 +164,7 @@ def _response_unit(quantity: str, output: str, input: str) -> str:
     found, given = Channel.parse(output), Channel.parse(input)
     below = given.motion_unit(quantity) if given.of_ground else given.force_unit
     if found.is_force:
-        return f"({found.force_unit})/({below})"
+        return "1" if found.force_unit == below else f"({found.force_unit})/({below})"
     above = found.motion_unit(quantity)
     if given.of_ground:
         return f"({above})/({below})"

@@ -50,7 +50,9 @@ def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
             look = temperature_colour(scale, float(dma.temperature[index].mean()))
             ax.loglog(dma.frequency[index], ratio[index], color=look, marker=".", markersize=3, linewidth=0.8)
         ax.axhline(1.0, color="0.5", linewidth=0.7, zorder=0)
-        ax.axhline(KK_LIMIT, color="0.5", linewidth=0.7, linestyle=":", zorder=0)
+        ax.axhline(
+            KK_LIMIT, color="0.5", linewidth=0.7, linestyle=":", zorder=0, label="limit for the median"
+        )
         if flagged.any():
             crossed = flagged & np.isfinite(ratio)
             ax.plot(
@@ -62,7 +64,7 @@ def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
         temperature_bar([ax], scale)
         ax.set_xlabel("frequency, Hz")
         ax.set_ylabel("local Kramers–Kronig ratio")
-        finish(ax, "Causality of the isotherms", legend=bool(flagged.any()))
+        finish(ax, "Causality of the isotherms", legend=True)
     return ax
 
 

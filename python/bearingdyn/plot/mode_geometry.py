@@ -45,7 +45,7 @@ def mode_geometry(
     found
         Result of `bd.modes`.
     mode
-        Its place in `found`, counted from 0.
+        Its place in `found`, counted from 0; the title counts from 1.
     ax
         Axes to draw into, of projection "3d"; None: those of a new figure.
     scale

@@ -32,7 +32,7 @@ def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis:
     data
         Result of `bd.mode_shapes`.
     mode
-        Its place in the dataset, counted from 0 as in `data.isel(mode=mode)`; the title gives it so.
+        Its place in the dataset, counted from 0 as in `data.isel(mode=mode)`; the title counts from 1.
     ax
         Axes to draw into; None: those of a new figure.
     axis
@@ -90,5 +90,5 @@ def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis:
         ax.set_ylabel(f"{axis}, mm")
         frequency = float(data["frequency"].values[mode])
         drawn = f", the largest motion drawn {1e3 * SWING * size:.3g} mm long"
-        finish(ax, f"Mode {mode} (from 0) at {frequency:.4g} Hz{drawn}", legend=True)
+        finish(ax, f"Mode {mode + 1} at {frequency:.4g} Hz{drawn}", legend=True)
     return ax

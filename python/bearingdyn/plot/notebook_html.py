@@ -162,9 +162,16 @@ def _warned(app: Application, told: list[str]) -> str:
         app.plan.check_joints()
     except ValueError as error:
         notes.append(str(error))
-    notes += [f"nothing holds: {motion}" for motion in loose_motions(app.plan)]
+    # every rotor is free to spin: that is no reason for alarm
+    spins = {f"{name} θz": name for name in app.plan.turning_parts()}
+    loose = loose_motions(app.plan)
+    free = [motion for motion in loose if all(one in spins for one in motion.split(", "))]
+    notes += [f"nothing holds: {motion}" for motion in loose if motion not in free]
     items = "".join(f"<li>{escape(note)}</li>" for note in notes)
-    return f'<ul style="margin:.3em 0;color:#a3541b">{items}</ul>' if items else ""
+    turning = ", ".join(spins[one] for motion in free for one in motion.split(", "))
+    return (f'<ul style="margin:.3em 0;color:#a3541b">{items}</ul>' if items else "") + (
+        f'<p style="margin:.3em 0">free to turn about z: {escape(turning)}</p>' if turning else ""
+    )
 
 
 def bearing_html(bearing: BallBearing) -> str:
@@ -199,6 +206,7 @@ def maxwell_html(material: Maxwell) -> str:
     facts = [
         ("relaxed modulus G0", f"{material.G0 / 1e6:.4g} MPa"),
         ("at once", f"{(material.G0 + material.G.sum()) / 1e6:.4g} MPa"),
+        *([("dashpot η0 (raises G″)", f"{material.eta0:.4g} Pa s")] if material.eta0 else []),
         *_stated(material),
     ]
     if material.fit is not None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @figure(datasets=results("bd.orbit", "x", "y"))
-def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
+def orbit(datasets: xarray.Dataset | Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
     """Draw orbits by bd.orbit, several by label, in µm, each about its own mean, both axes to one scale.
 
     The mean of the record is what bd.orbit subtracts and keeps as mean_x and mean_y. The paper subtracts the
@@ -31,7 +31,7 @@ def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axe
     Parameters
     ----------
     datasets
-        Results of `bd.orbit` by label.
+        A result of `bd.orbit`, or several by label.
     ax
         Axes to draw into; None: those of a new figure.
 
@@ -40,7 +40,8 @@ def orbit(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axe
     Axes
         The axes drawn into.
     """
-    first = next(iter(some(datasets).values()))
+    datasets = some(datasets)
+    first = next(iter(datasets.values()))
     with style():
         ax = ax or new_axes(width=4.6, height=4.9)
         curves = [(d["x"].values * 1e6, d["y"].values * 1e6) for d in datasets.values()]

@@ -3,29 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bearingdyn.plot.arguments import figure, result, results
-from bearingdyn.plot.frame import DASHES, RPM, colour, engineering, finish, halve, new_axes, some, style
+from bearingdyn.plot.frame import (
+    DASHES,
+    RPM,
+    called,
+    colour,
+    engineering,
+    finish,
+    halve,
+    new_axes,
+    some,
+    style,
+)
 from bearingdyn.plot.phase_axis import continuous_phase, finish_phase
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
+FEW = 60  # pieces of a run-up, up to which each is marked
 DEPTH = 1e-6  # of the largest line: 120 dB, as in `spectrum`
 
 
 @figure(datasets=results("bd.order_spectrum", "amplitude"))
-def order_spectrum(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
+def order_spectrum(datasets: xarray.Dataset | Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
     """Draw amplitudes by bd.order_spectrum over orders of the shaft speed, several by label, 120 dB deep.
 
     Parameters
     ----------
     datasets
-        Results of `bd.order_spectrum` by label, in one unit.
+        A result of `bd.order_spectrum`, or several by label, in one unit.
     ax
         Axes to draw into; None: those of a new figure.
 
@@ -39,9 +51,10 @@ def order_spectrum(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = Non
     ValueError
         For a result that has no orders, or results in different units.
     """
-    for label, data in some(datasets).items():
+    datasets = some(datasets)
+    for label, data in datasets.items():
         if "order" not in data.coords or "time" in data.coords:
-            raise ValueError(f"{label!r} is no spectrum over orders; make it with bd.order_spectrum")
+            raise ValueError(f"{called(label)} is no spectrum over orders; make it with bd.order_spectrum")
     units = {str(data["amplitude"].attrs["units"]) for data in datasets.values()}
     if len(units) > 1:
         raise ValueError(f"spectra in {sorted(units)} do not go into one figure; draw one of each")
@@ -116,11 +129,14 @@ def orders(
     with style():
         ax = ax or new_axes(height=4.8 if phase else 3.4)
         lower = halve(ax, share=0.3) if phase else None
+        mark = "." if across.size <= FEW else None  # straight lines between them are drawn, not known
         for k, order in enumerate(chosen):
-            dash = DASHES[k % len(DASHES)]
-            ax.plot(across, np.abs(found[:, k]), color=colour(k), linestyle=dash, label=f"{order:g}×")
+            look: dict[str, Any] = {
+                "color": colour(k), "linestyle": DASHES[k % len(DASHES)], "marker": mark, "markersize": 4,
+            }  # fmt: skip
+            ax.plot(across, np.abs(found[:, k]), label=f"{order:g}×", **look)
             if lower is not None:
-                lower.plot(across, continuous_phase(found[:, k]), color=colour(k), linestyle=dash)
+                lower.plot(across, continuous_phase(found[:, k]), **look)
         size = np.abs(found)
         if size.any():
             ax.set_yscale("log")

@@ -11,6 +11,7 @@ from bearingdyn.plot.arguments import figure, frequencies, maybe, results
 from bearingdyn.plot.frame import (
     GREY,
     colour,
+    engineering,
     finish,
     kind_of,
     new_axes,
@@ -34,7 +35,7 @@ NAME, PITCH, LEADER = 8.0, 1.35, 0.07
 
 @figure(datasets=results("bd.spectrum", "frequency", "amplitude"), lines=maybe(frequencies))
 def spectrum(
-    datasets: Mapping[str, xarray.Dataset],
+    datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
     lines: Mapping[str, float] | None = None,
     ax: Axes | None = None,
     *,
@@ -45,7 +46,7 @@ def spectrum(
     Parameters
     ----------
     datasets
-        Results of `bd.spectrum` or `bd.envelope_spectrum` by label, in one unit.
+        A result of `bd.spectrum` or `bd.envelope_spectrum`, or several by label, in one unit.
     lines
         Name -> frequency, Hz, such as {"BPFO": 107.4}: marked and named where they fall inside the figure.
     ax
@@ -65,7 +66,8 @@ def spectrum(
     """
     if f_max is not None and not f_max > 0:
         raise ValueError(f"f_max is {f_max}; it must be a positive frequency, in Hz")
-    units = {str(data["amplitude"].attrs["units"]) for data in some(datasets).values()}
+    datasets = some(datasets)
+    units = {str(data["amplitude"].attrs["units"]) for data in datasets.values()}
     if len(units) > 1:
         raise ValueError(f"spectra in {sorted(units)} do not go into one figure; draw one of each")
     end = f_max or max(float(data["frequency"].values[-1]) for data in datasets.values())
@@ -81,12 +83,14 @@ def spectrum(
             smallest = min(smallest, float(amplitude.min(initial=np.inf)))
         ax.set_xlim(0.0, end)
         room = _mark(ax, {name: f for name, f in (lines or {}).items() if 0 <= f <= end})
+        drawn = np.array([largest])
         if largest > 0:
             ax.set_yscale("log")
             low = max(0.5 * smallest, DEPTH * largest)
+            drawn = np.array([low, largest])
             ax.set_ylim(low, low * (2 * largest / low) ** (1 / (1 - room)))
         ax.set_xlabel("frequency, Hz")
-        ax.set_ylabel(f"amplitude, zero-to-peak, {units.pop()}")
+        ax.set_ylabel(f"amplitude, zero-to-peak, {engineering(ax.yaxis, drawn, units.pop())}")
         kinds = dict.fromkeys(kind_of(data) for data in datasets.values())
         title = f"{' and '.join(kinds)} of {', '.join(channels)}"
         finish(ax, title[0].upper() + title[1:], legend=True)

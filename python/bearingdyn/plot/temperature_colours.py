@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap, Normalize
 
 
-TEMPERATURES = "cividis"
+TEMPERATURES = "viridis"
 BRIGHTEST = 0.9  # of its range: the end would not show on white
 
 

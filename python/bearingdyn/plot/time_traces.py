@@ -9,7 +9,7 @@ import numpy as np
 
 from bearingdyn.checks import name_list
 from bearingdyn.plot.arguments import figure, results
-from bearingdyn.plot.frame import colour, engineering, finish, new_axes, some, stack, style
+from bearingdyn.plot.frame import called, colour, engineering, finish, new_axes, some, stack, style
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ QUANTITIES = {
 
 @figure(datasets=results("bd.transient"))
 def time(
-    datasets: Mapping[str, xarray.Dataset],
+    datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
     channels: Sequence[str] | None = None,
     ax: Axes | None = None,
     *,
@@ -49,7 +49,7 @@ def time(
     Parameters
     ----------
     datasets
-        Results of `bd.transient` by label.
+        A result of `bd.transient`, or several by label.
     channels
         Channels drawn; None: all that were recorded.
     ax
@@ -72,7 +72,7 @@ def time(
     marches = some(datasets)
     for label, data in marches.items():
         if "record" not in data:
-            raise ValueError(f"{label!r} has no record over time; bd.transient makes one")
+            raise ValueError(f"{called(label)} has no record over time; bd.transient makes one")
     first = next(iter(marches.values()))
     wanted = (
         [str(c) for c in first["channel"].values] if channels is None else name_list("channels", channels)
@@ -84,7 +84,7 @@ def time(
         known = [str(c) for c in data["channel"].values]
         for name in wanted:
             if name not in known:
-                raise ValueError(f"channel {name!r} of {label!r} was not recorded; there are {known}")
+                raise ValueError(f"channel {name!r} of {called(label)} was not recorded; there are {known}")
     for name in wanted:
         units.setdefault(str(first["unit"].sel(channel=name).item()), []).append(name)
     traces = {
@@ -107,7 +107,7 @@ def time(
                 said = name if len(marches) == 1 else label if len(wanted) == 1 else f"{label}: {name}"
                 panel.plot(*traces[label, name], color=colour(k), linewidth=0.7, label=said)
             written = engineering(panel.yaxis, np.concatenate([traces[d][1] for d in drawn]), unit)
-            quantity = QUANTITIES.get(unit, "value")
+            quantity = QUANTITIES.get(unit, "value") + (" about its mean" if about_mean else "")
             panel.set_ylabel(quantity if written == "1" else f"{quantity}, {written}")
             if unit == "1" and not about_mean:
                 panel.yaxis.set_major_locator(MaxNLocator(4, integer=True))

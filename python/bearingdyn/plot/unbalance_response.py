@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn.plot.arguments import figure, results
+from bearingdyn.plot.arguments import figure, maybe, results, text
 from bearingdyn.plot.frame import (
     DASHES,
     RPM,
+    called,
     colour,
     engineering,
     finish,
     halve,
     kind_of,
     new_axes,
+    one_of_result,
     some,
     style,
 )
@@ -28,9 +30,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-@figure(datasets=results("bd.unbalance_response", "response"))
+@figure(datasets=results("bd.unbalance_response", "response"), output=maybe(text))
 def unbalance_response(
-    datasets: Mapping[str, xarray.Dataset], output: str, ax: Axes | None = None, *, phase: bool = True
+    datasets: xarray.Dataset | Mapping[str, xarray.Dataset],
+    output: str | None = None,
+    ax: Axes | None = None,
+    *,
+    phase: bool = True,
 ) -> Axes:
     """Draw the magnitude of bd.unbalance_response over the speed in rpm, several by label, logarithmic.
 
@@ -40,9 +46,9 @@ def unbalance_response(
     Parameters
     ----------
     datasets
-        Results of `bd.unbalance_response` by label.
+        A result of `bd.unbalance_response`, or several by label.
     output
-        Channel of the response.
+        Channel of the response; None: the only one there is.
     ax
         Axes to draw into; None: those of a new figure.
     phase
@@ -59,16 +65,18 @@ def unbalance_response(
         If a label lacks the output or is no unbalance response, or if their quantities differ.
     """
     curves = {}
-    for label, data in some(datasets).items():
+    datasets = some(datasets)
+    for label, data in datasets.items():
         if "speed" not in data.coords or "output" not in data.coords:
             hint = "; draw it with plot.frequency_response" if "frequency" in data.coords else ""
-            raise ValueError(f"{label!r} is no response over the speed, its kind is {kind_of(data)!r}{hint}")
-        known = [str(c) for c in data["output"].values]
-        if output not in known:
-            raise ValueError(f"{label!r} has no output {output!r}; there are {known}")
+            raise ValueError(
+                f"{called(label)} is no response over the speed, its kind is {kind_of(data)!r}{hint}"
+            )
+        output = one_of_result("output", output, data, label)
         curve = data["response"].sel(output=output)
         order = np.argsort(curve["speed"].values)
         curves[label] = curve["speed"].values[order] * RPM, curve.values[order]
+    assert output is not None  # there is a result at least
     quantity = "force" if is_force(output) else one_quantity(datasets)
     unit = str(next(iter(datasets.values()))["unit"].sel(output=output).item())
     with style():

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bearingdyn.plot.arguments import figure, result
-from bearingdyn.plot.frame import RPM, finish, new_axes, style
+from bearingdyn.plot.frame import RPM, engineering, finish, new_axes, style
 
 if TYPE_CHECKING:
     import xarray
@@ -60,7 +60,10 @@ def waterfall(data: xarray.Dataset, ax: Axes | None = None, *, f_max: float | No
             cmap="cividis", shading="nearest", rasterized=True,
         )  # fmt: skip
         bar = ax.figure.colorbar(mesh, ax=ax, pad=0.02)
-        bar.set_label(f"amplitude, zero-to-peak, {data['amplitude'].attrs['units']}")
+        unit = engineering(
+            bar.ax.yaxis, np.array([DEPTH * largest, largest]), data["amplitude"].attrs["units"]
+        )
+        bar.set_label(f"amplitude, zero-to-peak, {unit}")
         ax.set_xlabel("frequency, Hz")
         ax.set_ylabel("speed, rpm" if rising else "time, s")
         finish(ax, f"Waterfall of {data.attrs['channel']}")

@@ -127,11 +127,14 @@ def sheet_html(eq: Equilibrium, speed: float) -> str:
     names = [str(n) for n in sheet["bearing"].values]
     blocks = ["<h3>Bearings</h3>"]
     for heading, rows in sheet_rows(sheet).items():
+        if not rows:
+            continue
         shown = [(f"{label}, {unit}" if unit else label, *values) for label, values, unit in rows]
         blocks.append(table((heading, *names), shown))
     for name in names:
         one = sheet.sel(bearing=name)
         blocks.append(paragraph(f"{name}: {one['source'].item()}", "note"))
+        blocks.append(paragraph(f"{name}: {one['rating_source'].item()}", "note"))
         if one["warnings"].item():
             blocks.append(paragraph(f"{name}: {one['warnings'].item()}"))
     return "".join(blocks)

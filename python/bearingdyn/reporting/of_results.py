@@ -314,7 +314,8 @@ def everything(data: xarray.Dataset) -> str:
         if one.dtype.kind in "iufc" and one.size:
             size = np.abs(one.values)
             finite = size[np.isfinite(size)]
-            what = f"{finite.min():.4g} to {finite.max():.4g}" if finite.size else "–"
+            ends = dict.fromkeys(f"{x:.4g}" for x in (finite.min(), finite.max())) if finite.size else ["–"]
+            what = " to ".join(ends)
             what = told(float(np.real(one.values)), unit) if one.ndim == 0 else f"{what} {unit}".rstrip()
         else:
             what = str(one.values.item()) if one.ndim == 0 else ""
@@ -331,6 +332,8 @@ def _stated(data: xarray.Dataset, names: tuple[str, ...]) -> str:
             continue
         if name == "speed":
             said.append(f"speed {float(value) / rpm:.5g} rpm")
+        elif name == "layers":
+            said.append(f"about the state at rest with its layers {value}")
         else:
             shown = f"{value:.4g}" if isinstance(value, float | np.floating) else str(value)
             said.append(f"{name.replace('_', ' ')} {shown}")

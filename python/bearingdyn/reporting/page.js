@@ -205,7 +205,7 @@
     }
     const middle = low.map((v, k) => (v + high[k]) / 2), size = Math.max(...high.map((v, k) => v - low[k])) || 1;
     const radius = 0.5 * Math.hypot(...high.map((v, k) => v - low[k])) + 0.08 * size;
-    let turn = -0.9, tilt = 0.35, mode = 0, moving = !matchMedia("(prefers-reduced-motion: reduce)").matches, clock = 0, last = null;
+    let turn = -0.9, tilt = 0.35, mode = given.first || 0, moving = !matchMedia("(prefers-reduced-motion: reduce)").matches, clock = 0, last = null;
     const U = new Float32Array(2 * n), depth = new Float32Array(n), level = new Float32Array(n);
     const order = Array.from({length: F.length / 3}, (_, k) => k), far = new Float32Array(F.length / 3);
     const amplitudes = () => {

@@ -69,8 +69,8 @@ def report(
     Parameters
     ----------
     what
-        A model, an application, or the path of a model file: its analyses are run. Or a result, several by
-        name, or the path of a result file.
+        A model, an application, or the path of a model file: its analyses are run. Or an equilibrium. Or a
+        result, several by name, or the path of a result file.
     path
         The page; one that is there is replaced.
     model
@@ -113,10 +113,15 @@ def report(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
         machine = None if model is None else _machine("model", model, page)
-        results = _results(what, page, tell) if machine is not None or not _is_machine(what) else None
+        results: dict[str, xarray.Dataset] | None = None
+        at_rest = what if isinstance(what, Equilibrium) else None
+        if at_rest is not None:
+            results = {}
+        elif machine is not None or not _is_machine(what):
+            results = _results(what, page, tell)
         if results is None:
             machine = _machine("what", what, page)
-        _fill(page, machine, results, tell)
+        _fill(page, machine, results, tell, at_rest)
     for each in caught:
         if issubclass(each.category, UserWarning):
             page.doubts.setdefault(" ".join(str(each.message).split()), _remedy(each.category))
@@ -156,7 +161,8 @@ def _results(what: Any, page: _Page, tell: Callable[[str], object]) -> dict[str,
     if hasattr(what, "data_vars"):
         return {kind_of(what) or "result": what}
     remedy = (
-        "it must be a model, an application, a result, results by name, or the path of a .toml or result file"
+        "it must be a model, an application, an equilibrium, a result, results by name, or the path of a "
+        ".toml or result file"
     )
     held = named("what", what, remedy)
     require(bool(held), "what", what, "there is nothing to report: give at least one result by its name")
@@ -175,18 +181,20 @@ def _fill(
     machine: Model | None,
     results: dict[str, xarray.Dataset] | None,
     tell: Callable[[str], object],
+    eq: Equilibrium | None = None,
 ) -> None:
-    eq: Equilibrium | None = None
     if machine is not None:
         page.title = page.title or machine.title
         tell("drawing")
         page.add("The machine", drawing_html(machine.application))
         page.add("Inputs", inputs_html(machine))
-        tell("equilibrium")
-        eq = machine.equilibrium()
+        if eq is None:
+            tell("equilibrium")
+            eq = machine.equilibrium()
         if results is None:
             results = machine.run(tell)
-        page.add("At rest", state_html(eq, speed_of(results)))
+    if eq is not None:
+        page.add("At rest", state_html(eq, speed_of(results or {})))
     for name, members in together(results or {}):
         content = results_html(members)
         first = next(iter(members.values()))

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 CELLS = 24  # of a part along its longest side
 SHOWN = 12  # modes
+FREE = 1e-3  # of the median frequency of the modes shown, below which a motion is free
 
 
 def shapes_html(eq: Equilibrium, found: xarray.Dataset) -> str:
@@ -35,6 +36,7 @@ def shapes_html(eq: Equilibrium, found: xarray.Dataset) -> str:
         return ""  # parts without a surface, or modes of another system
     if not drawn or not drawn[0]:
         return ""
+    first = first_elastic(found, count)
     points, faces, groups, parts = _thinned(drawn[0])
     modes: list[dict[str, Any]] = []
     for k, surfaces in enumerate(drawn):
@@ -45,9 +47,10 @@ def shapes_html(eq: Equilibrium, found: xarray.Dataset) -> str:
         "faces": base64.b64encode(faces.astype("<u2").tobytes()).decode("ascii"),
         "parts": parts,
         "modes": modes,
+        "first": first,
     }
     buttons = "".join(
-        f"<button type=button aria-pressed={'true' if k == 0 else 'false'}>{mode['title']}</button>"
+        f"<button type=button aria-pressed={'true' if k == first else 'false'}>{mode['title']}</button>"
         for k, mode in enumerate(modes)
     )
     told = f"{count} modes on the surfaces of {', '.join(parts)}; drag to turn"
@@ -57,6 +60,15 @@ def shapes_html(eq: Equilibrium, found: xarray.Dataset) -> str:
         f'<canvas role=img tabindex=0 aria-label="{told}"></canvas>'
         f"<script type=application/json>{json_text(held)}</script></figure>"
     )
+
+
+def first_elastic(found: xarray.Dataset, count: int) -> int:
+    """Number, from 0, of the mode shape that a report opens with: the first that is no free motion.
+
+    What nothing holds, as the spin of a rotor, is found near 0 Hz and not at it; it lies far below the rest.
+    """
+    frequency = np.asarray(found["frequency"].values[:count], dtype=np.float64)
+    return int(np.argmax(frequency > FREE * np.median(frequency)))
 
 
 def mode_title(found: xarray.Dataset, k: int) -> str:

@@ -1,7 +1,14 @@
 """Results: Datasets with units, inputs and versions, in one file each; and their export."""
 
 from bearingdyn.results.datasets import check_dataset, dataset
-from bearingdyn.results.march_record import march_dataset, recorded, sampling_time, signal_of, unit_of
+from bearingdyn.results.march_record import (
+    march_dataset,
+    recorded,
+    recorded_channel,
+    sampling_time,
+    signal_of,
+    unit_of,
+)
 from bearingdyn.results.provenance import inputs_of, stamp, versions
 from bearingdyn.results.result_file import groups, open_result, save
 from bearingdyn.results.uff import write_uff
@@ -14,6 +21,7 @@ __all__ = [
     "march_dataset",
     "open_result",
     "recorded",
+    "recorded_channel",
     "sampling_time",
     "save",
     "signal_of",

@@ -91,6 +91,30 @@ def recorded(result: object) -> None:
     check_dataset("result", result, ["record", "channel", "time"], "transient")
 
 
+def recorded_channel(result: xarray.Dataset, channel: str | None) -> str:
+    """Name of a channel in a march's record.
+
+    Parameters
+    ----------
+    result
+        What `transient` returned.
+    channel
+        Its name, or None for the only one.
+
+    Raises
+    ------
+    ValueError
+        For a channel that was not recorded, and for None where there are several.
+    """
+    recorded(result)
+    known = [str(c) for c in result["channel"].values]
+    if channel is None and len(known) != 1:
+        raise ValueError(f"channel is None; it must be one of those recorded: {known}")
+    if channel is not None and channel not in known:
+        raise ValueError(f"channel {channel!r} was not recorded; there are {known}")
+    return known[0] if channel is None else channel
+
+
 def signal_of(result: xarray.Dataset, channel: str) -> Array:
     """Samples (n,) of a channel in a march's record.
 
@@ -106,10 +130,7 @@ def signal_of(result: xarray.Dataset, channel: str) -> Array:
     ValueError
         For a channel that was not recorded.
     """
-    recorded(result)
-    known = [str(c) for c in result["channel"].values]
-    if channel not in known:
-        raise ValueError(f"channel {channel!r} was not recorded; there are {known}")
+    recorded_channel(result, channel)
     return np.asarray(result["record"].sel(channel=channel).values, dtype=np.float64)
 
 

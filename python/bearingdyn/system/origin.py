@@ -11,10 +11,10 @@ from bearingdyn.system.system import System
 
 def noted(system: System, app: Application) -> System:
     """Note in a system its origin: the application's parts, joints, bearings and loads as a text."""
-    # the reduced parts, and what is kept of them, follow from their sources
+    # the reduced parts, and what is kept of them, follow from their sources; from a fit's check nothing does
     held = {
         name: value
         for name, value in vars(app.plan).items()
-        if name not in ("parts", "reduced") and name[0] != "_"
+        if name not in ("parts", "reduced", "unjudged") and name[0] != "_"
     }
     return replace(system, inputs=fingerprint.text(held))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bearingdyn.application import Plan, Unbalance
 from bearingdyn.notice import StandingUnbalance, warn
-from bearingdyn.plausible_ranges import plausible
+from bearingdyn.plausible_ranges import MAGNITUDES, plausible
 
 
 def check_unbalance(plan: Plan) -> None:
@@ -28,7 +28,14 @@ def check_unbalance(plan: Plan) -> None:
                 name = (
                     f"unbalance at {load.where} is {load.moment:.6g} kg m on {mass:.4g} kg; its eccentricity"
                 )
-                plausible("eccentricity", name, load.moment / mass)
+                e, row = load.moment / mass, MAGNITUDES["eccentricity"]
+                units = (("g mm", 1e-6), ("kg mm", 1e-3))
+                slips = [
+                    f"; is the unbalance in {unit}? give {load.moment * scale:.4g} kg m"
+                    for unit, scale in units
+                    if row.within(e * scale, row.usual)
+                ]
+                plausible("eccentricity", name, e, hint=slips[0] if slips else "")
             if load.moment > 0.0 and _stands(plan, load.where.part):
                 turning = sorted(plan.turning_parts())
                 what = f"{', '.join(turning)} turns" if turning else "the other ring of its bearing turns"

@@ -157,14 +157,15 @@ def _moment(ax: Axes, place: Array, about_x: float, size: float, told: list[str]
 def _unbalance(
     ax: Axes, place: Array, reach: tuple[float, float], size: float, load: Unbalance, left: bool
 ) -> None:
-    """A mass off the axis, its words to the left of it or to the right."""
+    """A mass off the axis, as high as its phase puts it at the angle 0, its words to the left or right."""
     from matplotlib.patches import Circle
 
-    centre = (float(place[0]), float(reach[0] + 0.1 * (place[1] - reach[0])))
+    # the section is seen along x: at phase 0 the mass is before the axis, not above or below it
+    centre = (float(place[0]), float(place[1] + 0.9 * (place[1] - reach[0]) * math.sin(load.phase)))
     ax.add_patch(Circle(centre, 0.09 * size, facecolor=RED, edgecolor="white", linewidth=0.6, zorder=11))
     told = f"unbalance {load.moment * 1e6:.4g} g mm"
-    told += f", {math.degrees(load.phase):.4g}° from x" if load.phase else ""
+    told += f", {math.degrees(load.phase):.4g}° from x" if load.phase else ", towards x"
     ax.annotate(
-        told, centre, xytext=(-8 if left else 8, 0), textcoords="offset points", color=RED, fontsize=8.5,
+        told, centre, xytext=(-8 if left else 8, 8), textcoords="offset points", color=RED, fontsize=8.5,
         va="center", ha="right" if left else "left", zorder=12, bbox=HALO,
     )  # fmt: skip
