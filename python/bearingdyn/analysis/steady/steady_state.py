@@ -15,6 +15,7 @@ from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced
+from bearingdyn.analysis.steady.cut_harmonics import CUT, cut_off, share_cut, warn_of_cut
 from bearingdyn.analysis.steady.motion import Motion
 from bearingdyn.analysis.steady.problem import Problem, motion_of
 from bearingdyn.analysis.steady.stability import Stability, stability_of
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
 
 # harmonics where none are asked for: of the ball pass, or of the highest of several bases
 HARMONICS, SEVERAL = 40, 20
-# of a channel's largest line, what harmonics left out may add; and of its mean, below which it is no motion
-CUT, LEAST = 0.02, 1e-6
 
 
 @takes(speed="rad/s")
@@ -172,7 +171,7 @@ def steady_state(
         moved = Motion(balance, found).x
     if not found.converged:
         raise _failed(problem, balance, found, result)
-    warn_of_cut(result, f"the steady motion at {speed:g} rad/s", result.attrs["harmonics"])
+    _warn_of_cut(result, f"the steady motion at {speed:g} rad/s", result.attrs["harmonics"])
     warn_of_band(problem.system, balance.omega, moved)
     warn_of_motions([(balance, found.z, f"in the steady motion at {speed:g} rad/s")])
     return result
@@ -204,12 +203,8 @@ def _found(
     return balance, found, math.nan
 
 
-def warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
-    """Warn (CutHarmonics) of channels of a steady state to which the harmonics left out would add."""
-    amplitude, cut = np.abs(result["amplitude"].values), result["cut"].values
-    largest, whole_size = amplitude[1:].max(axis=0, initial=0.0), amplitude.max(axis=0, initial=0.0)
-    with np.errstate(invalid="ignore"):
-        wanting = (cut > CUT * largest) & (cut > LEAST * whole_size)
+def _warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
+    """Warn (CutHarmonics) of the line, and of the channel, of a steady state that misses most."""
     left = float(result.attrs["lines_left"])
     if left > CUT:
         warn(
@@ -217,15 +212,11 @@ def warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
             "out; give more harmonics",
             CutHarmonics,
         )
-    if wanting.any():
-        c = int(np.argmax(np.where(wanting, cut / np.maximum(largest, 1e-300), 0.0)))
-        name = str(result["channel"].values[c])
-        warn(
-            f"{what} wants more than {harmonics} harmonics: those next above would add {cut[c]:.2g} to "
-            f"{name!r}, whose largest line is {largest[c]:.2g} {result['unit'].values[c]}; give more "
-            "harmonics",
-            CutHarmonics,
-        )
+    cut = result["cut"].values
+    share = share_cut(result["amplitude"].values, cut)
+    c = int(np.argmax(share))
+    about = result.isel(channel=c)
+    warn_of_cut(what, harmonics, str(about["channel"].values), share[c], cut[c], str(about["unit"].values))
 
 
 def _failed(problem: Problem, balance: Balance, found: Found, result: xarray.Dataset) -> core.SolverError:
@@ -284,7 +275,7 @@ def _dataset(
             "record": (("time", "channel"), rows, "", "channels over time; their units are in `unit`"),
             "cut": (
                 "channel",
-                motion.beyond(asked),  # type: ignore[arg-type]
+                cut_off(balance, found.z, asked, motion.fine),  # type: ignore[arg-type]
                 "",
                 "amplitude of the lines next above the last",
             ),
