@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from bearingdyn import core
 from bearingdyn.bearing import BallBearing, FilmDamping, TabulatedDamping
+from twins import bearing_twin
 
 FILM, C = 2e-6, (10.0, 30.0)  # m, N s/m
 TABLE = (2e-6, 8e-6)  # m
@@ -60,6 +62,20 @@ def test_film_damping_is_the_curve_of_its_nodes() -> None:
         assert ball.damping_matrix([0, 0, z, 0, 0, 0])[2, 2] == pytest.approx(
             8 * sine**2 * 40 * w**3 * (1.4 - 0.5 * w), rel=2e-3
         )
+
+
+@pytest.mark.parametrize("Z", [3, 5, 9, 17, 24, 33, 35, 47, 65])
+def test_a_film_law_of_many_balls_is_that_of_each(Z: int) -> None:
+    """Registers go in groups (csrc/ehl.c): of any number of balls, against the twin, ball by ball."""
+    ball = BallBearing(Z, 2e-3, 60e-3, 0.52, 0.53, contact_angle=0.4, film=FILM, damping=FADING)
+    kernel = ball.kernel()
+    z, rate = np.array([2e-6, -9e-6, 3e-6, 1e-6, -2e-6]), np.array([1e-3, -2e-3, 1e-3, 0.02, 0.01])
+    got = core.bearing_force(kernel, z, rate, 0.3, 200.0)
+    want = bearing_twin.bearing_force(kernel, z, rate, 0.3, 200.0)
+    assert 0 < np.count_nonzero(got[3]) < Z
+    for each, other in zip(got, want, strict=True):
+        # round-off of δ, a difference of 60 mm, in its film
+        np.testing.assert_allclose(each, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
 
 
 def test_force_and_tangent_vanish_together_where_contact_is_lost() -> None:

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from bearingdyn import core
 from bearingdyn.bearing import BallBearing, FilmDamping, LoadDamping, TabulatedDamping
 from bearingdyn.bearing.contact_damping import Damping
-from bearingdyn.system import assemble
+from bearingdyn.system import Contacts, assemble
 from core_models import stepping
 
 NO_TABLE = np.zeros(0)
@@ -175,7 +175,10 @@ def test_the_spalled_bench_runs_for_three_seconds(dt: float, monkeypatch: pytest
 
 
 @pytest.mark.slow
-def test_on_oil_no_ball_of_the_spalled_bench_grazes(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("contacts", ["viscous", "film"])
+def test_on_oil_no_ball_of_the_spalled_bench_grazes(
+    contacts: Contacts, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The bench of the test above, its bearings on films and damping of VG 46 at 60 °C."""
     monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "examples"))
     import fault_bench
@@ -195,7 +198,13 @@ def test_on_oil_no_ball_of_the_spalled_bench_grazes(monkeypatch: pytest.MonkeyPa
     state = bd.equilibrium(replace(system, bearings=oiled))
     assert all(isinstance(t.bearing.damping, FilmDamping) for t in state.system.bearings)
     found = bd.transient(
-        state, speed=188.2, dt=5e-6, steps=200_000, decimate=1000, record=[fault_bench.SENSOR]
+        state,
+        speed=188.2,
+        dt=5e-6,
+        steps=200_000,
+        decimate=1000,
+        record=[fault_bench.SENSOR],
+        contacts=contacts,
     )
     assert found.attrs["complete"] == 1
     assert found.attrs["grazing"] == 0
