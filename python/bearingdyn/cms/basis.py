@@ -313,6 +313,7 @@ def basis_of(
     moduli: Sequence[float] | None = None,
     inertia: int = 1,
     attach: Iterable[str] = (),
+    ports: Any = None,
 ) -> Basis:
     """The basis of a model's reduction.
 
@@ -322,6 +323,8 @@ def basis_of(
         The part's unreduced equations.
     f_max, n_modes, moduli, inertia, attach
         As in `reduce`.
+    ports
+        (p, n) rows, as those of raceways, whose unit loads bring their static shapes too; None: none.
 
     Returns
     -------
@@ -343,7 +346,7 @@ def basis_of(
     faces = list(model.interfaces.values())
     b = np.concatenate([f.dofs for f in faces])
     T = scipy.linalg.block_diag(*[f.T for f in faces])
-    rows = [model.outputs[name] for name in attach]
+    rows = [model.outputs[name] for name in attach] + ([] if ports is None else [ports])
     load = scipy.sparse.vstack(rows).toarray().T if rows else np.zeros((model.n, 0))
 
     extra: list[Array] = []
