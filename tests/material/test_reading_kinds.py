@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -403,3 +404,11 @@ def test_a_relaxation_modulus_that_rises_is_no_relaxation(tmp_path):
         RelaxationData.of(t[::-1], np.linspace(2e6, 4e6, 5), 20.0, "shear")
         # each isotherm by itself
         RelaxationData.of(np.r_[t, t], np.r_[[1e6] * 5, [3e6] * 5], [60.0] * 5 + [20.0] * 5, "shear")
+
+
+def test_a_line_of_a_million_columns_is_no_table(tmp_path: Path) -> None:
+    """Its titles were looked through for 13 s."""
+    path = tmp_path / "r.csv"
+    path.write_text("a," * 1_000_000 + "\n1,2\n")
+    with pytest.raises(ValueError, match=r"r\.csv, line 1: 2000000 characters: no table of sweeps has such"):
+        read_dma(path)

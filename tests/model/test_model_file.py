@@ -440,7 +440,14 @@ def test_200_mutated_files_are_refused_with_line_and_key_or_run(bench: Path) -> 
 
 def test_what_is_no_model_at_all_is_told_with_its_file(tmp_path: Path) -> None:
     path = tmp_path / "x.toml"
-    for data, said in ((b"\xff\xfe", "no UTF-8"), (b"a = " + b"[" * 20_000, "nested too deep")):
+    for data, said in (
+        (b"\xff\xfe", "no UTF-8"),
+        (b"a = " + b"[" * 20_000, "nested too deep"),
+        # tomllib nests these in minutes
+        (b"format = 1\n" + b"a." * 100_000 + b"a = 1", "thirty parts joined by dots"),
+        (b"format = 1\n[" + b'"a" . ' * 100_000 + b"a]", "thirty parts joined by dots"),
+        (b"format = 1\nx = {" + b"'a'." * 100_000 + b"a = 1}", "thirty parts joined by dots"),
+    ):
         path.write_bytes(data)
         with pytest.raises(ValueError, match=said) as caught:
             bd.read_model(path)

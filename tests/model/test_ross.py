@@ -144,7 +144,10 @@ def test_what_has_no_counterpart_is_named(
         bd.read_ross(changed(tmp_path, change))
 
 
-@pytest.mark.parametrize("content", [b"", b"{", b"[[", b"\xff\xfe", b"a = 1", b"[]"])
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"{", b"[[", b"\xff\xfe", b"a = 1", b"[]", b'{"a":' * 100_000, b"a." * 100_000 + b"a = 1"],
+)
 def test_what_is_no_rotor_is_named(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "no.toml"
     path.write_bytes(content)

@@ -55,7 +55,15 @@ def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, firs
 
 
 def answer_of(law: Any, omega: Any) -> Complex:
-    """G*(ω) of a law, Pa, ω rad/s of any shape, for an analysis that itself tells of rest beyond the data."""
+    """G*(ω), Pa, of a law whose reach in data is told of elsewhere: without the doubt of its modulus at rest.
+
+    Parameters
+    ----------
+    law
+        Anything with ``complex_modulus(omega)``.
+    omega
+        Angular frequency, rad/s, any shape.
+    """
     if hasattr(law, "low_end"):
         return np.asarray(law.complex_modulus(omega, doubt=False))
     return np.asarray(law.complex_modulus(omega))

@@ -16,12 +16,20 @@ _STRINGS = (
     re.compile(r'"(?:\\.|[^"\\\n])*"'),
     re.compile(r"'[^'\n]*'"),
 )
+# keys joined by dots: a TOML reader nests them in a time that grows with the square of their number
+_CHAIN = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){30}""")
 _PLAIN = re.compile(r"[^,\]}\n#]*")
 
 
 def key_lines(text: str) -> dict[Key, int]:
     """Line, from 1, of every key of a valid TOML text; array entries by their number, from 0."""
     return _Scanner(text).lines
+
+
+def check_chains(text: str) -> None:
+    """Check that no key of a TOML text is a chain of thirty or more, joined by dots; ValueError otherwise."""
+    if _CHAIN.search(text):
+        raise ValueError("a key has more than thirty parts joined by dots")
 
 
 class _Scanner:

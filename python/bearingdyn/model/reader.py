@@ -17,7 +17,7 @@ from bearingdyn.bearing import BallBearing, catalogue
 from bearingdyn.checks import existing, meant, named, number, require
 from bearingdyn.material import Maxwell, fit_maxwell, master_curve, read_dma, sample_dma_path
 from bearingdyn.model.asked_channels import CHANNELS, check_argument, check_channels
-from bearingdyn.model.key_lines import Key, key_lines
+from bearingdyn.model.key_lines import Key, check_chains, key_lines
 from bearingdyn.model.model import Analysis, Model, analyses
 from bearingdyn.model.notation import grid
 from bearingdyn.model.toml_tables import MATERIALS, Shelf, kinds
@@ -108,6 +108,10 @@ def _load(file: Path, origin: Origin, above: tuple[Path, ...], seen: list[Path])
         raise Located(
             f"{file}: byte {error.start + 1} is no UTF-8; a model file must be text in UTF-8"
         ) from None
+    try:
+        check_chains(text)
+    except ValueError as error:
+        raise Located(f"{file}: {error}; a model needs no more than ten") from None
     try:
         held = tomllib.loads(text)
     except RecursionError:

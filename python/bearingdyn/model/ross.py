@@ -17,6 +17,7 @@ from bearingdyn.application import Application
 from bearingdyn.checks import existing, nonnegative, number, numbers, positive, whole
 from bearingdyn.fem import Section
 from bearingdyn.material import Elastic
+from bearingdyn.model.key_lines import check_chains
 from bearingdyn.parts import Disc, Shaft
 from bearingdyn.types import Array
 
@@ -108,8 +109,10 @@ def _elements(file: Path) -> dict[str, dict[str, Any]]:
     """The elements of the file by their names."""
     try:
         text = file.read_text(encoding="utf-8-sig")
+        if not text.lstrip().startswith("{"):
+            check_chains(text)
         held = json.loads(text) if text.lstrip().startswith("{") else tomllib.loads(text)
-    except (UnicodeDecodeError, ValueError) as error:
+    except (UnicodeDecodeError, ValueError, RecursionError) as error:
         raise ValueError(f"{file} is no TOML or JSON text: {error}; save it by ROSS's rotor.save") from None
     found = {name: one for name, one in held.items() if KIND.fullmatch(name) and isinstance(one, dict)}
     if not any(name.startswith("ShaftElement") for name in found):

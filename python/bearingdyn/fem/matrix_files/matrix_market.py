@@ -25,6 +25,7 @@ ENTRIES = Form(
 )  # fmt: skip
 COLUMN = Form(("number",), "", "%", "each line must be one number, with a point")
 LONGEST_LINE = 1024  # of the format
+_MOST_COMMENTS = 100_000  # lines; exports have some ten
 
 
 def is_matrix_market(path: Path) -> bool:
@@ -126,6 +127,8 @@ def _sizes(path: Path, stream: BinaryIO, count: int) -> tuple[list[int], int]:
                 )
             return [int(word) for word in words], line + 1
         line += 1
+        if line > _MOST_COMMENTS:
+            raise ValueError(f"{path}, line {line}: so many comments, and no line of sizes; export again")
     raise ValueError(f"{path} ends before the line of sizes; export again")
 
 

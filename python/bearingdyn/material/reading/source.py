@@ -20,6 +20,7 @@ _EXTRA = "give it as CSV, or install the extra that reads it: pip install 'beari
 _LARGEST = 32 << 20  # bytes of a file; 400 isotherms of 100 points and 20 columns have 16 MB
 _UNPACKED = 256 << 20  # bytes of a packed one
 _MOST_ROWS, _MOST_CELLS = 200_000, 2_000_000
+_LONGEST_LINE = 100_000  # characters; 2000 columns of 20 have 40 000
 _SEPARATORS = ("\t", ";", ",")
 
 
@@ -116,6 +117,12 @@ def read_source(path: Path) -> list[Source]:
             f"{path}, line {_MOST_ROWS + 1}: more than {_MOST_ROWS} lines: no table of sweeps has; leave "
             "out what is not one"
         )
+    for number, line in enumerate(lines, 1):
+        if len(line) > _LONGEST_LINE:
+            raise ValueError(
+                f"{path}, line {number}: {len(line)} characters: no table of sweeps has such lines; leave "
+                "out what is not one"
+            )
     lines = [line.replace("\ufeff", "") for line in lines]  # files put together carry marks inside
     rows = [Row(i, line) for i, line in enumerate(lines, 1) if line.strip() and line.lstrip()[0] != "#"]
     if not rows:
