@@ -8,6 +8,7 @@ import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march_state import Beginning
+from bearingdyn.analysis.softening import layer_names
 from bearingdyn.analysis.steady.balance import Found
 from bearingdyn.analysis.steady.choosing import candidates, lattice
 from bearingdyn.analysis.steady.motion import Motion
@@ -27,7 +28,7 @@ def beginning(source: Equilibrium | System, result: xarray.Dataset, speed: objec
     Raises
     ------
     ValueError
-        For the result of another speed, or of other bearings.
+        For the result of another speed, of other bearings, or of layers that soften.
     """
     require(
         speed == result.attrs.get("speed"),
@@ -36,6 +37,11 @@ def beginning(source: Equilibrium | System, result: xarray.Dataset, speed: objec
         f"initial is a steady motion at {result.attrs.get('speed')} rad/s; march it at that speed",
     )
     problem = Problem.of(source, int(result.attrs["subharmonic"]))
+    for name in layer_names(problem.system):
+        raise ValueError(
+            f"initial is a steady motion in which layer {name!r} softens with its amplitude (payne), and a "
+            f"march has no beginning of that; march from the equilibrium, and give it time with settle="
+        )
     theirs, here = result.attrs.get("inputs_hash"), inputs_of(problem.system.inputs).get("inputs_hash")
     require(
         theirs == here,

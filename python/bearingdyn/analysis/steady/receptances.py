@@ -17,6 +17,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from bearingdyn.analysis.linearised import Linear
+from bearingdyn.analysis.steady.layer_lines import SoftLayers, soft_layers
 from bearingdyn.material import Maxwell
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
@@ -153,7 +154,7 @@ class Receptances:
     system
         The system.
     K, C
-        Reference stiffness and damping (m, m) of all bearings' coefficients.
+        Reference stiffness and damping (m, m) of all bearings' coefficients; none of the layers' coordinates.
     balls
         What lubricated balls add by frequency, as `Equilibrium.balls` says; None: nothing.
     """
@@ -165,8 +166,24 @@ class Receptances:
 
     @cached_property
     def B(self) -> Array:
-        """All bearings' coefficients (m, n)."""
-        return self.system.B
+        """All bearings' coefficients, and the coordinates of layers that soften (m, n)."""
+        return np.vstack([self.system.B, self.soft.rows(self.system.n)])
+
+    @property
+    def soft(self) -> SoftLayers:
+        """The layers that soften."""
+        return soft_layers(self.system)
+
+    @property
+    def of_layers(self) -> slice:
+        """The coordinates of layers that soften among all."""
+        return slice(len(self.system.B), len(self.K))
+
+    @cached_property
+    def _bearings(self) -> tuple[Array, Array]:
+        """The reference of the bearings alone."""
+        own = slice(len(self.system.B))
+        return self.K[own, own], self.C[own, own]
 
     @property
     def blocks(self) -> tuple[Block, ...]:
@@ -189,7 +206,8 @@ class Receptances:
         balls = self.balls and self.balls(omega[moving])
         if balls:
             k, v = balls
-            found[moving] = np.einsum("fb,bk,bl->fkl", k, v, v, optimize=True)
+            own = slice(v.shape[1])
+            found[moving, own, own] = np.einsum("fb,bk,bl->fkl", k, v, v, optimize=True)
         return found
 
     def answer(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
@@ -206,7 +224,7 @@ class Receptances:
     @cached_property
     def _at_rest(self) -> Array:
         """D (n, n) at 0 Hz with the reference on, and springs on free motions that no bearing feels."""
-        linear = Linear(self.system, self.K, self.C)
+        linear = Linear(self.system, *self._bearings)
         moduli = np.array(
             [np.asarray(t.material.complex_modulus(np.zeros(1)))[0] for t in self.system.layers]
         )
@@ -218,7 +236,7 @@ class Receptances:
 
     def _whole(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
         """All coordinates at once."""
-        linear = Linear(self.system, self.K, self.C, self.balls)
+        linear = Linear(self.system, *self._bearings, self.balls)
         found = np.zeros((len(omega), len(rows), len(forces)), dtype=np.complex128)
         for unit, part in ((1.0, np.real(forces)), (1j, np.imag(forces))):
             # as unit forces: what is no larger than their round-off drives nothing

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.recordable_channels import channel_of
+from bearingdyn.analysis.softening import layer_names, warn_of_strain
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced
+from bearingdyn.analysis.steady.layer_lines import frozen
 from bearingdyn.analysis.steady.motion import Motion
 from bearingdyn.analysis.steady.problem import Problem, motion_of
 from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability, floquet, pooled
@@ -58,7 +60,9 @@ def steady_state(
 
     The motion is a sum of lines, Σ Re z_n e^{iω_n t}, whose amplitudes balance at every line; the structure
     answers with G*(ω) of any law, the balls are pressed in time; films of oil have their damping of low
-    frequency, as in a march, unless `contacts` says otherwise. Of two steady motions at one speed it finds
+    low frequency, as in a march, unless `contacts` says otherwise. Layers with a law of softening
+    (`Maxwell.payne`) soften with their own motion: the strain of each, of all its lines without the mean, is
+    found with them, and a lasting load sinks as in a march. Of two steady motions at one speed it finds
     the one near its start; `speed_map` follows them all.
 
     Parameters
@@ -97,11 +101,13 @@ def steady_state(
         (line, base) how often each base frequency stands in it; record (time, channel) over a period, so that
         `contact_statistics`, `orbit` and `spectrum` take the result; cut (channel,) what the harmonics next
         above the last would add; power (part,), W, what each part turns into heat, and supply (source,), W,
-        what feeds it; multipliers (multiplier,), complex; motion (line, coefficient), from which `start` goes
-        on. Attributes: stable (1, 0, or −1 where it was not computed), multiplier (largest size), growth
-        (1/s), loss ("fold", "flip" or "neimark-sacker": what the largest multiplier brings where it leaves
-        the unit circle), residual, energy_balance (what supply and power leave, relative), lines_left (the
-        share of the largest line that was left out, of several bases and up to twice the harmonics asked).
+        what feeds it; multipliers (multiplier,), complex, of departures about which the layers keep the
+        amplitude of the motion; strain (layer,), the shear strain amplitude of each layer that softens;
+        motion (line, coefficient), from which `start` goes on. Attributes: stable (1, 0, or −1 where it was
+        not computed), multiplier (largest size), growth (1/s), loss ("fold", "flip" or "neimark-sacker": what
+        the largest multiplier brings where it leaves the unit circle), residual, energy_balance (what supply
+        and power leave, relative), lines_left (the share of the largest line that was left out, of several
+        bases and up to twice the harmonics asked).
 
     Raises
     ------
@@ -123,6 +129,8 @@ def steady_state(
     CutHarmonics
         Where the harmonics next above the last would add more than 2 % of a channel's largest line; of
         several bases, where a line that would be 2 % of the bearings' largest was left out.
+    BeyondSweep
+        Where a layer's strain leaves the sweep its law of softening comes from.
     OutsideBand
         Where a line that counts in a layer's motion lies outside the band of its material.
 
@@ -175,6 +183,8 @@ def steady_state(
         raise _failed(problem, balance, found, result)
     warn_of_cut(result, f"the steady motion at {speed:g} rad/s", result.attrs["harmonics"])
     warn_of_band(problem.system, balance.omega, moved)
+    if balance.receptances.soft.layers:
+        warn_of_strain(problem.system, found.pressed.softened.strain[:, None])
     warn_of_motions([(balance, found.z, f"in the steady motion at {speed:g} rad/s")])
     return result
 
@@ -211,23 +221,27 @@ def stability_of(
     """Steady state of one base: its multipliers; None for several bases."""
     if len(problem.bases.bases) != 1 or not problem.system.bearings:
         return None
-    model = model or first_order(problem, balance)
+    model = model or first_order(problem, balance, found)
     lines = balance.lines
     count = max(samples, 2 * (lines.samples // 2))
     pressed = balance.press(found.z, lines=Lines(lines.index, lines.steps, count))
-    m = found.z.shape[1]
+    m = len(problem.system.B)
     period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
     K = pooled([a.K for a in pressed.bearings], m)
     C = pooled([a.C for a in pressed.bearings], m)
     return floquet(model, balance.speed, period, K, C, KEPT).stability
 
 
-def first_order(problem: Problem, balance: Balance) -> FirstOrder:
-    """In a steady state's analysis, the structure in first order, up to the balance's speed."""
+def first_order(problem: Problem, balance: Balance, found: Found) -> FirstOrder:
+    """In a steady state's analysis, the structure in first order, up to the balance's speed.
+
+    Layers that soften keep the amplitude that they have in the motion.
+    """
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))
-    return FirstOrder.of(problem.system, 2.0 * FOLLOWS * highest, band, felt=ALL)
+    system = frozen(problem.system, found.pressed.softened, band)
+    return FirstOrder.of(system, 2.0 * FOLLOWS * highest, band, felt=ALL)
 
 
 def warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
@@ -291,6 +305,10 @@ def _dataset(
     missed = sum(fed.values()) - sum(lost.values())
     dt = float(times[1] - times[0]) if len(times) > 1 else 0.0
     multipliers = np.zeros(0, dtype=np.complex128) if state is None else state.multipliers
+    strains: dict[str, Any] = {}
+    if balance.receptances.soft.layers:
+        meaning = "shear strain amplitude of each layer that softens, of all lines"
+        strains["strain"] = ("layer", found.pressed.softened.strain, "1", meaning)
     return dataset(
         {
             "amplitude": (
@@ -317,7 +335,13 @@ def _dataset(
             "power": ("part", np.array(list(lost.values())), "W", "mean power turned into heat"),
             "supply": ("source", np.array(list(fed.values())), "W", "mean power that feeds the motion"),
             "multipliers": ("multiplier", multipliers, "1", "Floquet multipliers of a period, largest first"),
-            "motion": (("line", "coefficient"), found.z, "m", "raceway coefficients of all bearings"),
+            "motion": (
+                ("line", "coefficient"),
+                found.z,
+                "m",
+                "coefficients of bearings, and of layers that soften",
+            ),
+            **strains,
         },
         {
             "analysis": "steady state",
@@ -343,5 +367,6 @@ def _dataset(
             "part": (list(lost), ""),
             "source": (list(fed), ""),
             "unit": ("channel", [unit for _, unit in channels], "", "unit of each channel"),
+            **({"layer": (layer_names(problem.system), "")} if strains else {}),
         },
     )
