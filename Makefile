@@ -54,7 +54,8 @@ ctest: $(BUILD)/ctest/build.ninja
 # sanitizers. The Python tests use a sanitized copy of the package; the interpreter's own leaks do not count.
 ASAN_TESTS := tests/core tests/bearing/test_kernel.py tests/bearing/test_imperfections.py tests/cms/test_part_march.py \
   tests/analysis/test_march.py tests/analysis/test_exact_step.py tests/analysis/test_softening_march.py \
-  tests/analysis/test_steady_borne.py tests/sound/test_radiation.py
+  tests/analysis/test_steady_borne.py tests/analysis/test_abreast.py tests/analysis/test_film_march.py \
+  tests/bearing/test_film_memory.py tests/sound/test_radiation.py
 asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 	meson compile -C $(BUILD)/asan
 	meson test -C $(BUILD)/asan --print-errorlogs

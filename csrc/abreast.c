@@ -23,15 +23,15 @@ static bool same_doubles(const double *a, const double *b, size_t n)
 /* Blocks, layers and the bearings' places, all of which the operators' shape comes from. */
 static bool same_shape(const bd_model *a, const bd_model *b)
 {
-    if (a->n_padded != b->n_padded || a->n_blocks != b->n_blocks || a->n_layers != b->n_layers ||
-        a->n_bearings != b->n_bearings || a->n_loads != b->n_loads || a->coefs != b->coefs ||
-        a->ranks != b->ranks || a->n_stress != b->n_stress || a->branches != b->branches ||
-        a->n_softening > 0 || b->n_softening > 0)
+    if (a->n_padded != b->n_padded || a->n_blocks != b->n_blocks || a->n_bands != b->n_bands ||
+        a->n_layers != b->n_layers || a->n_bearings != b->n_bearings || a->n_loads != b->n_loads ||
+        a->coefs != b->coefs || a->ranks != b->ranks || a->n_stress != b->n_stress ||
+        a->branches != b->branches || a->n_softening > 0 || b->n_softening > 0)
         return false;
     for (int i = 0; i < a->n_blocks; i++) {
         const bd_block *p = &a->blocks[i], *q = &b->blocks[i];
         if (p->n != q->n || p->offset != q->offset || p->layer != q->layer ||
-            p->n_layers != q->n_layers)
+            p->n_layers != q->n_layers || p->n_bands != q->n_bands)
             return false;
     }
     for (int i = 0; i < a->n_layers; i++) {
@@ -54,13 +54,14 @@ bool bd_abreast_shares(const bd_abreast_case *p, const bd_abreast_case *q)
     if (!same_shape(a, b) || v->exact || w->exact || v->drift || w->drift || s->audit || t->audit ||
         v->kernels != w->kernels || s->dt != t->dt || s->beta != t->beta || s->gamma != t->gamma)
         return false;
-    const size_t blocks = (size_t)a->n_blocks;
+    const size_t blocks = (size_t)a->n_blocks, bands = (size_t)a->n_bands;
     for (int i = 0; i < a->n_layers; i++)
         if (!same_doubles(a->layers[i].L, b->layers[i].L,
                           (size_t)a->blocks[a->layers[i].block].n * (size_t)a->layers[i].padded))
             return false;
     return same(v->diagonal, w->diagonal, blocks * sizeof *v->diagonal) &&
-           same(a->touched, b->touched, (size_t)a->n_bearings * blocks * sizeof *a->touched) &&
+           same(a->bands, b->bands, bands * sizeof *a->bands) &&
+           same(a->seen, b->seen, (size_t)a->n_bearings * bands * sizeof *a->seen) &&
            same(v->weights, w->weights, (size_t)a->branches * sizeof *v->weights) &&
            same_doubles(v->step, w->step, v->step_at[a->n_blocks]);
 }

@@ -68,52 +68,60 @@ BD_INLINE void own_row_add(int n_columns, const double *restrict A, const double
         LANES_AT(SET(y, 0, s)) += sums[0][s] + sums[1][s];
 }
 
-/* One column of a tile for mixed_columns_add. */
-BD_INLINE void mixed_column(const double *restrict A, const double *restrict own_A, bool own,
-                            const double *restrict u, lanes sum[ROWS][SETS])
+/* One column of `count` rows for mixed_rows_add. */
+BD_INLINE void mixed_column(int count, const double *restrict A, const double *restrict own_A,
+                            bool own, const double *restrict u, lanes sum[ROWS][SETS])
 {
     for (int s = 0; s < SETS; s++) {
         const lanes each = LANES(SET(u, 0, s));
-        for (int r = 0; r < ROWS; r++)
+        for (int r = 0; r < count; r++)
             sum[r][s] += own ? LANES(SET(own_A, r, s)) * each : A[r] * each;
     }
 }
 
-/* The same for columns of which some are each case's own; rows are padded with zeros to whole tiles. */
+BD_INLINE void mixed_rows_add(int count, int n_columns, const double *restrict A,
+                              const double *restrict own_A, int stride, const bool *own,
+                              const double *restrict u, double *restrict y)
+{
+    lanes even[ROWS][SETS] = {{{0}}}, odd[ROWS][SETS] = {{{0}}};
+    for (int c = 0; c < n_columns; c += 2) {
+        mixed_column(count, A + c * stride, WIDE(own_A, c * stride), own[c], WIDE(u, c), even);
+        if (c + 1 < n_columns)
+            mixed_column(count, A + (c + 1) * stride, WIDE(own_A, (c + 1) * stride), own[c + 1],
+                         WIDE(u, c + 1), odd);
+    }
+    for (int r = 0; r < count; r++)
+        for (int s = 0; s < SETS; s++)
+            LANES_AT(SET(y, r, s)) += even[r][s] + odd[r][s];
+}
+
+/* The same for columns of which some are each case's own. */
 BD_INLINE void mixed_columns_add(int rows, int n_columns, const double *restrict A,
                                  const double *restrict own_A, int stride, const bool *own,
                                  const double *restrict u, double *restrict y)
 {
-    for (int r = 0; r < rows; r += ROWS) {
-        lanes even[ROWS][SETS] = {{{0}}}, odd[ROWS][SETS] = {{{0}}};
-        for (int c = 0; c < n_columns; c += 2) {
-            mixed_column(A + c * stride + r, WIDE(own_A, c * stride + r), own[c], WIDE(u, c), even);
-            if (c + 1 < n_columns)
-                mixed_column(A + (c + 1) * stride + r, WIDE(own_A, (c + 1) * stride + r),
-                             own[c + 1], WIDE(u, c + 1), odd);
-        }
-        for (int k = 0; k < ROWS; k++)
-            for (int s = 0; s < SETS; s++)
-                LANES_AT(SET(y, r + k, s)) += even[k][s] + odd[k][s];
-    }
+    int r = 0;
+    for (; r + ROWS <= rows; r += ROWS)
+        mixed_rows_add(ROWS, n_columns, A + r, WIDE(own_A, r), stride, own, u, WIDE(y, r));
+    for (; r < rows; r++)
+        mixed_rows_add(1, n_columns, A + r, WIDE(own_A, r), stride, own, u, WIDE(y, r));
 }
 
-/* Bearing coefficients of a block's motion: rows of B, alike in all cases or not. */
-BD_INLINE void coefficients_add(const bd_abreast *of, const bd_block *block, int at, int n,
+/* Bearing coefficients of the motion of n_from coordinates: rows of B, alike in all cases or not. */
+BD_INLINE void coefficients_add(const bd_abreast *of, int from, int n_from, int at, int n,
                                 const double *u, double *z)
 {
     const bd_model *model = of->model;
-    const double *B = model->B + (size_t)block->offset * (size_t)model->coefs + at;
+    const double *B = model->B + (size_t)from * (size_t)model->coefs + at;
     const bool *own = of->own + at;
     int k = 0;
     while (k < n) {
         int alike = 0;
         while (k + alike < n && !own[k + alike])
             alike++;
-        columns_add_wide(alike, block->n, B + k, model->coefs, u, WIDE(z, k));
+        columns_add_wide(alike, n_from, B + k, model->coefs, u, WIDE(z, k));
         for (k += alike; k < n && own[k]; k++)
-            own_row_add(block->n, WIDE(of->B, (at + k) * model->n_padded + block->offset), u,
-                        WIDE(z, k));
+            own_row_add(n_from, WIDE(of->B, (at + k) * model->n_padded + from), u, WIDE(z, k));
     }
 }
 
@@ -121,6 +129,30 @@ BD_INLINE void clear(int n, double *y)
 {
     for (int i = 0; i < n * BD_ABREAST; i += BD_WIDTH)
         LANES_AT(y + i) = (lanes){0};
+}
+
+/* a += A u of one block, band by band. */
+BD_INLINE void square_add(const bd_model *model, const bd_block *block, const double *A,
+                          const double *u, double *a)
+{
+    for (int i = block->band; i < block->band + block->n_bands; i++) {
+        const bd_span *band = &model->bands[i];
+        columns_add_wide(band->n, band->n,
+                         A + (size_t)band->first * (size_t)block->padded + band->first,
+                         block->padded, WIDE(u, band->first), WIDE(a, band->first));
+    }
+}
+
+/* a += A u, where A has a column for each rate of a layer. */
+BD_INLINE void layer_add(const bd_model *model, const bd_block *block, const bd_layer *layer,
+                         const double *A, const double *u, double *a)
+{
+    for (int i = 0; i < block->n_bands; i++) {
+        const bd_span *band = &model->bands[block->band + i], *felt = &layer->felt[i];
+        columns_add_wide(band->n, felt->n,
+                         A + (size_t)felt->first * (size_t)block->padded + band->first,
+                         block->padded, WIDE(u, felt->first), WIDE(a, band->first));
+    }
 }
 
 /* Stresses that branches would carry without the new rate, and their sum. */
@@ -169,15 +201,17 @@ BD_INLINE void observe(const bd_abreast *of)
     clear(model->coefs, of->z);
     clear(model->coefs, of->z_rate);
     for (int b = 0; b < model->n_bearings; b++) {
-        const int at = model->bearing_slot[b], *touched = model->touched + b * model->n_blocks;
-        const int n = model->bearings[b].data.n_coefs;
+        const bd_span *seen = model->seen + b * model->n_bands;
         for (int c = 0; c < model->n_blocks; c++) {
             const bd_block *block = &model->blocks[c];
-            if (!touched[c])
-                continue;
-            coefficients_add(of, block, at, n, WIDE(of->x_new, block->offset), WIDE(of->z, at));
-            coefficients_add(of, block, at, n, WIDE(of->v_new, block->offset),
-                             WIDE(of->z_rate, at));
+            for (int i = block->band; i < block->band + block->n_bands; i++) {
+                const int from = block->offset + model->bands[i].first, n = model->bands[i].n;
+                const int at = model->bearing_slot[b] + seen[i].first;
+                coefficients_add(of, from, n, at, seen[i].n, WIDE(of->x_new, from),
+                                 WIDE(of->z, at));
+                coefficients_add(of, from, n, at, seen[i].n, WIDE(of->v_new, from),
+                                 WIDE(of->z_rate, at));
+            }
         }
     }
 }
@@ -213,19 +247,18 @@ void BD_NAMED(bd_abreast_predict)(bd_abreast *of)
                     LANES_AT(SET(a_new, i, s)) = undamped;
                     LANES_AT(SET(v_new, i, s)) = LANES(SET(v_ahead, i, s)) + in_v * undamped;
                 }
-            columns_add_wide(block->n, block->n, columns + square, block->padded, v_new, a_new);
+            square_add(model, block, columns + square, v_new, a_new);
         } else {
             clear(block->n, a_new);
-            columns_add_wide(block->n, block->n, columns, block->padded, x_ahead, a_new);
-            columns_add_wide(block->n, block->n, columns + square, block->padded, v_ahead, a_new);
+            square_add(model, block, columns, x_ahead, a_new);
+            square_add(model, block, columns + square, v_ahead, a_new);
         }
         columns += 2 * square;
         for (int l = block->layer; l < block->layer + block->n_layers; l++) {
             const bd_layer *layer = &model->layers[l];
             remember(of, layer, weights);
             weights += layer->n_stresses;
-            columns_add_wide(block->n, layer->rank, columns, block->padded,
-                             WIDE(of->history, layer->offset), a_new);
+            layer_add(model, block, layer, columns, WIDE(of->history, layer->offset), a_new);
             columns += (size_t)layer->rank * (size_t)block->padded;
         }
     }
@@ -256,25 +289,27 @@ unsigned BD_NAMED(bd_abreast_complete)(bd_abreast *of)
     for (int k = 0; k < model->coefs * BD_ABREAST; k += BD_WIDTH)
         LANES_AT(of->minus_g + k) = -LANES(of->guess + k);
     for (int b = 0; b < model->n_bearings; b++) {
-        const int at = model->bearing_slot[b], *touched = model->touched + b * model->n_blocks;
-        const double *columns = work->SB + (size_t)at * (size_t)model->n_padded;
-        const double *own_columns = WIDE(of->SB, at * model->n_padded);
-        const int n = model->bearings[b].data.n_coefs;
+        const int slot = model->bearing_slot[b], n_coefs = model->bearings[b].data.n_coefs;
+        const bd_span *seen = model->seen + b * model->n_bands;
         bool any_own = false;
-        for (int k = 0; k < n; k++)
-            any_own = any_own || of->own[at + k];
+        for (int k = 0; k < n_coefs; k++)
+            any_own = any_own || of->own[slot + k];
         for (int c = 0; c < model->n_blocks; c++) {
             const bd_block *block = &model->blocks[c];
-            const double *minus_g = WIDE(of->minus_g, at);
-            double *a = WIDE(of->a_new, block->offset);
-            if (!touched[c])
-                continue;
-            if (any_own)
-                mixed_columns_add(block->n, n, columns + block->offset,
-                                  WIDE(own_columns, block->offset), model->n_padded, of->own + at,
-                                  minus_g, a);
-            else
-                columns_add_wide(block->n, n, columns + block->offset, model->n_padded, minus_g, a);
+            for (int i = block->band; i < block->band + block->n_bands; i++) {
+                const int at = slot + seen[i].first, to = block->offset + model->bands[i].first;
+                const double *columns =
+                    work->SB + (size_t)at * (size_t)model->n_padded + (size_t)to;
+                const double *minus_g = WIDE(of->minus_g, at);
+                double *a = WIDE(of->a_new, to);
+                if (seen[i].n > 0 && any_own)
+                    mixed_columns_add(model->bands[i].n, seen[i].n, columns,
+                                      WIDE(of->SB, at * model->n_padded + to), model->n_padded,
+                                      of->own + at, minus_g, a);
+                else if (seen[i].n > 0)
+                    columns_add_wide(model->bands[i].n, seen[i].n, columns, model->n_padded,
+                                     minus_g, a);
+            }
         }
     }
     lanes poison[SETS] = {{0}};
@@ -297,8 +332,13 @@ unsigned BD_NAMED(bd_abreast_complete)(bd_abreast *of)
         const bd_block *block = &model->blocks[layer->block];
         const double *history = WIDE(of->history, layer->offset);
         double *rate = WIDE(of->rate_new, layer->offset), now = 0.0;
-        columns_add_wide(layer->rank, block->n, layer->L, layer->padded,
-                         WIDE(of->v_new, block->offset), rate);
+        for (int i = 0; i < block->n_bands; i++) {
+            const bd_span *band = &model->bands[block->band + i], *felt = &layer->felt[i];
+            columns_add_wide(felt->n, band->n,
+                             layer->L + (size_t)band->first * (size_t)layer->padded + felt->first,
+                             layer->padded, WIDE(of->v_new, block->offset + band->first),
+                             WIDE(rate, felt->first));
+        }
         for (int i = 0; i < layer->n_stresses; i++)
             now += weights++->now;
         for (int r = 0; r < layer->rank; r++)

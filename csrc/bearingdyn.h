@@ -310,7 +310,8 @@ typedef struct bd_model bd_model;
 /* Given:    a description; every array is copied, nothing of it is kept
  * Returned: a model in one allocation, or NULL and *status
  * Notes:    coordinates that neither M, C, G, K, N nor a layer couples fall into blocks, found here;
- *           bearings couple blocks only through their few coefficients. */
+ *           bearings couple blocks only through their few coefficients. What a layer joins, and the columns of its
+ *           factor do not, a march takes apart inside the block. */
 bd_model *bd_model_create(const bd_model_data *data, bd_status *status);
 
 /* What the model keeps, in bytes. */

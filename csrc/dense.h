@@ -7,11 +7,11 @@
 
 #include "lanes.h"
 
-/* One tile of rows, SETS registers wide. Even and odd columns are summed apart to hide the latency of an
+/* One tile of rows, SETS registers wide; what is outside `inside` is not added, where that is not NULL. Even and odd columns are summed apart to hide the latency of an
  * addition; the order is part of the result and the same on every machine. */
 #define DEFINE_TILE(NAME, SETS)                                                                    \
     BD_INLINE void NAME(int n_columns, const double *restrict A, int stride,                       \
-                        const double *restrict u, double *restrict y)                              \
+                        const double *restrict u, const long long *inside, double *restrict y)     \
     {                                                                                              \
         lanes even[SETS] = {{0}}, odd[SETS] = {{0}};                                               \
         int c = 0;                                                                                 \
@@ -25,27 +25,39 @@
         if (c < n_columns)                                                                         \
             for (int i = 0; i < SETS; i++)                                                         \
                 even[i] += LANES(A + (size_t)c * (size_t)stride + i * BD_WIDTH) * u[c];            \
-        for (int i = 0; i < SETS; i++)                                                             \
-            LANES_AT(y + i * BD_WIDTH) += even[i] + odd[i];                                        \
+        for (int i = 0; i < SETS; i++) {                                                           \
+            lanes sum = even[i] + odd[i];                                                          \
+            if (inside)                                                                            \
+                sum = LANES_WHERE(LANE_MASK(inside + i * BD_WIDTH), sum);                          \
+            LANES_AT(y + i * BD_WIDTH) += sum;                                                     \
+        }                                                                                          \
     }
 
 DEFINE_TILE(tile_1, 1)
 DEFINE_TILE(tile_2, 2)
 DEFINE_TILE(tile_4, 4)
 
+/* y += sum_c u[c] A[c * stride + (0 ... rows)], only where all bits of `inside` (rows) are set, unless it is NULL; rows a
+ * multiple of BD_LANES. */
+BD_INLINE void columns_add_inside(int rows, int n_columns, const double *A, int stride,
+                                  const double *u, const long long *inside, double *y)
+{
+    int r = 0;
+    for (; r + 4 * BD_WIDTH <= rows; r += 4 * BD_WIDTH)
+        tile_4(n_columns, A + r, stride, u, inside ? inside + r : inside, y + r);
+    if (r + 2 * BD_WIDTH <= rows) {
+        tile_2(n_columns, A + r, stride, u, inside ? inside + r : inside, y + r);
+        r += 2 * BD_WIDTH;
+    }
+    if (r < rows)
+        tile_1(n_columns, A + r, stride, u, inside ? inside + r : inside, y + r);
+}
+
 /* y += sum_c u[c] A[c * stride + (0 ... rows)]; rows a multiple of BD_LANES. */
 BD_INLINE void columns_add(int rows, int n_columns, const double *A, int stride, const double *u,
                            double *y)
 {
-    int r = 0;
-    for (; r + 4 * BD_WIDTH <= rows; r += 4 * BD_WIDTH)
-        tile_4(n_columns, A + r, stride, u, y + r);
-    if (r + 2 * BD_WIDTH <= rows) {
-        tile_2(n_columns, A + r, stride, u, y + r);
-        r += 2 * BD_WIDTH;
-    }
-    if (r < rows)
-        tile_1(n_columns, A + r, stride, u, y + r);
+    columns_add_inside(rows, n_columns, A, stride, u, (const long long *)0, y);
 }
 
 /* The same for two vectors at once: y1 += A u1, y2 += A u2, each column read once. */

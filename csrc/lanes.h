@@ -20,6 +20,7 @@ typedef long long lane_mask __attribute__((vector_size(8 * BD_WIDTH), aligned(8)
 /* Lanes at a double pointer, aligned or not. */
 #define LANES(p) (*(const lanes *)(p))
 #define LANES_AT(p) (*(lanes *)(p))
+#define LANE_MASK(p) (*(const lane_mask *)(p))
 
 /* All bits set where value > 0, from the sign bit of its negative (0 - 0 has none): compilers turn a
  * comparison of wide vectors into scalars. A NaN may count as either. */

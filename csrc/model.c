@@ -16,140 +16,6 @@ const char *bd_status_text(bd_status status)
     return "unknown status";
 }
 
-/* ---------------------------------------------------------------- partition */
-
-static int root_of(int *parent, int i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-static void join(int *parent, int i, int j)
-{
-    int a = root_of(parent, i), b = root_of(parent, j);
-    if (a < b)
-        parent[b] = a;
-    else
-        parent[a] = b;
-}
-
-/* Whether a layer moves with a coordinate. */
-static bool touches(const bd_layer_data *layer, int i)
-{
-    const double *row = layer->L + (size_t)i * (size_t)layer->rank;
-    for (int r = 0; r < layer->rank; r++)
-        if (row[r] != 0.0)
-            return true;
-    return false;
-}
-
-/* The first coordinate that a layer moves with, or -1. */
-static int first_touched(const bd_model_data *data, const bd_layer_data *layer)
-{
-    for (int i = 0; i < data->n; i++)
-        if (touches(layer, i))
-            return i;
-    return -1;
-}
-
-/* parent[i] becomes the lowest coordinate that the linear structure couples with i. */
-static void find_leads(const bd_model_data *data, int *parent)
-{
-    size_t n = (size_t)data->n;
-    for (int i = 0; i < data->n; i++)
-        parent[i] = i;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++) {
-            size_t ij = i * n + j;
-            if (data->M[ij] != 0.0 || data->C[ij] != 0.0 || data->G[ij] != 0.0 ||
-                data->K[ij] != 0.0 || data->N[ij] != 0.0)
-                join(parent, (int)i, (int)j);
-        }
-    for (int l = 0; l < data->n_layers; l++) {
-        const bd_layer_data *layer = &data->layers[l];
-        const int first = first_touched(data, layer);
-        for (int i = first; first >= 0 && i < data->n; i++)
-            if (touches(layer, i))
-                join(parent, first, i);
-    }
-    for (int i = 0; i < data->n; i++)
-        parent[i] = root_of(parent, i);
-}
-
-/* Which coordinates and layers lie in which block, and where: all that the layout of a model depends on. */
-typedef struct partition {
-    int n_blocks, n_padded, largest;
-    size_t squares;    /* doubles of one matrix, block by block */
-    int *order, *slot; /* (n) as in bd_model */
-    bd_block *blocks;  /* (n_blocks) */
-    int *source;       /* (n_layers) the caller's index of a layer in block order */
-    void *memory;
-} partition;
-
-/* The blocks of coordinates, in the order of their lowest ones. */
-static void place_coordinates(partition *parts, const bd_model_data *data, const int *lead_of)
-{
-    int place = 0;
-    for (int lead = 0; lead < data->n; lead++) {
-        if (lead_of[lead] != lead)
-            continue;
-        bd_block block = {.first = place, .offset = parts->n_padded, .matrix = parts->squares};
-        for (int i = lead; i < data->n; i++)
-            if (lead_of[i] == lead) {
-                parts->order[place++] = i;
-                parts->slot[i] = block.offset + block.n++;
-            }
-        block.padded = BD_PADDED(block.n);
-        parts->largest = block.n > parts->largest ? block.n : parts->largest;
-        parts->squares += (size_t)block.n * (size_t)block.n;
-        parts->n_padded += block.padded;
-        parts->blocks[parts->n_blocks++] = block;
-    }
-}
-
-/* The layers of each block, in the caller's order. */
-static void place_layers(partition *parts, const bd_model_data *data, const int *lead_of,
-                         int *lead_of_layer)
-{
-    int place = 0;
-    for (int l = 0; l < data->n_layers; l++) {
-        const int first = first_touched(data, &data->layers[l]);
-        lead_of_layer[l] =
-            first < 0 ? 0 : lead_of[first]; /* one that does nothing lies in the first */
-    }
-    for (int b = 0; b < parts->n_blocks; b++) {
-        bd_block *block = &parts->blocks[b];
-        block->layer = place;
-        for (int l = 0; l < data->n_layers; l++)
-            if (lead_of_layer[l] == parts->order[block->first])
-                parts->source[place++] = l;
-        block->n_layers = place - block->layer;
-    }
-}
-
-/* Returned: whether there was memory; parts->memory is to be freed. */
-static bool find_partition(const bd_model_data *data, partition *parts)
-{
-    const size_t n = (size_t)data->n, n_layers = (size_t)data->n_layers;
-    *parts =
-        (partition){.memory = malloc(n * sizeof(bd_block) + (3 * n + 2 * n_layers) * sizeof(int))};
-    if (!parts->memory)
-        return false;
-    parts->blocks = parts->memory;
-    parts->order = (int *)(parts->blocks + n);
-    parts->slot = parts->order + n;
-    parts->source = parts->slot + n;
-    int *lead_of = parts->source + n_layers, *lead_of_layer = lead_of + n;
-
-    find_leads(data, lead_of);
-    place_coordinates(parts, data, lead_of);
-    place_layers(parts, data, lead_of, lead_of_layer);
-    return true;
-}
-
 /* ---------------------------------------------------------------- one slab */
 
 /* Carves aligned pieces; with base NULL it only counts, so that one layout routine does both. */
@@ -192,7 +58,7 @@ static double *copy_vector(arena *a, const bd_model *model, const double *from)
 }
 
 /* The caller's (n x n) matrix, block by block. */
-static double *copy_matrix(arena *a, const bd_model *model, const partition *parts,
+static double *copy_matrix(arena *a, const bd_model *model, const bd_partition *parts,
                            const double *from)
 {
     double *matrix = carve(a, parts->squares, sizeof *matrix), *to = matrix;
@@ -205,8 +71,54 @@ static double *copy_matrix(arena *a, const bd_model *model, const partition *par
     return matrix;
 }
 
+/* The columns from the first to the last in which any of a band's rows of a matrix has an entry. */
+static bd_span span_of_entries(const double *rows, size_t stride, const bd_span *band, int n,
+                               int padded)
+{
+    int first = n, end = 0;
+    for (int j = band->first; j < band->first + band->n; j++)
+        for (int k = 0; k < n; k++)
+            if (rows[(size_t)j * stride + (size_t)k] != 0.0) {
+                first = k < first ? k : first;
+                end = k + 1 > end ? k + 1 : end;
+            }
+    return end > first ? bd_span_of(first, end - first, padded) : (bd_span){0};
+}
+
+/* Of each band of coordinates, which rows of its lanes are its own; NULL for all of a block, whose padding is zero. */
+static void layout_bands(arena *a, bd_model *model, const bd_partition *parts)
+{
+    const size_t n_bands = (size_t)parts->n_bands;
+    const long long **inside = carve(a, n_bands, sizeof *inside);
+    for (int b = 0; b < parts->n_blocks; b++) {
+        const bd_block *block = &parts->blocks[b];
+        for (int i = block->band; block->n_bands > 1 && i < block->band + block->n_bands; i++) {
+            const bd_span *band = &parts->bands[i];
+            long long *own = carve(a, (size_t)band->rows, sizeof *own);
+            if (own) {
+                inside[i] = own;
+                memset(own + (band->first - band->row), 0xff, (size_t)band->n * sizeof *own);
+            }
+        }
+    }
+    model->n_bands = parts->n_bands;
+    model->bands = copy(a, parts->bands, n_bands, sizeof *parts->bands);
+    model->inside = inside;
+}
+
+/* Which rates of a layer each band of its block enters. */
+static const bd_span *find_felt(arena *a, const bd_partition *parts, const bd_block *block,
+                                const double *L, int rank)
+{
+    bd_span *felt = carve(a, (size_t)block->n_bands, sizeof *felt);
+    const size_t padded = (size_t)BD_PADDED(rank);
+    for (int i = 0; felt && i < block->n_bands; i++)
+        felt[i] = span_of_entries(L, padded, &parts->bands[block->band + i], rank, (int)padded);
+    return felt;
+}
+
 /* A block's rows of a layer's factor, each padded. */
-static double *copy_factor(arena *a, const partition *parts, const bd_block *block,
+static double *copy_factor(arena *a, const bd_partition *parts, const bd_block *block,
                            const bd_layer_data *from)
 {
     const size_t rank = (size_t)from->rank, padded = (size_t)BD_PADDED(from->rank);
@@ -240,13 +152,14 @@ static const bd_softening_data *copy_softening(arena *a, const bd_layer_data *fr
 }
 
 static void layout_layers(arena *a, bd_model *model, const bd_model_data *data,
-                          const partition *parts)
+                          const bd_partition *parts)
 {
     bd_layer *layers = carve(a, (size_t)data->n_layers, sizeof *layers);
     for (int b = 0; b < parts->n_blocks; b++) {
         const bd_block *block = &parts->blocks[b];
         for (int l = block->layer; l < block->layer + block->n_layers; l++) {
             const bd_layer_data *from = &data->layers[parts->source[l]];
+            const double *L = copy_factor(a, parts, block, from);
             const bd_layer layer = {
                 .source = parts->source[l],
                 .block = b,
@@ -259,7 +172,8 @@ static void layout_layers(arena *a, bd_model *model, const bd_model_data *data,
                 .memory = model->n_softening_doubles,
                 .softening = copy_softening(a, from),
                 .stress = model->n_stress,
-                .L = copy_factor(a, parts, block, from),
+                .L = L,
+                .felt = find_felt(a, parts, block, L, from->rank),
                 .modulus = copy_doubles(a, from->modulus, (size_t)from->n_branches),
                 .tau = copy_doubles(a, from->tau, (size_t)from->n_branches),
             };
@@ -310,16 +224,6 @@ static void fill_coefs(const bd_model *model, const double *rows, int slot, int 
     }
 }
 
-/* Whether any coordinate of a block is among those that n_coefs columns of B, from `slot` on, read. */
-static bool sees(const bd_model *model, int slot, int n_coefs, const bd_block *block)
-{
-    for (int i = block->offset; i < block->offset + block->n; i++)
-        for (int k = slot; k < slot + n_coefs; k++)
-            if (model->B[(size_t)i * (size_t)model->coefs + (size_t)k] != 0.0)
-                return true;
-    return false;
-}
-
 static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data)
 {
     const size_t n_bearings = (size_t)data->n_bearings;
@@ -330,13 +234,13 @@ static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data
     bd_bearing *bearings = carve(a, n_bearings, sizeof *bearings);
     int *bearing_slot = carve(a, n_bearings, sizeof *bearing_slot);
     int *coef_slot = carve(a, (size_t)model->n_coefs, sizeof *coef_slot);
-    int *touched = carve(a, n_bearings * (size_t)model->n_blocks, sizeof *touched);
+    bd_span *seen = carve(a, n_bearings * (size_t)model->n_bands, sizeof *seen);
     double *B = carve(a, (size_t)model->n_padded * (size_t)model->coefs, sizeof *B);
     model->n_bearings = data->n_bearings;
     model->bearings = bearings;
     model->bearing_slot = bearing_slot;
     model->coef_slot = coef_slot;
-    model->touched = touched;
+    model->seen = seen;
     model->B = B;
 
     int place = 0,
@@ -350,9 +254,15 @@ static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data
             bearings[b].weight = model->n_echoes;
             bearing_slot[b] = slot;
             fill_coefs(model, data->B[b], slot, own.n_coefs, coef_slot + place, B);
-            for (int c = 0; c < model->n_blocks; c++)
-                touched[b * model->n_blocks + c] =
-                    sees(model, slot, own.n_coefs, &model->blocks[c]);
+            const double *columns = B + slot;
+            for (int c = 0; c < model->n_blocks; c++) {
+                const bd_block *block = &model->blocks[c];
+                const double *rows = columns + (size_t)block->offset * (size_t)model->coefs;
+                for (int i = block->band; i < block->band + block->n_bands; i++)
+                    seen[b * model->n_bands + i] =
+                        span_of_entries(rows, (size_t)model->coefs, &model->bands[i], own.n_coefs,
+                                        BD_PADDED(own.n_coefs));
+            }
         }
         model->n_echoes += own.contact.n_echoes;
         model->n_echo_doubles += bd_echoes_size(&own);
@@ -415,7 +325,7 @@ static void layout_channels(arena *a, bd_model *model, const bd_model_data *data
 }
 
 /* One routine lays a model out, first to count (a->base NULL), then to fill. */
-static bd_model *layout(arena *a, const bd_model_data *data, const partition *parts)
+static bd_model *layout(arena *a, const bd_model_data *data, const bd_partition *parts)
 {
     const size_t n = (size_t)data->n;
     bd_model *in_slab = carve(a, 1, sizeof *in_slab);
@@ -428,6 +338,7 @@ static bd_model *layout(arena *a, const bd_model_data *data, const partition *pa
         .slot = copy(a, parts->slot, n, sizeof *parts->slot),
         .blocks = copy(a, parts->blocks, (size_t)parts->n_blocks, sizeof *parts->blocks),
     };
+    layout_bands(a, &model, parts);
     layout_layers(a, &model, data, parts);
     layout_bearings(a, &model, data);
     layout_loads(a, &model, data);
@@ -447,11 +358,11 @@ static bd_model *layout(arena *a, const bd_model_data *data, const partition *pa
 
 bd_model *bd_model_create(const bd_model_data *data, bd_status *status)
 {
-    partition parts;
+    bd_partition parts;
     *status = bd_model_check(data);
     if (*status != BD_OK)
         return NULL;
-    if (!find_partition(data, &parts)) {
+    if (!bd_partition_create(data, &parts)) {
         *status = BD_NO_MEMORY;
         return NULL;
     }

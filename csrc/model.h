@@ -3,15 +3,7 @@
 #define BD_MODEL_H
 
 #include "bearing.h"
-
-/* Coordinates coupled with one another by the linear structure. */
-typedef struct bd_block {
-    int n, padded;       /* coordinates, and the same in whole lanes */
-    int first;           /* in block order without padding: bd_model.order[first ... first + n) */
-    int offset;          /* in padded vectors */
-    int layer, n_layers; /* its layers are layer ... layer + n_layers of bd_model.layers */
-    size_t matrix;       /* of its n x n row-major matrices in M, C, G, K, N */
-} bd_block;
+#include "partition.h"
 
 typedef struct bd_layer {
     int source; /* index in the caller's list */
@@ -22,7 +14,8 @@ typedef struct bd_layer {
     size_t memory;                      /* of its deviation in a state's softening */
     const bd_softening_data *softening; /* or NULL */
     size_t stress;                      /* of its first branch in a state's stress */
-    const double *L; /* (block n x padded rank): row j holds coordinate j's part in each rate */
+    const double *L;     /* (block n x padded rank): row j holds coordinate j's part in each rate */
+    const bd_span *felt; /* (block n_bands) the rates that each band's motion enters */
     const double *modulus, *tau;
 } bd_layer;
 
@@ -47,7 +40,7 @@ typedef struct bd_matrices {
 
 struct bd_model {
     size_t bytes; /* of the allocation */
-    int n, n_padded, n_blocks, n_layers, n_bearings, n_loads, n_channels;
+    int n, n_padded, n_blocks, n_bands, n_layers, n_bearings, n_loads, n_channels;
     int largest;  /* coordinates of the largest block */
     int branches; /* of all layers */
     int n_coefs,
@@ -63,13 +56,15 @@ struct bd_model {
     const int *coef_slot;       /* (n_coefs) padded position of the caller's coefficient */
     const int *bearing_slot;    /* (n_bearings) padded position of a bearing's first coefficient */
     const bd_block *blocks;
+    const bd_span *bands; /* (n_bands) in their block; none couples with another but by bearings */
+    const long long *const *inside; /* (n_bands) its rows: all bits set at its own; NULL: all are */
     const bd_layer *layers;
     const bd_bearing *bearings;
     const bd_load *loads;
     const bd_channel *channels;
     bd_matrices matrices;
-    const int *touched; /* (n_bearings x n_blocks) 1 where a bearing sees a block's motion */
-    const double *B;    /* (n_padded x coefs): row j holds coordinate j's part in each */
+    const bd_span *seen; /* (n_bearings x n_bands) coefficients that a band's motion enters */
+    const double *B;     /* (n_padded x coefs): row j holds coordinate j's part in each */
 };
 
 /* Numbers that a state keeps of a layer that softens, behind its deviation (softening.c). */

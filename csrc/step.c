@@ -9,6 +9,30 @@
 #include "receptance.h"
 #include "work.h"
 
+/* a += A u of one block, whose bands do not couple; A in columns of the block's padding. */
+BD_INLINE void square_add(const bd_model *model, const bd_block *block, const double *A,
+                          const double *u, double *a)
+{
+    for (int i = block->band; i < block->band + block->n_bands; i++) {
+        const bd_span *band = &model->bands[i];
+        columns_add_inside(band->rows, band->n,
+                           A + (size_t)band->first * (size_t)block->padded + band->row,
+                           block->padded, u + band->first, model->inside[i], a + band->row);
+    }
+}
+
+/* a += A u, where A has a column for each rate of a layer. */
+BD_INLINE void layer_add(const bd_model *model, const bd_block *block, const bd_layer *layer,
+                         const double *A, const double *u, double *a)
+{
+    for (int i = 0; i < block->n_bands; i++) {
+        const bd_span *band = &model->bands[block->band + i], *felt = &layer->felt[i];
+        columns_add_inside(
+            band->rows, felt->n, A + (size_t)felt->first * (size_t)block->padded + band->row,
+            block->padded, u + felt->first, model->inside[block->band + i], a + band->row);
+    }
+}
+
 /* Predictors, trial branch stresses and the acceleration without the bearings. */
 static void predict(const bd_model *model, bd_work *work, const bd_state *state)
 {
@@ -42,12 +66,10 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
                 LANES_AT(a + i) = undamped;
                 LANES_AT(corrected + i) = LANES(v + i) + in_v_new * undamped;
             }
-            columns_add(block->padded, block->n, columns + square, block->padded, corrected, a);
+            square_add(model, block, columns + square, corrected, a);
         } else {
-            columns_add(block->padded, block->n, columns, block->padded, work->x + block->offset,
-                        a);
-            columns_add(block->padded, block->n, columns + square, block->padded,
-                        work->v + block->offset, a);
+            square_add(model, block, columns, work->x + block->offset, a);
+            square_add(model, block, columns + square, work->v + block->offset, a);
         }
         columns += 2 * square;
         for (int l = block->layer; l < block->layer + block->n_layers; l++) {
@@ -58,7 +80,7 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
                 maxwell_trial(layer->padded, *weights++, state->stress + at,
                               state->y_rate + layer->offset, work->trial + at, history);
             }
-            columns_add(block->padded, layer->rank, columns, block->padded, history, a);
+            layer_add(model, block, layer, columns, history, a);
             columns += (size_t)layer->rank * (size_t)block->padded;
         }
     }
@@ -83,14 +105,18 @@ static void observe(const bd_model *model, bd_work *work)
     for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->z_linear + k) = LANES_AT(work->z_rate_linear + k) = (lanes){0};
     for (int b = 0; b < model->n_bearings; b++) {
-        const int at = model->bearing_slot[b], *touched = model->touched + b * model->n_blocks;
+        const bd_span *seen = model->seen + b * model->n_bands;
         for (int c = 0; c < model->n_blocks; c++) {
-            const int from = model->blocks[c].offset;
-            if (touched[c])
-                columns_add_two(model->bearings[b].coefs, model->blocks[c].n,
-                                model->B + (size_t)from * (size_t)model->coefs + at, model->coefs,
-                                work->x_new + from, work->v_new + from, work->z_linear + at,
-                                work->z_rate_linear + at);
+            const bd_block *block = &model->blocks[c];
+            for (int i = block->band; i < block->band + block->n_bands; i++) {
+                const int from = block->offset + model->bands[i].first;
+                const int to = model->bearing_slot[b] + seen[i].row;
+                if (seen[i].n > 0)
+                    columns_add_two(seen[i].rows, model->bands[i].n,
+                                    model->B + (size_t)from * (size_t)model->coefs + to,
+                                    model->coefs, work->x_new + from, work->v_new + from,
+                                    work->z_linear + to, work->z_rate_linear + to);
+            }
         }
     }
 }
@@ -101,13 +127,19 @@ BD_INLINE void add_bearings(const bd_model *model, bd_work *work)
     for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->change + k) = -LANES(work->guess + k);
     for (int b = 0; b < model->n_bearings; b++) {
-        const int at = model->bearing_slot[b], *touched = model->touched + b * model->n_blocks;
-        const double *columns = work->SB + (size_t)at * (size_t)model->n_padded;
-        for (int c = 0; c < model->n_blocks; c++)
-            if (touched[c])
-                columns_add(model->blocks[c].padded, model->bearings[b].data.n_coefs,
-                            columns + model->blocks[c].offset, model->n_padded, work->change + at,
-                            work->a + model->blocks[c].offset);
+        const bd_span *seen = model->seen + b * model->n_bands;
+        for (int c = 0; c < model->n_blocks; c++) {
+            const bd_block *block = &model->blocks[c];
+            for (int i = block->band; i < block->band + block->n_bands; i++) {
+                const int at = model->bearing_slot[b] + seen[i].first;
+                const int to = block->offset + model->bands[i].row;
+                if (seen[i].n > 0)
+                    columns_add_inside(model->bands[i].rows, seen[i].n,
+                                       work->SB + (size_t)at * (size_t)model->n_padded + to,
+                                       model->n_padded, work->change + at, model->inside[i],
+                                       work->a + to);
+            }
+        }
     }
 }
 
@@ -134,10 +166,9 @@ static double drift(const bd_model *model, bd_work *work, double *largest)
     for (int b = 0; b < model->n_blocks; b++) {
         const bd_block *block = &model->blocks[b];
         const size_t square = (size_t)block->padded * (size_t)block->n;
-        columns_add(block->padded, block->n, columns, block->padded, work->x_new + block->offset,
-                    work->a + block->offset);
-        columns_add(block->padded, block->n, columns + square, block->padded,
-                    work->v_new + block->offset, work->a + block->offset);
+        square_add(model, block, columns, work->x_new + block->offset, work->a + block->offset);
+        square_add(model, block, columns + square, work->v_new + block->offset,
+                   work->a + block->offset);
         columns += 2 * square;
     }
     for (int i = 0; i < model->n_padded; i++) {
@@ -221,8 +252,14 @@ static int commit(const bd_model *model, bd_work *work, bd_state *state)
         double *rate = work->y_rate + layer->offset;
         for (int r = 0; r < layer->padded; r += BD_WIDTH)
             LANES_AT(rate + r) = (lanes){0};
-        columns_add(layer->padded, block->n, layer->L, layer->padded, work->v_new + block->offset,
-                    rate);
+        for (int i = 0; i < block->n_bands; i++) {
+            const bd_span *band = &model->bands[block->band + i], *felt = &layer->felt[i];
+            if (felt->n > 0)
+                columns_add(felt->rows, band->n,
+                            layer->L + (size_t)band->first * (size_t)layer->padded + felt->row,
+                            layer->padded, work->v_new + block->offset + band->first,
+                            rate + felt->row);
+        }
         /* the sum of the new stresses stands for all of them: it is not finite where one of them is not */
         double now = 0.0;
         for (int i = 0; i < layer->n_stresses; i++)

@@ -32,6 +32,8 @@ from typing import Any
 import numpy as np
 
 SECONDS, BYTES = 5.0, 1 << 30
+# a refused request would come out as an OSError and pass: a reader gets more, and what it takes is counted
+LIMIT = 3 << 30
 SEED = 20261129
 # what people and broken programs write for a number
 NUMBERS = [
@@ -283,6 +285,14 @@ def _result(folder: Path) -> None:
     bd.save({"a": data, "b": data.isel(t=slice(5))}, folder / "r.nc")
 
 
+def _sealed(data: bytes, mutate: Mutate) -> bytes:
+    """A result file damaged before it was sealed."""
+    from bearingdyn.results import file_seal
+
+    content = mutate(data[: -file_seal.LENGTH])
+    return content + file_seal.seal(content)
+
+
 def _netcdf() -> Reader:
     from bearingdyn.results import groups, open_result
 
@@ -290,7 +300,7 @@ def _netcdf() -> Reader:
         for name in groups(folder / "r.nc") or [""]:
             open_result(folder / "r.nc", name)
 
-    return Reader(_result, read)
+    return Reader(_result, read, _sealed)
 
 
 def _show() -> Reader:
@@ -306,7 +316,7 @@ def _show() -> Reader:
         if code:
             raise ValueError(said.getvalue())
 
-    return Reader(_result, read)
+    return Reader(_result, read, _sealed)
 
 
 def _run() -> Reader:
@@ -595,10 +605,15 @@ def trial(reader: Reader, folder: Path, files: dict[str, bytes], number: int) ->
     """What mutant `number` did against the rule; empty where it did nothing."""
     name, content = mutant(reader, files, number)
     (folder / name).write_bytes(content)
+    before = _most_memory()
     signal.setitimer(signal.ITIMER_PROF, SECONDS)
     try:
         reader.read(folder)
+        if (taken := _most_memory(False) - before) > BYTES:
+            return f"{taken / 1e6:.0f} MB"
     except (ValueError, OSError) as error:
+        if (taken := _most_memory(False) - before) > BYTES:
+            return f"{taken / 1e6:.0f} MB for {error!s:.200}"
         if reader.names_file and not any(known in str(error) for known in files):
             return f"{type(error).__name__} names no file: {error!s:.200}"
     except TooLongError:
@@ -614,6 +629,14 @@ def trial(reader: Reader, folder: Path, files: dict[str, bytes], number: int) ->
     return ""
 
 
+def _most_memory(anew: bool = True) -> int:
+    """Most memory this process has held, bytes; `anew`: what it holds now, from where the most is counted."""
+    if anew:
+        Path("/proc/self/clear_refs").write_text("5")
+    status = Path("/proc/self/status").read_text()
+    return 1024 * int(status.split("VmHWM:")[1].split()[0])
+
+
 def child(name: str, first: int, last: int) -> None:
     """Trials of a reader; a line with the number of each, and JSON after one that breaks the rule."""
     warnings.simplefilter("ignore")
@@ -624,7 +647,7 @@ def child(name: str, first: int, last: int) -> None:
         files = sound_files(reader, folder)
         reader.read(folder)  # the sound one must pass, and loads what is loaded late
         used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-        resource.setrlimit(resource.RLIMIT_AS, (used + BYTES, resource.RLIM_INFINITY))
+        resource.setrlimit(resource.RLIMIT_AS, (used + LIMIT, resource.RLIM_INFINITY))
         for number in range(first, last):
             print(number, flush=True)
             wrong = trial(reader, folder, files, number)

@@ -139,13 +139,6 @@ def truth(field: str, value: object) -> bool:
     return bool(value)
 
 
-def table(field: str, value: object, holding: Sequence[str], maker: str) -> None:
-    """Check of an argument that must be a Dataset with these variables, the result of `maker`."""
-    good = hasattr(value, "data_vars") and all(name in value for name in holding)  # type: ignore[operator]
-    told = value if not hasattr(value, "data_vars") else f"a Dataset of {sorted(map(str, value))}"  # type: ignore[call-overload]
-    require(good, field, told, f"it must be the result of `{maker}`, with {', '.join(holding)}")
-
-
 def named(field: str, value: object, remedy: str) -> dict[str, Any]:
     """Check a mapping with names as keys, as a dict; ValueError for anything else."""
     require(isinstance(value, Mapping), field, value, remedy)

@@ -410,7 +410,7 @@ def march(
 
 @dataclass(frozen=True, eq=False)
 class MarchCall:
-    """Call of the core that marches, not yet made: the arguments of `march`."""
+    """Call of the C core for a march, not yet made: the arguments of `core.march`."""
 
     model: Model
     state: Array

@@ -407,6 +407,16 @@ class OilAtOtherSpeed(Notice):
     """
 
 
+class StandingUnbalance(Notice):
+    """One of the notices: an unbalance is on a part that stands.
+
+    When: an application is joined in which some part turns (one with gyroscopic forces, what is connected to
+    it, a ring that turns), and an unbalance is on another, that no connection joins to these.
+
+    Remedy: the unbalance on the part that turns; or, where its part does turn, `rotating=True`.
+    """
+
+
 class ChangedFunction(Notice):
     """One of the notices: processes of a study computed another function than the one at hand.
 
@@ -432,8 +442,9 @@ class UnprovenOptimum(Notice):
 class CutHarmonics(Notice):
     """One of the notices: a steady motion wants more harmonics than it was given.
 
-    When: the harmonics next above the last of a `steady_state` would add more than 2 % of a channel's largest
-    line; or, of several base frequencies, a line above the last that would be 2 % of the bearings' largest.
+    When: the harmonics next above the last of a `steady_state`, or of a point of a `speed_map` or a
+    `parameter_map`, would add more than 2 % of a channel's largest line (of a map, the worst point is named);
+    or, of several base frequencies, a line above the last that would be 2 % of the bearings' largest.
 
     Remedy: more `harmonics`; a pit or a ball that loses contact needs many.
     """

@@ -108,7 +108,7 @@ class Chunk:
 
 
 def report_of(chunks: Sequence[Chunk]) -> Report:
-    """The report of all chunks of a run file together, one or more."""
+    """All chunks of a run file together, one or more, as one report of the march."""
     return sum((chunk.report for chunk in chunks[1:]), chunks[0].report)
 
 

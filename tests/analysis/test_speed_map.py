@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
@@ -22,13 +23,14 @@ from bearingdyn import plot
 from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_state, transient
 from bearingdyn.analysis.steady import branches as tracing
 from bearingdyn.analysis.steady.balance import flat, newton, unflat
+from bearingdyn.analysis.steady.event_accuracy import once, within
 from bearingdyn.analysis.steady.factored import Factored, jacobian
-from bearingdyn.analysis.steady.located import once, within
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.reaching import curve_of
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.material import FractionalZener
+from bearingdyn.notice import CutHarmonics
 from bearingdyn.system import assemble
 
 RPM = math.pi / 30
@@ -372,3 +374,22 @@ def test_a_figure_shows_branches_stability_and_events(hysteresis: xarray.Dataset
     # the passage is 3.0846 times the shaft (§3.6), and nothing lies below it
     assert (lines[:, 1] / (lines[:, 0] / 60)).min() == pytest.approx(3.0846, abs=1e-4)
     plt.close("all")
+
+
+def test_a_map_says_at_which_points_it_wants_more_harmonics() -> None:
+    """As a steady state does, whose estimate it is; at the harmonics of the other tests no point does."""
+    with pytest.warns(
+        CutHarmonics, match=r"the motion at \d+\.?\d* rad/s, one of \d+ points of \d+, wants"
+    ) as told:
+        few = made(4650, 4750, harmonics=1, points=4)
+    assert len(told) == 1
+    i = int(few["cut"].values[:, 0].argmax())
+    with pytest.warns(CutHarmonics):
+        one = steady_state(
+            equilibrium(rotors.held_jis_rotor()), speed=float(few["speed"][i]), record=RECORD, harmonics=1
+        )
+    # the same lines, balanced on other samples: 48 of a passage there
+    assert few["cut"].values[i] == pytest.approx(one["cut"].values, rel=0.02)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", CutHarmonics)
+        assert (made(4650, 4750, points=4)["cut"].values < 1e-2 * few["cut"].values.max()).all()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 
 import bearingdyn as bd
 from bearingdyn.bearing.catalogue import bearing
+from bearingdyn.notice import StandingUnbalance
 
 SPEED = 1797 * math.pi / 30  # rad/s
 # one ball 1 µm larger: it pushes the rotor aside and goes around with the cage
@@ -91,3 +93,32 @@ def test_a_bearing_that_contradicts_its_parts_is_refused():
     ball = bearing("6205", clearance=10e-6, turning="inner")
     with pytest.raises(ValueError, match=r"bearing 'main': turning is 'inner', and its outer ring is"):
         bd.equilibrium(machine(ball, "outer"))
+
+
+@pytest.mark.parametrize(
+    ("rotating", "said"), [(True, "rotor turns"), (False, "the other ring of its bearing")]
+)
+@pytest.mark.parametrize("rotor_in", ["inner", "outer"])
+def test_an_unbalance_on_a_part_that_stands_is_told(rotor_in: str, rotating: bool, said: str) -> None:
+    """Its force would go round with a shaft that the part has no share in; what turns is told nothing."""
+    turning = None if rotating else rotor_in
+    ball = bearing("6205", clearance=10e-6, damping=100.0, turning=turning)
+    for at, stands in (("rotor", False), ("post", True)):
+        app = machine(ball, rotor_in, rotating)
+        app.unbalance(f"{at}.centre", 1e-6)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            bd.equilibrium(app)
+        texts = [str(w.message) for w in caught if w.category is StandingUnbalance]
+        assert len(texts) == stands
+        assert all("unbalance at post.centre" in text and said in text for text in texts)
+
+
+def test_nothing_is_told_of_an_unbalance_where_nothing_is_known_to_turn() -> None:
+    app = bd.Application()
+    app.add("mass", bd.RigidBody(1.0, (1e-3, 1e-3, 1e-3)))
+    app.ground("mass.centre", [1e6] * 6)
+    app.unbalance("mass.centre", 1e-6)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", StandingUnbalance)
+        bd.modes(app)

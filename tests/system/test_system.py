@@ -234,8 +234,9 @@ class TestModalCoordinates:
     def test_modes_stay_in_their_block(self, system):
         blocks = system.blocks()
         assert sorted(np.concatenate(blocks)) == list(range(system.n))
-        # the rotor's x, y, z and θz; θx with θy, coupled by its spin; all the rest
-        assert len(blocks) == 6
+        # the rotor's x, y, z and θz; θx with θy, coupled by its spin; of ring, layer and block x with θy, y
+        # with θx, z, θz, as a round layer couples them
+        assert len(blocks) == 9
         T = system.modal()[1]
         for block in blocks:
             outside = np.setdiff1d(np.arange(system.n), block)

@@ -17,8 +17,6 @@ from bearingdyn.analysis.mode_shapes import MovedSurface, mode_shapes, mode_surf
 from bearingdyn.analysis.modes import modes
 from bearingdyn.analysis.operating_point import (
     OperatingPoint,
-    ThermalRunaway,
-    estimated_network,
     operating_point,
 )
 from bearingdyn.analysis.orbit import orbit
@@ -33,7 +31,7 @@ from bearingdyn.analysis.state_space import StateSpace, state_space
 from bearingdyn.analysis.static_summary import static_summary
 from bearingdyn.analysis.steady import parameter_map, speed_map, steady_state
 from bearingdyn.analysis.stiffness_table import export_stiffness, ross_table, stiffness_table
-from bearingdyn.analysis.thermal_network import ThermalNetwork
+from bearingdyn.analysis.thermal_network import ThermalNetwork, ThermalRunaway, estimated_network
 from bearingdyn.analysis.transient import transient, transients
 from bearingdyn.analysis.unbalance_response import unbalance_response
 from bearingdyn.analysis.waterfall import waterfall

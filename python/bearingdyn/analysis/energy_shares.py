@@ -17,8 +17,8 @@ import numpy as np
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import Application
-from bearingdyn.checks import table
 from bearingdyn.material import is_volume
+from bearingdyn.results import check_dataset, dataset, inputs_of
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 
@@ -63,7 +63,7 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
     ValueError
         For modes of another system, and for bearings without an equilibrium.
     """
-    table("found", found, ["shape", "eigenvalue"], "modes")
+    check_dataset("found", found, ["shape", "eigenvalue"], "modes")
     system = linear(source).system
     if not system.parts:
         raise ValueError("the system does not know its parts; pass an application or its equilibrium")
@@ -87,8 +87,6 @@ def energy_shares(source: Equilibrium | Application | System, found: xarray.Data
 
     size = np.abs(value) * energy
     damping = np.divide(lost, size[:, None], out=np.zeros_like(lost), where=size[:, None] > 0.0)
-
-    from bearingdyn.results import dataset, inputs_of
 
     over = ("mode", "part")
     return dataset(

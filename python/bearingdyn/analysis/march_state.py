@@ -21,7 +21,7 @@ ABSURD = 1e100
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """How a march begins.
+    """State in which a march begins.
 
     Parameters
     ----------

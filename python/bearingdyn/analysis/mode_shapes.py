@@ -10,8 +10,9 @@ import numpy as np
 
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.application import COMPONENTS, Application, arm
-from bearingdyn.checks import name_list, table, whole
+from bearingdyn.checks import name_list, whole
 from bearingdyn.parts import Outlined
+from bearingdyn.results import check_dataset, dataset, inputs_of
 from bearingdyn.short_repr import short
 from bearingdyn.system import System, system_of
 from bearingdyn.types import Array, Complex, Index
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class MovedSurface:
-    """Mode shape of one part's surface: its points, faces and motion.
+    """One part's surface in a mode shape: its points, faces and motion.
 
     Parameters
     ----------
@@ -74,8 +75,6 @@ def mode_shapes(source: Equilibrium | Application | System, found: xarray.Datase
     for k, name in enumerate(places):
         rows = system.rows(name)
         motion[:, k, : len(rows)] = shape @ rows.T
-
-    from bearingdyn.results import dataset, inputs_of
 
     return dataset(
         {
@@ -156,7 +155,7 @@ def _of_one_system(
     source: Equilibrium | Application | System, found: xarray.Dataset
 ) -> tuple[System, Complex]:
     """The system, and the shapes (mode, coordinate) of its modes."""
-    table("found", found, ["shape"], "modes")
+    check_dataset("found", found, ["shape"], "modes")
     system = source.system if isinstance(source, Equilibrium) else system_of("source", source)
     shape = found["shape"].values
     if shape.shape[1] != system.n:

@@ -16,8 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
-from bearingdyn.analysis.thermal_network import AIR, ThermalNetwork
-from bearingdyn.application import Application, Place
+from bearingdyn.analysis.thermal_network import (
+    ThermalNetwork,
+    ThermalRunaway,
+    estimated_network,
+    measures,
+)
+from bearingdyn.application import Application
 from bearingdyn.bearing import (
     BallBearing,
     Friction,
@@ -41,19 +46,8 @@ if TYPE_CHECKING:
 LayerHeat: TypeAlias = float | Callable[[float], float] | tuple[float, ArrayLike]
 """W; W of the temperature in °C; or (frequency Hz, motion (6,) m and rad zero-to-peak across the layer)."""
 
-# ISO 15312: a bearing passes 16 kW/m² of π B (d + D) on to its surroundings at 50 K
-EMITTED = 16e3 / 50.0
-"""W/(m² K) of a bearing's seats, where nothing better is known (ISO 15312)."""
-RUBBER_CONDUCTIVITY = 0.25
-"""W/(m K), where nothing better is known."""
-ACROSS = 0.5
-"""W/K between the rings by balls and oil, where nothing better is known: an estimate, unverified."""
 HOTTEST = 250.0
 """°C, beyond which no oil or rubber serves."""
-
-
-class ThermalRunaway(ArithmeticError):
-    """There is no operating point: heat grows faster than it is carried away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,47 +110,6 @@ class OperatingPoint:
             },
             {"bearing": (bearings, ""), "node": (nodes, "")},
         )  # fmt: skip
-
-
-def estimated_network(app: Application, ambient: float = 20.0) -> ThermalNetwork:
-    """Operating point's thermal network of bearings and layers, estimated.
-
-    Each bearing has nodes "name.inner" and "name.outer". Its seats pass heat on as ISO 15312's reference
-    does, 320 W/(m² K) of their area; a layer of rubber behind the outer ring lies in between, as a ring of
-    .25 W/(m K); the rings exchange .5 W/K by balls and oil (an estimate, unverified).
-
-    Parameters
-    ----------
-    app
-        Application.
-    ambient
-        °C.
-
-    Raises
-    ------
-    ValueError
-        For a bearing whose bore and outside diameter are not known.
-    """
-    instance("app", app, Application, "it must be an Application (bd.Application())")
-    network = ThermalNetwork(ambient)
-    for name, joint in app.plan.bearings.items():
-        d, D, B = _measures(name, joint.bearing)
-        inner, outer = f"{name}.inner", f"{name}.outer"
-        network.link(inner, outer, ACROSS)
-        network.link(inner, AIR, EMITTED * math.pi * d * B)
-        layer = _layer_behind(app, joint.outer)
-        seat = EMITTED * math.pi * D * B
-        if layer is None:
-            network.link(outer, AIR, seat)
-            continue
-        source = app.plan.sources[layer]
-        assert isinstance(source, Layer)
-        network.ring(
-            layer, outer, f"{layer}.housing", r_inner=source.r_inner, r_outer=source.r_outer,
-            width=source.width, conductivity=RUBBER_CONDUCTIVITY,
-        )  # fmt: skip
-        network.link(f"{layer}.housing", AIR, seat)
-    return network
 
 
 @takes(speed="rad/s", ambient="°C", assembled_at="°C")
@@ -300,14 +253,6 @@ def _mean(T: Mapping[str, float], bearing: str) -> float:
     return (T[f"{bearing}.inner"] + T[f"{bearing}.outer"]) / 2
 
 
-def _measures(name: str, bearing: BallBearing) -> tuple[float, float, float]:
-    if bearing.boundary is None:
-        raise ValueError(
-            f"bearing {name!r} has no boundary; give boundary=(bore, outside, width) in m: it is cooled by it"
-        )
-    return bearing.boundary
-
-
 def _warmed(system: System, T: Mapping[str, float], cold: float, fits: Mapping[str, Mounting]) -> System:
     """The system with its bearings' clearances and its layers' materials at these temperatures."""
     bearings = []
@@ -315,7 +260,7 @@ def _warmed(system: System, T: Mapping[str, float], cold: float, fits: Mapping[s
         if not isinstance(term.bearing, BallBearing):
             bearings.append(term)
             continue
-        d, D, _ = _measures(term.name, term.bearing)
+        d, D, _ = measures(term.name, term.bearing)
         inner, outer = T[f"{term.name}.inner"] - cold, T[f"{term.name}.outer"] - cold
         fit = replace(
             fits.get(term.name, Mounting(d, D)), inner=inner, outer=outer, balls=(inner + outer) / 2
@@ -351,7 +296,7 @@ def _rubbing(
     supply: Supply,
 ) -> Friction:
     """Friction of one bearing in a state."""
-    d, D, _ = _measures(name, bearing)
+    d, D, _ = measures(name, bearing)
     force = state.bearings[name].force
     inner, outer = bearing.ring_speeds
     return friction(
@@ -390,18 +335,3 @@ def _layer_power(app: Application, part: str, given: LayerHeat, T: float) -> flo
 def _at(material: Any, T: float) -> Any:
     """A material at a temperature, °C; one without a shift law stays as it is."""
     return material.at(T) if getattr(material, "law", None) is not None else material
-
-
-def _layer_behind(app: Application, place: Place) -> str | None:
-    """The layer of rubber next to an outer ring, going by rigid joints through one ring at most."""
-
-    def is_layer(part: str) -> bool:
-        return isinstance(app.plan.sources.get(part), Layer)
-
-    if is_layer(place.part):
-        return place.part
-    for joint in app.plan.connections:
-        for one, other in ((joint.a, joint.b), (joint.b, joint.a)):
-            if one.part == place.part and is_layer(other.part):
-                return other.part
-    return None

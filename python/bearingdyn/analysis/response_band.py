@@ -29,7 +29,7 @@ class Band:
 
 
 def band_of(draws: Array, coverage: float) -> Band:
-    """Response band over draws: covers this share of further draws, at each place by itself.
+    """Band of a response over draws: covers this share of further draws, at each place by itself.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def band_of(draws: Array, coverage: float) -> Band:
 def drawn_sources(
     source: Equilibrium | Application | System, n: int, seed: int = SEED
 ) -> Iterator[Equilibrium | System]:
-    """Sources for the band of a response: one with its layers' materials drawn from their spreads, n times.
+    """For a response's band: the source with its layers' materials drawn from their spreads, n times.
 
     Layers of equal material are of one batch, and drawn together. An equilibrium is found anew for each draw.
 

@@ -40,7 +40,7 @@ def sheet_text(sheet: xarray.Dataset) -> str:
 
 
 def sheet_rows(sheet: xarray.Dataset) -> dict[str, list[tuple[str, list[str], str]]]:
-    """Rows of the bearing sheet, by heading, for a table of one's own: label, value of each bearing, unit.
+    """On the sheet's pages, rows by heading, for a table of one's own: label, value of each bearing, unit.
 
     Parameters
     ----------

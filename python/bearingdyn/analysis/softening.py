@@ -303,7 +303,7 @@ def moduli_of(system: System, modulus: Complex) -> dict[tuple[str, int], Complex
 
 
 def layer_names(system: System) -> list[str]:
-    """Names, in results of softening, of the layers: the part's, numbered where it has several."""
+    """Softening results' names of layers: the part's, numbered where it has several."""
     parts = [system.layers[k].part for k in softening_layers(system)]
     return [
         name if parts.count(name) == 1 else f"{name} {parts[: k + 1].count(name)}"
@@ -312,7 +312,7 @@ def layer_names(system: System) -> list[str]:
 
 
 def memory_of(system: System, drive: float | tuple[Array, Array], memory: float | None) -> float | None:
-    """Time, s, over which layers that soften remember their amplitude in a march; None where none does.
+    """Softening in a march: time, s, over which layers remember their amplitude; None where none softens.
 
     Unless given, it is five periods of the slowest thing that moves the system: the shaft at its slowest
     speed, and harmonic loads.

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import core
-from bearingdyn.checks import number, table
+from bearingdyn.checks import number
 from bearingdyn.plausible_ranges import plausible
+from bearingdyn.results import check_dataset
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def shaft_angle(result: xarray.Dataset) -> Array:
     Array
         (n,), rad; zero at t = 0.
     """
-    table("result", result, ["time"], "transient")
+    check_dataset("result", result, ["time"], "transient")
     t = np.asarray(result["time"].values, dtype=np.float64)
     times, speeds = speed_profile(result)
     if speeds.size == 1:

@@ -45,7 +45,7 @@ def warn_if_coarse(system: System, speed: float, dt: float) -> None:
 
 
 def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
-    """Step size, exact: warn of one at which a mode grows by what the bearings' parabola leaves.
+    """Step size too long for the exact method: warn where a mode grows by what the bearings' parabola leaves.
 
     A force held by a parabola through the last three steps lags by (ωΔt)³/24: what balls hold gains
     (ωΔt)⁴/48 a step. Modes are those of the relaxed structure on the balls' tangents.

@@ -8,7 +8,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bearingdyn.checks import meant, number, positive, require, whole
+from bearingdyn.application import Application, Place
+from bearingdyn.bearing import BallBearing
+from bearingdyn.checks import instance, meant, number, positive, require, whole
+from bearingdyn.parts import Layer
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
@@ -214,3 +217,85 @@ class ThermalNetwork:
                         reached.add(other)
                         ahead.append(other)
         return set(self._nodes) - reached
+
+
+# ISO 15312: a bearing passes 16 kW/m² of π B (d + D) on to its surroundings at 50 K
+EMITTED = 16e3 / 50.0
+"""W/(m² K) of a bearing's seats, where nothing better is known (ISO 15312)."""
+
+
+RUBBER_CONDUCTIVITY = 0.25
+"""W/(m K), where nothing better is known."""
+
+
+ACROSS = 0.5
+"""W/K between the rings by balls and oil, where nothing better is known: an estimate, unverified."""
+
+
+class ThermalRunaway(ArithmeticError):
+    """A thermal network has no steady temperatures: heat grows faster than it is carried away."""
+
+
+def estimated_network(app: Application, ambient: float = 20.0) -> ThermalNetwork:
+    """Thermal network of an application's bearings and layers, estimated.
+
+    Each bearing has nodes "name.inner" and "name.outer". Its seats pass heat on as ISO 15312's reference
+    does, 320 W/(m² K) of their area; a layer of rubber behind the outer ring lies in between, as a ring of
+    .25 W/(m K); the rings exchange .5 W/K by balls and oil (an estimate, unverified).
+
+    Parameters
+    ----------
+    app
+        Application.
+    ambient
+        °C.
+
+    Raises
+    ------
+    ValueError
+        For a bearing whose bore and outside diameter are not known.
+    """
+    instance("app", app, Application, "it must be an Application (bd.Application())")
+    network = ThermalNetwork(ambient)
+    for name, joint in app.plan.bearings.items():
+        d, D, B = measures(name, joint.bearing)
+        inner, outer = f"{name}.inner", f"{name}.outer"
+        network.link(inner, outer, ACROSS)
+        network.link(inner, AIR, EMITTED * math.pi * d * B)
+        layer = _layer_behind(app, joint.outer)
+        seat = EMITTED * math.pi * D * B
+        if layer is None:
+            network.link(outer, AIR, seat)
+            continue
+        source = app.plan.sources[layer]
+        assert isinstance(source, Layer)
+        network.ring(
+            layer, outer, f"{layer}.housing", r_inner=source.r_inner, r_outer=source.r_outer,
+            width=source.width, conductivity=RUBBER_CONDUCTIVITY,
+        )  # fmt: skip
+        network.link(f"{layer}.housing", AIR, seat)
+    return network
+
+
+def measures(name: str, bearing: BallBearing) -> tuple[float, float, float]:
+    """Bore, outside diameter and width, m, by which a thermal network cools a bearing."""
+    if bearing.boundary is None:
+        raise ValueError(
+            f"bearing {name!r} has no boundary; give boundary=(bore, outside, width) in m: it is cooled by it"
+        )
+    return bearing.boundary
+
+
+def _layer_behind(app: Application, place: Place) -> str | None:
+    """The layer of rubber next to an outer ring, going by rigid joints through one ring at most."""
+
+    def is_layer(part: str) -> bool:
+        return isinstance(app.plan.sources.get(part), Layer)
+
+    if is_layer(place.part):
+        return place.part
+    for joint in app.plan.connections:
+        for one, other in ((joint.a, joint.b), (joint.b, joint.a)):
+            if one.part == place.part and is_layer(other.part):
+                return other.part
+    return None

@@ -289,7 +289,7 @@ def transients(
     *,
     progress: Progress | bool | None = None,
 ) -> list[xarray.Dataset]:
-    """Transients, many at once: over threads, and within each up to eight side by side.
+    """Many transients at once: over threads, and within each up to eight side by side.
 
     Cases that share their structure (matrices, layers, step and constant speed, to the bit) and differ in
     clearance, preload, loads, waviness, phase or start are marched side by side, which takes a core some 0.7

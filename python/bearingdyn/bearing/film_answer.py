@@ -118,6 +118,6 @@ class FilmAnswer:
 
 
 def in_series(inner: ehl.LubricatedContact, outer: ehl.LubricatedContact) -> float:
-    """Answer of two films in series: damping of one ball at low frequency, k²(c_i/k_i² + c_o/k_o²), N s/m."""
+    """What two films answer at low frequency: damping in series, k²(c_i/k_i² + c_o/k_o²), N s/m."""
     k = 1 / (1 / inner.k0 + 1 / outer.k0)
     return k**2 * (inner.c0 / inner.k0**2 + outer.c0 / outer.k0**2)

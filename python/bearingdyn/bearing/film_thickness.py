@@ -130,7 +130,7 @@ def film_scales(contact: PointContact) -> tuple[float, float]:
 def moes_groups(
     contact: PointContact, F: float, us: float, eta0: float, alpha: float
 ) -> tuple[float, float, float]:
-    """For formulas of film thickness, load M and lubricant L of H. Moes, and the speed η0 us/(E′ Rx)."""
+    """What formulas of film thickness take: load M and lubricant L of Moes, and the speed η0 us/(E′ Rx)."""
     E, Rx = film_scales(contact)
     speed = positive("eta0", eta0) * positive("us", us, "it must be positive, in m/s (u1 + u2)") / (E * Rx)
     M = positive("F", F, "it must be positive, in N") / (E * Rx**2) * speed**-0.75

@@ -22,7 +22,7 @@ LEAN = 0.01
 
 
 def warn_of_lean(tilt: float, who: str = "") -> None:
-    """Warn (BearingWarning) of rings that lean against each other by more than makers of bearings allow.
+    """Check of a bearing's motion: warn of rings that lean against each other more than makers allow.
 
     Parameters
     ----------

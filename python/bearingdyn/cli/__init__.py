@@ -7,6 +7,7 @@ code is 0, 1 where a check does not hold, 2 for a command or input that cannot b
 from __future__ import annotations
 
 import argparse
+import functools
 import os
 import re
 import sys
@@ -46,7 +47,7 @@ NEGATIVE = re.compile(r"-([0-9]+\.?[0-9]*|\.[0-9]+)e[+-]?[0-9]+|-inf(inity)?|-na
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command, by default that of sys.argv, and return its exit code."""
+    """Run a command of the command line, by default that of sys.argv, and return its exit code."""
     parser = _parser()
     given = sys.argv[1:] if argv is None else argv
     try:
@@ -106,7 +107,9 @@ def _branches(text: str) -> int | Literal["auto"]:
     return int(text)
 
 
+@functools.cache
 def _parser() -> argparse.ArgumentParser:
+    """Every command with its arguments; made once, since parsing leaves it as it is."""
     parser = argparse.ArgumentParser(
         prog="bearingdyn",
         description="Dynamics of rotors on ball bearings with viscoelastic layers.",

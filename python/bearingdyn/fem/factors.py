@@ -1,8 +1,16 @@
-"""Factors of sparse symmetric matrices, and their pivots."""
+"""Factors of sparse symmetric matrices, and their pivots.
+
+SuperLU comes with SciPy and is the default. Where the extra `fast` is installed, large positive definite
+matrices go to the sparse Cholesky of Intel's PARDISO, by pypardiso.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+import copy
+import importlib.util
+import weakref
+from functools import cache
+from typing import Any, Protocol
 
 import numpy as np
 import scipy
@@ -12,6 +20,48 @@ from bearingdyn.types import Array, Index
 
 DISSECT = 15_000  # above this size nested dissection of a solid fills less than minimum degree
 PANEL = 20  # columns SuperLU updates at once; 8, its default, is a quarter slower on large solids
+# from this size PARDISO is asked where it is installed
+LARGE = 5_000
+# its name for real symmetric positive definite matrices, and the phases: analyse and factorise, solve
+POSITIVE_DEFINITE, FACTORISE, SOLVE = 2, 12, 33
+
+
+class Factor(Protocol):
+    """Factors of a matrix A, by whichever library."""
+
+    def solve(self, b: Any, /) -> Any:
+        """A⁻¹ b of b (n,) or (n, m)."""
+
+
+class Cholesky:
+    """Factors of a real positive definite matrix by Intel's PARDISO; ``.solve(b)`` for b (n,) or (n, m).
+
+    Raises
+    ------
+    pypardiso.pardiso_wrapper.PyPardisoError
+        For a matrix that is not positive definite.
+    """
+
+    def __init__(self, A: Any) -> None:
+        self._upper = scipy.sparse.csr_matrix(scipy.sparse.triu(A, format="csr"), dtype=np.float64)
+        self._upper.sort_indices()
+        solver = copy.copy(_pardiso())
+        solver.pt, solver.iparm = np.zeros_like(solver.pt), np.zeros_like(solver.iparm)
+        # the factors are the library's, outside of what Python counts
+        weakref.finalize(self, solver.free_memory, everything=True)
+        self._solver = solver
+        # its public `solve` hashes the matrix anew at every call, which takes as long as a solution
+        solver.set_phase(FACTORISE)
+        solver._call_pardiso(self._upper, np.zeros((A.shape[0], 1)))
+        solver.set_phase(SOLVE)
+
+    def solve(self, b: Any) -> Any:
+        """A⁻¹ b."""
+        if b.size == 0:
+            return np.zeros_like(b)
+        return self._solver._call_pardiso(self._upper, np.asfortranarray(b, dtype=np.float64)).reshape(
+            b.shape
+        )
 
 
 class Factors:
@@ -34,7 +84,7 @@ class Factors:
         return x
 
 
-def factorise(A: Any) -> Any:
+def factorise(A: Any) -> Factor:
     """Factors of a sparse symmetric positive definite matrix.
 
     Parameters
@@ -44,11 +94,19 @@ def factorise(A: Any) -> Any:
 
     Returns
     -------
-    Factors or scipy.sparse.linalg.SuperLU
+    Factor
         Its ``.solve(b)`` takes b (n,) or (n, m).
     """
     A = scipy.sparse.csc_matrix(A)
-    return Factors(A, elimination_order(A)) if A.shape[0] > DISSECT else _by_minimum_degree(A)
+    if A.shape[0] >= LARGE and A.dtype == np.float64 and _has_pardiso():
+        from pypardiso.pardiso_wrapper import PyPardisoError
+
+        try:
+            return Cholesky(A)
+        except PyPardisoError:  # not positive definite: SuperLU asks for no sign
+            pass
+    found: Factor = _by_superlu(A)
+    return found
 
 
 def pivots(A: Any) -> Array:
@@ -62,7 +120,7 @@ def pivots(A: Any) -> Array:
     RuntimeError
         For a singular matrix.
     """
-    found = factorise(A)
+    found = _by_superlu(scipy.sparse.csc_matrix(A))
     lu, order = (found.lu, found.order) if isinstance(found, Factors) else (found, np.arange(A.shape[0]))
     own = np.empty(len(order))
     # without exchanged rows the factors are those of L D Lᵀ
@@ -84,6 +142,24 @@ def order_of(A: Any) -> Index:
         Permutation (n,).
     """
     return elimination_order(A) if A.shape[0] > DISSECT else np.argsort(_by_minimum_degree(A).perm_c)
+
+
+def _by_superlu(A: Any) -> Any:
+    """Factors or scipy.sparse.linalg.SuperLU, by size."""
+    return Factors(A, elimination_order(A)) if A.shape[0] > DISSECT else _by_minimum_degree(A)
+
+
+@cache
+def _has_pardiso() -> bool:
+    return importlib.util.find_spec("pypardiso") is not None
+
+
+@cache
+def _pardiso() -> Any:
+    """A solver of its own library handle, which each search of the disk would take half a second to find."""
+    import pypardiso
+
+    return pypardiso.PyPardisoSolver(mtype=POSITIVE_DEFINITE)
 
 
 def _by_minimum_degree(A: Any) -> Any:

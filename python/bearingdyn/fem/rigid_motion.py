@@ -53,7 +53,7 @@ def rigid_transfer(positions: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0))
 
 
 def rigid_body_inertia(M: Any, R: Array) -> Array:
-    """Mass matrix of the rigid motions of a body: mass, first moments, inertia about the reference.
+    """Mass matrix of rigid motions by finite elements: mass, first moments, inertia about the reference.
 
     Parameters
     ----------

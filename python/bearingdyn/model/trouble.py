@@ -14,7 +14,7 @@ from bearingdyn.model.key_lines import Key
 
 @dataclass
 class Origin:
-    """For trouble told by line: the file and line of each key of a model."""
+    """Where trouble in a model is told: file and line of each of its keys."""
 
     file: str
     known: dict[Key, tuple[str, int]] = field(default_factory=dict)

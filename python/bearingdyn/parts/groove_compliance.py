@@ -8,7 +8,7 @@ import numpy as np
 
 from bearingdyn.fem import ALL_COMPONENTS, AXIAL, RevolutionMesh, assemble_harmonic, factorise
 from bearingdyn.parts.raceway_shapes import Order, PortShapes
-from bearingdyn.parts.revolved_boundaries import Boundaries
+from bearingdyn.parts.revolved_joints import Boundaries
 from bearingdyn.types import Array
 
 

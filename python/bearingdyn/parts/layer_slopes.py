@@ -19,7 +19,7 @@ import numpy as np
 from bearingdyn.checks import require
 from bearingdyn.fem import Harmonic, factorise, harmonic_slopes
 from bearingdyn.parts.layer import Layer
-from bearingdyn.parts.revolved_boundaries import Boundaries
+from bearingdyn.parts.revolved_joints import Boundaries
 from bearingdyn.parts.revolved_shapes import ROUND_OFF
 from bearingdyn.parts.shape_moduli import shape_moduli
 from bearingdyn.types import Array, Index

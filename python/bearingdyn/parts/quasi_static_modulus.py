@@ -41,7 +41,7 @@ def quasi_static(material: Any, omega: float, after: float | None) -> complex:
 
 
 def quasi_static_bulk(material: Any, omega: float, after: float | None) -> complex:
-    """Bulk modulus, Pa, beside `quasi_static`: K, or where it relaxes K*(ω), or K(t) after a time, s."""
+    """Quasi-static bulk modulus of a region, Pa: K, or where it relaxes K*(ω), or K(t) after a time, s."""
     volume = volume_of(material)
     if volume is None:
         return complex(material.K)

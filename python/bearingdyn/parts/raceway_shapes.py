@@ -104,8 +104,11 @@ class Order:
 
 
 def felt(D: Complex, L: Array, faces: int) -> Complex:
-    """(faces + ports, faces + ports): reaction of the faces and motion of the ports, by unit motions of the
-    faces and unit loads on the ports, of a small model of dynamic stiffness D and ports L."""
+    """For choosing raceway shapes: reactions of faces and motions of ports, (faces + ports) square.
+
+    Under unit motions of the faces and unit loads on the ports, of a small model of dynamic stiffness D and
+    ports L.
+    """
     r = faces
     load = np.hstack([-D[r:, :r], L[:, r:].T])
     u = np.zeros((len(D), load.shape[1]), dtype=np.complex128)
@@ -123,8 +126,10 @@ def misfit(got: Any, wanted: Any, scale: Array) -> float:
 
 
 def own_scale(T: Complex, usual: Array) -> Array:
-    """Sizes by which the entries of what is felt are judged: those of their ports there, but no
-    antiresonance counts for less than a tenth of what is usual."""
+    """Sizes by which raceway shapes are judged, entry by entry of what is felt.
+
+    Those of their ports there, but no antiresonance counts for less than a tenth of what is usual.
+    """
     own = np.maximum(np.abs(np.diag(T)), 0.1 * usual)
     return np.asarray(np.sqrt(np.outer(own, own)))
 
@@ -136,7 +141,7 @@ def port_shapes(
     f_max: float,
     slow: float,
 ) -> PortShapes:
-    """Find the shapes of one order that its raceway and faces feel up to f_max.
+    """Raceway shapes of one order: those that its raceway and faces feel up to f_max.
 
     Parameters
     ----------

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from bearingdyn.fem import Rectangle
+import numpy as np
+
+from bearingdyn.fem import Rectangle, RevolutionMesh
 from bearingdyn.material import Elastic
 from bearingdyn.plausible_ranges import plausible
+from bearingdyn.types import Index
 
 LOCKING = 0.45  # Poisson's ratio from which an elastic region counts as rubber, lest its elements lock
 
 
 class ViscoelasticSolid(Protocol):
-    """What a viscoelastic region is made of: elastic in volume and viscoelastic in shear, such as Maxwell."""
+    """Material of a viscoelastic region: elastic in volume and viscoelastic in shear, such as Maxwell."""
 
     @property
     def K(self) -> float:
@@ -88,3 +92,22 @@ class Patch:
 
     def __post_init__(self) -> None:
         _check_material(self.material)
+
+
+def rubbers_of(regions: Sequence[Region | Patch]) -> tuple[list[Any], Index]:
+    """Viscoelastic materials of regions, and of each region the number of its own, -1 if it is elastic."""
+    rubbers: list[Any] = []
+    owner = np.full(len(regions), -1)
+    for i, q in enumerate(regions):
+        if not isinstance(q.material, Elastic):
+            if not any(q.material is m for m in rubbers):
+                rubbers.append(q.material)
+            owner[i] = next(j for j, m in enumerate(rubbers) if q.material is m)
+    return rubbers, owner
+
+
+def soft_elements(mesh: RevolutionMesh, regions: Sequence[Region | Patch], owner: int | None = None) -> Index:
+    """Elements of the viscoelastic regions, or of those of one material, numbered as in the superelement."""
+    _, owners = rubbers_of(regions)
+    wanted = owners >= 0 if owner is None else owners == owner
+    return np.flatnonzero(wanted[mesh.region])

@@ -43,12 +43,12 @@ from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_
 from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.quasi_static_modulus import quasi_static, quasi_static_bulk
 from bearingdyn.parts.raceway_shapes import Order, PortShapes, port_shapes
-from bearingdyn.parts.regions import Patch, Region, is_rubber
-from bearingdyn.parts.revolved_boundaries import RIGID_SHAPES, Boundaries, find_boundaries
+from bearingdyn.parts.regions import Patch, Region, is_rubber, soft_elements
 from bearingdyn.parts.revolved_drawing import section_profile, surface_outline
 from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.revolved_full import full_basis, full_model
-from bearingdyn.parts.revolved_matrices import reduced, soft_elements
+from bearingdyn.parts.revolved_joints import RIGID_SHAPES, Boundaries, find_boundaries
+from bearingdyn.parts.revolved_matrices import reduced
 from bearingdyn.parts.revolved_modes import RevolvedModes, modes_of_order
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.revolved_strain import strain_of_motion

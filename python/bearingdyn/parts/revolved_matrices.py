@@ -3,36 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
 from bearingdyn.cms import Raceway, RoundFace, Superelement, Viscoelastic, modal_damping
 from bearingdyn.fem import Harmonic, RevolutionMesh
 from bearingdyn.material import Elastic, constant_bulk, volume_of
-from bearingdyn.parts.regions import Patch, Region
-from bearingdyn.parts.revolved_boundaries import Boundaries
+from bearingdyn.parts.regions import Patch, Region, rubbers_of, soft_elements
+from bearingdyn.parts.revolved_joints import Boundaries
 from bearingdyn.parts.revolved_strain import concentrations
 from bearingdyn.types import Array, Index
-
-
-def rubbers_of(regions: Sequence[Region | Patch]) -> tuple[list[Any], Index]:
-    """The viscoelastic materials, and of each region the number of its own, -1 if it is elastic."""
-    rubbers: list[Any] = []
-    owner = np.full(len(regions), -1)
-    for i, q in enumerate(regions):
-        if not isinstance(q.material, Elastic):
-            if not any(q.material is m for m in rubbers):
-                rubbers.append(q.material)
-            owner[i] = next(j for j, m in enumerate(rubbers) if q.material is m)
-    return rubbers, owner
-
-
-def soft_elements(mesh: RevolutionMesh, regions: Sequence[Region | Patch], owner: int | None = None) -> Index:
-    """Elements of the viscoelastic regions, or of one material's, numbered as in the superelement."""
-    _, owners = rubbers_of(regions)
-    wanted = owners >= 0 if owner is None else owners == owner
-    return np.flatnonzero(wanted[mesh.region])
 
 
 def reduced(

@@ -11,7 +11,7 @@ import numpy as np
 
 from bearingdyn.cms import inertia_shapes, orthogonalise
 from bearingdyn.fem import Harmonic, factorise, lowest_modes
-from bearingdyn.parts.revolved_boundaries import Boundaries
+from bearingdyn.parts.revolved_joints import Boundaries
 from bearingdyn.types import Array
 
 ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it is rigid motion

@@ -25,7 +25,7 @@ def upon_supports(
     side: str = "outside",
     seat: str = "outer",
 ) -> Superelement:
-    """Ring element joined to supports: free, between those of one side and their rigid interface."""
+    """Ring element upon supports: free, between those of one side and their rigid interface."""
     outside = element.raceways[side]
     K, C = held_by(supports, outside.rows, outside.series, radius, width)
     wide = wider(element, 6, "raceway")
@@ -45,7 +45,7 @@ def with_folded(
     f_max: float,
     damping: float,
 ) -> Superelement:
-    """Ring element with folded orders: what those beyond do at the balls, and the race's give.
+    """Ring element with folded orders: what those beyond do at the balls, and the raceway's compliance.
 
     Parameters
     ----------

@@ -19,13 +19,13 @@ from bearingdyn.checks import (
     numbers,
     positive,
     require,
-    table,
     truth,
     two,
     vector,
     whole,
 )
 from bearingdyn.plot.frame import some
+from bearingdyn.results import check_dataset
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -75,7 +75,7 @@ def several(*kinds: type, maker: str) -> Check:
 
 def result(maker: str, *holding: str) -> Check:
     """An argument that is a Dataset with these variables, the result of `maker`."""
-    return lambda name, value: table(name, value, holding, maker)
+    return lambda name, value: check_dataset(name, value, holding, maker)
 
 
 def results(maker: str, *holding: str, alone: bool = False) -> Check:
@@ -83,9 +83,9 @@ def results(maker: str, *holding: str, alone: bool = False) -> Check:
 
     def check(name: str, value: object) -> None:
         if alone and hasattr(value, "data_vars"):
-            return table(name, value, holding, maker)
+            return check_dataset(name, value, holding, maker)
         for label, each in _by_label(name, value, f"the result of `{maker}`").items():
-            table(f"{name}[{label!r}]", each, holding, maker)
+            check_dataset(f"{name}[{label!r}]", each, holding, maker)
         return None
 
     return check

@@ -30,7 +30,7 @@ def bearing_spectrum(
     waviness: bool = False,
     contact_angle: float | None = None,
 ) -> Axes:
-    """Spectra as `spectrum` draws them, with the lines of the bearing's faults, or waviness, named.
+    """Draw spectra as `spectrum` does, with the lines of the bearing's faults, or waviness, named.
 
     A wave at the frequency of a fault goes by the name of the fault.
 

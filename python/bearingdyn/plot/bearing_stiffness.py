@@ -30,7 +30,7 @@ def bearing_stiffness(
     component: str = "x",
     ax: Axes | None = None,
 ) -> Axes:
-    """Diagonal stiffness against load, several bearings by label, both axes logarithmic.
+    """Draw the diagonal stiffness against load, several bearings by label, both axes logarithmic.
 
     Parameters
     ----------

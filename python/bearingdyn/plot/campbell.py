@@ -24,7 +24,7 @@ NUMBER = 7.5  # size of the speeds beside the rings of a Campbell diagram, point
 
 @figure(data=result("bd.campbell", "speed", "frequency", "whirl", "eigenvalue"))
 def campbell(data: xarray.Dataset, orders: tuple[float, ...] = (1.0,), ax: Axes | None = None) -> Axes:
-    """Campbell diagram of a result of `bd.campbell` over the speed, in rpm; modes told apart by their motion.
+    """Draw the Campbell diagram of `bd.campbell` over the speed in rpm; modes told apart by their motion.
 
     Lateral modes that whirl are forward or backward, the others lateral; there are axial and torsional
     ones too.

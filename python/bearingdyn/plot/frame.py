@@ -67,7 +67,7 @@ def new_axes(width: float = 6.2, height: float = 3.4, projection: str | None = N
 
 
 def halve(ax: Axes, share: float = 0.45) -> Axes:
-    """Halve the frame of a figure: new axes take the lower share of `ax`, on the same horizontal axis."""
+    """Divide the frame of a figure in two: new axes take the lower share of `ax`, same horizontal axis."""
     return stack(ax, (1 - share, share))[1]
 
 

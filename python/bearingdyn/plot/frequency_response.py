@@ -47,7 +47,7 @@ def frequency_response(
     phase: bool = False,
     decibels: bool = False,
 ) -> Axes:
-    """Magnitude of a response by bd.frequency_response against frequency, several by label, on a log axis.
+    """Draw the magnitude of bd.frequency_response over frequency, several by label, on a log axis.
 
     With `phase` the axes are halved, and the phase stands below. It is unwrapped: it begins between −225° and
     135° and goes on without jumps. The band of a response with `uncertainty` is shaded.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @figure(layers=several(Layer, maker="a bd.Layer(…)"))
 def layer_stiffness(layers: Mapping[str, Layer], frequency: ArrayLike, ax: Axes | None = None) -> Axes:
-    """Stiffness |k| of layers, held outside and moved inside, against frequency: radial solid, axial dashed.
+    """Draw the stiffness |k| of layers, held outside, moved inside, over frequency; axial dashed.
 
     Parameters
     ----------

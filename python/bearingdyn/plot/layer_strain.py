@@ -21,7 +21,7 @@ CORNERS = 3.0  # times the strain that counts: the end of the colours
 
 @figure(layer=one(Layer, maker="a bd.Layer(…)"))
 def layer_strain(layer: Layer, relative: ArrayLike, ax: Axes | None = None) -> Axes:
-    """The shear strain of a layer's rubber in the section where it is largest, element by element.
+    """Draw the shear strain of a layer's rubber in the section where it is largest, element by element.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ MODEL = one(Maxwell, maker="a bd.Maxwell(…)")
 
 @figure(dma=one(DMAData, maker="the result of `read_dma`"))
 def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
-    """Check a measurement's causality: local Kramers–Kronig ratio G″/((π/2) dG′/d ln ω) against frequency.
+    """Draw a check of a measurement's causality: Kramers–Kronig ratio G″/((π/2) dG′/d ln ω) by frequency.
 
     The ratio of a causal material with a broad spectrum is near one. Points that no passive material could
     give are crossed. The dotted line is the limit for the median over the isotherms.
@@ -68,7 +68,7 @@ def causality(dma: DMAData, ax: Axes | None = None) -> Axes:
 
 @figure(data=MEASURED, maxwell=maybe(MODEL))
 def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None) -> Axes:
-    """Check a measurement by Cole and Cole: loss against storage modulus, both logarithmic, with a model.
+    """Draw a check of a measurement by Cole and Cole: loss over storage modulus, logarithmic, with a model.
 
     Shifts along the frequency do not move it: isotherms that do not form one curve do not superpose.
 
@@ -101,7 +101,7 @@ def cole_cole(data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: A
 def van_gurp_palmen(
     data: DMAData | MasterCurve, maxwell: Maxwell | None = None, ax: Axes | None = None
 ) -> Axes:
-    """Check a measurement by van Gurp and Palmen: phase angle against magnitude of the modulus.
+    """Draw a check of a measurement by van Gurp and Palmen: phase angle against magnitude of the modulus.
 
     Like Cole–Cole it is free of frequency, so that no shift can hide scatter.
 
@@ -131,7 +131,7 @@ def van_gurp_palmen(
 
 @figure(materials=several(Maxwell, maker="a bd.Maxwell(…)"))
 def spectrum_of(materials: Mapping[str, Maxwell], ax: Axes | None = None) -> Axes:
-    """Relaxation spectra to check a measurement's models: strength against time of the branches, as stems.
+    """Draw a check of a measurement's models, their relaxation spectra: strength over time, as stems.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ def mode_geometry(
     scale: float | None = None,
     parts: Sequence[str] | None = None,
 ) -> Axes:
-    """Geometry of one mode by `bd.modes`: surfaces of the parts coloured by how far they move, edges at rest.
+    """Draw the geometry of one mode by `bd.modes`: surfaces coloured by how far they move, edges at rest.
 
     Phases are turned so that the largest motion is real. The colour is the amplitude √(|x|² + |y|² + |z|²).
 

@@ -21,7 +21,7 @@ SWING = 0.1
 
 @figure(data=result("bd.mode_shapes", "frequency", "motion"))
 def mode_shape(data: xarray.Dataset, mode: int, ax: Axes | None = None, *, axis: str = "y") -> Axes:
-    """One mode by `bd.mode_shapes` from the side, part by part: motion along `axis` over z, at rest in grey.
+    """Draw a mode by `bd.mode_shapes` from the side, part by part: motion along `axis` over z, rest in grey.
 
     The largest motion is drawn a tenth as long as the structure. Phases are turned so that it is real; the
     motion of a damped mode a quarter period later is drawn thin. Where the largest motion is along z, arrows

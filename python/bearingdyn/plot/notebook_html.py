@@ -39,7 +39,7 @@ HEAD = f"{CELL};opacity:.65;font-weight:normal"
 
 
 def svg(figure: Figure, told: str) -> str:
-    """A figure for an object's page: an SVG element with a text for those who do not see it."""
+    """For an object's HTML in a notebook: a figure as SVG with a text for those who do not see it."""
     import matplotlib
     import matplotlib.pyplot as plt
 
@@ -105,7 +105,7 @@ def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
 
 
 def application_html(app: Application) -> str:
-    """An application in a notebook: drawing, parts, joints, loads, and what is to be warned of."""
+    """HTML in a notebook of an application: drawing, parts, joints, loads, and what is to be warned of."""
     plan = app.plan
     if not plan.parts:
         return box("Application without parts")
@@ -321,7 +321,7 @@ def master_html(curve: MasterCurve) -> str:
 
 
 def equilibrium_html(eq: Equilibrium) -> str:
-    """An equilibrium in a notebook: how far places move, and what the bearings bear."""
+    """HTML in a notebook of an equilibrium: how far places move, and what the bearings bear."""
     layers: list[tuple[str, ...]] = []
     if eq.system.layers:
         found = static_summary(eq)

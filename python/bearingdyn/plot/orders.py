@@ -20,7 +20,7 @@ DEPTH = 1e-6  # of the largest line: 120 dB, as in `spectrum`
 
 @figure(datasets=results("bd.order_spectrum", "amplitude"))
 def order_spectrum(datasets: Mapping[str, xarray.Dataset], ax: Axes | None = None) -> Axes:
-    """Amplitudes by bd.order_spectrum over orders of the shaft speed, several by label, 120 dB deep at most.
+    """Draw amplitudes by bd.order_spectrum over orders of the shaft speed, several by label, 120 dB deep.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ WIDE = 5.0  # ratio of frequencies, from which on the axis is logarithmic
     by=lambda name, value: one_of(name, value, ("path", "mode")),
 )
 def sound_contributions(data: xarray.Dataset, ax: Axes | None = None, *, by: str = "path") -> Axes:
-    """Sound power by `bd.sound_contributions` against frequency, with what each path or mode gives.
+    """Draw sound power by `bd.sound_contributions` over frequency, with what each path or mode gives.
 
     Above stand levels, dB re 1 pW for an input of one: the sound power in black, and what each path would
     radiate alone. Below stand the shares in the power, which add up to 100 %; they are cut at ±300 %, where

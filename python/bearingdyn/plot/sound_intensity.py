@@ -28,7 +28,7 @@ PALE = 0.85  # of its colour that a face along the light keeps: white must stay 
 
 @figure(data=result("bd.sound_intensity", "intensity", "corners"), ax=in_space)
 def sound_intensity(data: xarray.Dataset, ax: Axes | None = None) -> Axes:
-    """Sound intensity by `bd.sound_intensity` on the geometry: red where sound leaves, blue where it enters.
+    """Draw sound intensity by `bd.sound_intensity` on the geometry: red leaves, blue enters.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ def spectrum(
     *,
     f_max: float | None = None,
 ) -> Axes:
-    """Amplitude spectra by bd.spectrum or bd.envelope_spectrum, several by label, 120 dB deep at most.
+    """Draw amplitude spectra by bd.spectrum or bd.envelope_spectrum, several by label, 120 dB deep at most.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ LINES = ("channel", "speed", "peak_to_peak", "stable", "amplitude", "passage_fre
 
 @figure(data=result("bd.speed_map", *HELD), channel=maybe(text))
 def speed_map(data: xarray.Dataset, channel: str | None = None, ax: Axes | None = None) -> Axes:
-    """All branches of a map: peak to peak of a channel over speed, stable ones drawn full, others dashed.
+    """Draw all branches of a map: peak to peak of a channel over speed, stable ones full, others dashed.
 
     Branches whose period doubled have a hue of their own; folds, flips and Neimark–Sacker points are
     marked, and so is where a branch could be followed no further.
@@ -87,7 +87,7 @@ def speed_map(data: xarray.Dataset, channel: str | None = None, ax: Axes | None 
 
 @figure(data=result("bd.speed_map", *LINES), channel=maybe(text))
 def speed_waterfall(data: xarray.Dataset, channel: str | None = None, ax: Axes | None = None) -> Axes:
-    """Lines of the stable motions of a map over speed and frequency, in dB of the largest.
+    """Draw the lines of a map's stable motions over speed and frequency, in dB of the largest.
 
     Where several motions are stable at one speed, all of them are drawn.
 

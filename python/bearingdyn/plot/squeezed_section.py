@@ -21,7 +21,7 @@ TRIANGLES = ((0, 3, 4), (0, 4, 1), (1, 4, 5), (1, 5, 2), (3, 6, 7), (3, 7, 4), (
 
 @figure()
 def squeezed_section(squeezed: Squeezed, ax: Axes | None = None) -> Axes:
-    """The section of a squeezed body of revolution, coloured by its largest stretch, in mm.
+    """Draw the section of a squeezed body of revolution, coloured by its largest stretch, in mm.
 
     A dashed line is the body before; thick lines are where rigid surfaces touch it, with the mean pressure on
     each.

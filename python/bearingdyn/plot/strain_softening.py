@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @figure(law=one(Payne, maker="a law that bd.fit_payne(…) found"))
 def strain_softening(law: Payne, ax: Axes | None = None) -> Axes:
-    """G′ and, below, tan δ over the strain amplitude: the points of a sweep, and the law fitted to them.
+    """Draw G′ and, below, tan δ over the strain amplitude: points of a sweep, and the law fitted to them.
 
     Shaded is the range of strain that was trusted in the fit; a dotted line is the strain of the isotherms.
 

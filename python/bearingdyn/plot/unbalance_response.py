@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 def unbalance_response(
     datasets: Mapping[str, xarray.Dataset], output: str, ax: Axes | None = None, *, phase: bool = True
 ) -> Axes:
-    """Magnitude of a response by bd.unbalance_response over the speed in rpm, several by label; log axis.
+    """Draw the magnitude of bd.unbalance_response over the speed in rpm, several by label, logarithmic.
 
     With `phase` the axes are halved and the phase against the angle of the shaft stands below, unwrapped from
     the lowest speed that moves.

@@ -81,7 +81,7 @@ def doubt(material: Any) -> str:
 
 
 def state_html(eq: Equilibrium, speed: float) -> str:
-    """The report's machine at rest: displacements, loads, layers, sag over time, bearings."""
+    """Report of a machine at rest: displacements, loads, layers, sag over time, bearings."""
     from bearingdyn.plot import as_html
 
     return as_html(eq) + sag_html(eq) + sheet_html(eq, speed)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from bearingdyn.checks import require
 from bearingdyn.results.provenance import stamp, versions
 
 if TYPE_CHECKING:
@@ -51,3 +52,10 @@ def dataset(
         {name: whole(name, coord) for name, coord in (coords or {}).items()},
         {"made_by": made_by, "made_at": stamp(), **attrs},
     )
+
+
+def check_dataset(field: str, value: object, holding: Sequence[str], maker: str) -> None:
+    """Check that an argument is a Dataset of results with these variables, made by `maker`."""
+    good = hasattr(value, "data_vars") and all(name in value for name in holding)  # type: ignore[operator]
+    told = value if not hasattr(value, "data_vars") else f"a Dataset of {sorted(map(str, value))}"  # type: ignore[call-overload]
+    require(good, field, told, f"it must be the result of `{maker}`, with {', '.join(holding)}")

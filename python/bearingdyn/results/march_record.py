@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn.checks import table
 from bearingdyn.core import Report
-from bearingdyn.results.datasets import dataset
+from bearingdyn.results.datasets import check_dataset, dataset
 from bearingdyn.results.provenance import inputs_of
 from bearingdyn.types import Array
 
@@ -89,7 +88,7 @@ def recorded(result: object) -> None:
     ValueError
         For anything else.
     """
-    table("result", result, ["record", "channel", "time"], "transient")
+    check_dataset("result", result, ["record", "channel", "time"], "transient")
 
 
 def signal_of(result: xarray.Dataset, channel: str) -> Array:

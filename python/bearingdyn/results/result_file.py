@@ -14,6 +14,7 @@ import numpy as np
 
 from bearingdyn import run_file
 from bearingdyn.checks import existing, meant
+from bearingdyn.results.file_seal import check_seal, seal
 from bearingdyn.results.march_record import march_dataset
 from bearingdyn.results.provenance import stamp
 from bearingdyn.writing import check_target, write_whole
@@ -35,7 +36,9 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     disk: whatever fails, the file that was there before is intact. This takes as much memory again as the
     results do.
 
-    Other programs can open the file: a complex number is stored along a last axis of two, real and imaginary.
+    Behind the content stands its SHA-256, which `open_result` compares: a file damaged since is refused, not
+    read. Other programs can open the file: a complex number is stored along a last axis of two, real and
+    imaginary.
 
     Parameters
     ----------
@@ -84,6 +87,8 @@ def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.
     made = io.BytesIO()
     for i, (name, data) in enumerate(groups.items()):
         _plain(data).to_netcdf(made, mode="w" if i == 0 else "a", group=name or None, engine="h5netcdf")
+    made.seek(0, io.SEEK_END)
+    made.write(seal(made.getvalue()))
     write_whole(path, made.getbuffer())
 
 
@@ -105,7 +110,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
     Raises
     ------
     ValueError
-        If the file is no netCDF-4 file, or lacks the group.
+        If the file is no netCDF-4 file, lacks the group, or is not as it was saved.
     FileNotFoundError
         If there is no such file.
     """
@@ -115,6 +120,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
     existing(path, "result")
     if run_file.is_run(path):
         return _run_dataset(path)
+    _check_content(path)
     try:
         with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
             found = _complex(data.load())
@@ -153,11 +159,44 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
     existing(path, "result")
     if run_file.is_run(path):
         return []
+    _check_content(path)
     try:
         with h5netcdf.File(path, "r") as file:
             return sorted(_holding(file, ""))
     except Exception as error:  # as in open_result
         raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def _check_content(path: str | os.PathLike[str]) -> None:
+    """Check what the layers above HDF5 would read: the file is as saved, opens, and its texts fit into it."""
+    import h5py
+
+    check_seal(path)
+    size = os.stat(path).st_size
+    try:
+        # h5netcdf prints a traceback when it forgets a file that it could not open
+        with h5py.File(path, "r") as file:
+            file.visititems(lambda name, item: _check_texts(name, item, size))
+    except Exception as error:  # as in open_result
+        raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+
+
+def _check_texts(name: str, item: Any, size: int) -> None:
+    """Check that texts, each a length and a place in the file, are no longer than the file.
+
+    HDF5 takes and fills the memory before it looks: one wrong byte costs gigabytes and ten seconds.
+    """
+    import h5py
+
+    place = item.id.get_offset() if isinstance(item, h5py.Dataset) and item.dtype.kind == "O" else None
+    if place is None:
+        return
+    with open(item.file.filename, "rb") as file:
+        file.seek(place)
+        told = np.frombuffer(file.read(16 * item.size), np.uint8)
+    lengths = told[: told.size // 16 * 16].reshape(-1, 16)[:, :4].copy().view("<u4")
+    if lengths.sum(dtype=np.uint64) > size:
+        raise ValueError(f"{name} holds texts longer than the file; it is damaged")
 
 
 def _holding(group: Any, above: str) -> Iterator[str]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bearingdyn.application import QUANTITIES, RATES, Channel
-from bearingdyn.checks import table
+from bearingdyn.results.datasets import check_dataset
 from bearingdyn.types import Array
 from bearingdyn.writing import write_whole
 
@@ -113,7 +113,7 @@ def _check_abscissa(dim: str, abscissa: Array) -> None:
 
 
 def _functions(data: xarray.Dataset) -> Iterator[_Function]:
-    table("data", data, [], "frequency_response or transient")
+    check_dataset("data", data, [], "frequency_response or transient")
     if "response" in data and {"frequency", "output", "input"} <= set(data["response"].dims):
         H = data["response"].transpose("frequency", "output", "input")
         quantity = str(data.attrs.get("quantity"))

@@ -22,7 +22,7 @@ from bearingdyn.types import Array, Complex
 
 @dataclass(frozen=True, eq=False)
 class VelocityPaths:
-    """Velocities of parts under a unit of one input, and what they are the sum of.
+    """Paths of the velocities of parts under a unit of one input, and what they are the sum of.
 
     Parameters
     ----------

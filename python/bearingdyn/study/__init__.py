@@ -1,8 +1,8 @@
 """Studies: one function over many cases, what came of them as a table, and the cases that no other beats;
 draws of what is not exactly known, and what they leave of a result."""
 
-from bearingdyn.study.band import band
 from bearingdyn.study.cases import Case, grid, sobol
+from bearingdyn.study.curve_band import band
 from bearingdyn.study.distributions import Fitted, LogNormal, Normal, Uniform, draw
 from bearingdyn.study.doubt_effects import doubt_effects
 from bearingdyn.study.indices import sobol_indices

@@ -451,7 +451,7 @@ def front(
     seed: int = 0,
     tolerance: float = 1e-6,
 ) -> list[Optimum]:
-    """Optima along a front of two values that should both be small, by the ε-constraint method.
+    """Several optima along a front of two values that should both be small, by the ε-constraint method.
 
     The two ends are the optima of each value; between them the first is minimised while the second keeps
     limits that are evenly spaced. Each point starts from its neighbour too.

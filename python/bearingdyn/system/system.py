@@ -207,8 +207,8 @@ class System:
 
     def blocks(self) -> list[Index]:
         """Coordinates that the structure couples, its bearings left out, block by block."""
-        touched = [np.abs(layer.L).sum(axis=1) for layer in self.layers]
-        return coupled_blocks(self.M, self.C, self.G, self.K, self.N, *(np.outer(t, t) for t in touched))
+        touched = [(layer.L != 0.0).astype(float) for layer in self.layers]
+        return coupled_blocks(self.M, self.C, self.G, self.K, self.N, *(t @ t.T for t in touched))
 
     def basis(self, modulus: Modulus = "relaxed") -> tuple[Array, Array]:
         """ω² (n,) and modes T (n, n), x = T q, of the structure, its bearings left out, block by block."""

@@ -18,7 +18,7 @@ GRAZING = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """Contact force g (n,), N, of a bearing and its tangents K, C (n, n); approach u (Z,) of its
+    """For gradients: contact force g (n,), N, and tangents K, C (n, n); approach u (Z,) of the balls, m.
     balls, m."""
 
     g: Complex
@@ -33,7 +33,7 @@ def tangent(
     change: Mapping[str, complex] | None = None,
     carrying: Any = None,
 ) -> Tangent:
-    """Contact force and tangents of a bearing at rest at coefficients z (n,), real or complex.
+    """For gradients: contact force and tangents of a bearing at rest at coefficients z (n,), real or complex.
 
     Parameters
     ----------

@@ -225,13 +225,13 @@ class _Packed:
 
 @lru_cache(maxsize=8)
 def packed(system: System) -> tuple[_Packed, ...]:
-    """Kernels of the bearings for a harmonic balance, packed once for many calls."""
+    """Harmonic balance's kernels of the bearings, packed once for many calls."""
     return tuple(_Packed(term.kernel().packed()) for term in system.bearings)
 
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """Balance of harmonics, linearised at a motion: P⁻¹ J times vectors; P has the mean tangent alone.
+    """Harmonic balance, linearised at a motion: P⁻¹ J times vectors; P has the mean tangent alone.
 
     Vectors are amplitudes as real numbers: of (L, m) complex their (L, m, 2) parts, flat; the mean's
     imaginary part is kept at zero.

@@ -13,8 +13,8 @@ import numpy as np
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
 from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, follow, locate
+from bearingdyn.analysis.steady.event_accuracy import once
 from bearingdyn.analysis.steady.layer_lines import Softened, frozen
-from bearingdyn.analysis.steady.located import once
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.stability import (
     FirstOrder,
@@ -380,7 +380,7 @@ def _beyond(state: Stability, name: str) -> float:
 
 
 def known(branches: Sequence[Branch], passages: int, parameter: float, z: Complex) -> bool:
-    """Whether a motion lies on one of the branches, between two of its points."""
+    """Whether one of the branches already has a motion, between two of its points."""
     size = float(np.linalg.norm(z[1:])) + 1e-4 * float(np.linalg.norm(z[0]))
     for branch in branches:
         if branch.passages != passages:

@@ -74,7 +74,7 @@ def candidates(problem: Problem, speed: float, harmonics: int) -> Candidates:
 
 @dataclass(frozen=True, eq=False)
 class Weigher:
-    """Weighs lines for choosing: how far a force on each would move the bearings, interpolated."""
+    """Choosing among lines: how far a force on each would move the bearings, interpolated."""
 
     omega: Array
     answer: Array
@@ -110,7 +110,7 @@ def balanced(
     start: tuple[Index, Complex] | None = None,
     tell: Callable[[int, int], object] | None = None,
 ) -> tuple[Balance, Found, float]:
-    """Balance a motion of several bases, choosing the lines that matter; and the largest share left out."""
+    """Balance a motion of several bases by choosing its lines; and the largest share left out."""
     offered = candidates(problem, speed, harmonics)
     zero = np.zeros((1, len(problem.bases.bases)), dtype=np.intp)
     begun = problem.balance(lattice(np.vstack([zero, *_loaded(problem, speed)]), offered), speed)

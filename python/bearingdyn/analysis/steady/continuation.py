@@ -200,7 +200,7 @@ class Solver(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Products:
-    """In a continuation's step, the solver for many lines: by products with the derivative."""
+    """Continuation, its solver for many lines: by products with the derivative."""
 
     curve: Curve
     linear: Linearised
@@ -228,7 +228,7 @@ class Products:
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """In a continuation's step, the solver for few lines: the derivative with its border in triangles."""
+    """Continuation, its solver for few lines: the derivative with its border in triangles."""
 
     curve: Curve
     factored: Factored

@@ -13,13 +13,10 @@ from bearingdyn.analysis.dissipation import sinks
 from bearingdyn.analysis.recordable_channels import CoreChannel
 from bearingdyn.analysis.softening import softening_layers
 from bearingdyn.analysis.steady.balance import Balance, Found, Pressed
-from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.types import Array, Complex
 
 # times as many samples as the balance had, for powers and loads
 FINER = 4
-# lines beyond the last that the estimate of what was cut looks at
-BEYOND = 12
 # samples of the signals of a motion with several base frequencies, at most
 MOST_SAMPLES = 20_000
 
@@ -168,31 +165,6 @@ class Motion:
         """Strain amplitude of a layer that softens, of the system's layers the one of this number."""
         number = softening_layers(self.balance.system).index(layer)
         return float(self.found.pressed.softened.strain[number])
-
-    def beyond(self, channels: Sequence[CoreChannel]) -> Array:
-        """(channels,) amplitude of the motions on the lines next above the last: what the balance cut off.
-
-        NaN of channels that are no motions, and of several bases.
-        """
-        b = self.balance
-        out = np.full(len(channels), np.nan)
-        moves = [c for c, channel in enumerate(channels) if channel[0] in MOTIONS]
-        if b.lines.index.shape[1] != 1 or not moves:
-            return out
-        last = b.lines.count - 1
-        count = min(BEYOND, b.lines.samples // 2 - 1 - last)
-        more = Lines(np.arange(last + count + 1)[:, None], b.lines.steps, b.lines.samples * FINER)
-        g = np.zeros((more.samples, len(self.found.z[0])))
-        for own, along in zip(b.slots, self.fine.bearings, strict=True):
-            g[:, own] = along.g
-        force = more.amplitudes(g)[last + 1 :]
-        omega = np.arange(last + 1.0, last + count + 1.0) * float(b.bases.frequencies(b.speed)[0])
-        rows = np.array([channels[c][1] for c in moves])
-        rate = np.array([MOTIONS.index(channels[c][0]) for c in moves])
-        moved = (b.receptances.answer(omega, b.speed, rows, b.receptances.B) @ force[:, :, None])[:, :, 0]
-        moved = np.abs(moved) * omega[:, None] ** rate
-        out[moves] = np.sqrt((moved**2).sum(axis=0))
-        return np.asarray(out)
 
 
 def _of_balls(kind: int, index: int, along: core.Along) -> Array:

@@ -30,7 +30,8 @@ from bearingdyn.analysis.steady.branches import (
     states,
     sweeps,
 )
-from bearingdyn.analysis.steady.located import within
+from bearingdyn.analysis.steady.cut_harmonics import CUT, cut_off, share_cut, warn_of_cut
+from bearingdyn.analysis.steady.event_accuracy import within
 from bearingdyn.analysis.steady.motion import MOTIONS
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.application import Application
@@ -108,8 +109,9 @@ def speed_map(
         growth, 1/s; event ("", "fold", "flip", "neimark-sacker" or "failed"); located_within, how closely, in
         the unit of the speed: of folds that crowd at the tip of a branch, which are kinks of contacts between
         samples, it is what they span; strain (point, layer), of layers that soften (`Maxwell.payne`), whose
-        amplitude stands still while a departure is followed; peak_to_peak and rms (point, channel); amplitude
-        (point, order, channel), complex, at multiples of the passage, and of its half where periods doubled.
+        amplitude stands still while a departure is followed; peak_to_peak and rms (point, channel); cut
+        (point, channel), the amplitude of the lines next above the last; amplitude (point, order, channel),
+        complex, at multiples of the passage, and of its half where periods doubled.
 
     Raises
     ------
@@ -125,6 +127,9 @@ def speed_map(
         Where balls of an angular contact bearing are pressed where it has no shoulder, or none onto it.
     BeyondSweep
         Where a layer's strain leaves the sweep its law of softening comes from.
+    CutHarmonics
+        Where the harmonics next above the last would add more than 2 % of a channel's largest line; of the
+        point where they would add most.
 
     References
     ----------
@@ -139,8 +144,8 @@ def speed_map(
     task = _task(family, record, low, high, harmonics, points, 1e-6)
     with band_told_once(*_asked(task)):
         branches = _branches(task, doublings, several, store, executor, progress)
-    warn_of_motions(_motions(task, branches, "at {:.6g} rad/s"))
-    return _dataset(task, branches, "speed", "rad/s", {**state_of(problem.source)})
+    cut = _cut_of_told(task, branches, "at {:.6g} rad/s")
+    return _dataset(task, branches, cut, "speed", "rad/s", {**state_of(problem.source)})
 
 
 @takes(speed="rad/s")
@@ -159,7 +164,7 @@ def parameter_map(
     progress: Progress | bool | None = None,
     rpm: float | None = None,
 ) -> xarray.Dataset:
-    """Follow all steady motions at one speed over a number that the application is made from.
+    """As `speed_map`, at one speed: all steady motions over a number that the application is made from.
 
     Parameters
     ----------
@@ -186,7 +191,7 @@ def parameter_map(
 
     Warns
     -----
-    BearingWarning, OpenSideWarning, BeyondSweep
+    BearingWarning, OpenSideWarning, BeyondSweep, CutHarmonics
         As `speed_map`.
     """
     require(callable(make), "make", make, "it must be a function of one number that returns an Application")
@@ -197,8 +202,8 @@ def parameter_map(
     task = _task(family, record, low, high, harmonics, points, MADE_SLOPE)
     with band_told_once(*_asked(task)):
         branches = _branches(task, doublings, several, store, executor, progress)
-    warn_of_motions(_motions(task, branches, "at the value {:.6g}"))
-    return _dataset(task, branches, "parameter", "", {"speed": speed})
+    cut = _cut_of_told(task, branches, "at the value {:.6g}")
+    return _dataset(task, branches, cut, "parameter", "", {"speed": speed})
 
 
 def _range(field: str, value: object, meaning: str) -> tuple[float, float]:
@@ -355,6 +360,35 @@ def _motions(task: Task, branches: Sequence[Branch], where: str) -> Iterator[tup
                 yield balance, mark.point.z, where.format(mark.point.parameter)
 
 
+def _cut_of_told(task: Task, branches: Sequence[Branch], where: str) -> Array:
+    """Amplitudes (motions found, channels) above the last harmonics; warnings of all motions are given."""
+    cut: list[Array] = []
+
+    def measured() -> Iterator[tuple[Balance, Complex, str]]:
+        for balance, z, place in _motions(task, branches, where):
+            cut.append(cut_off(balance, z, [channel_of(balance.system, c)[0] for c in task.places]))
+            yield balance, z, place
+
+    warn_of_motions(measured())
+    return np.array(cut).reshape(-1, len(task.places))
+
+
+def _warn_of_cut(made: xarray.Dataset, name: str, unit: str, harmonics: int) -> None:
+    """Warn (CutHarmonics) of the point of a map that misses most."""
+    cut = made["cut"].values
+    share = share_cut(made["amplitude"].values, cut)
+    wants = int((share > CUT).any(axis=1).sum())
+    if not wants:
+        return
+    i, c = np.unravel_index(int(share.argmax()), share.shape)
+    place = f"{made[name].values[i]:.6g} {unit}".rstrip()
+    what = f"the motion at {place}, one of {wants} points of {len(share)},"
+    channel = made.isel(channel=int(c))
+    warn_of_cut(
+        what, harmonics, str(channel["channel"].values), share[i, c], cut[i, c], str(channel["unit"].values)
+    )
+
+
 def _about(task: Task) -> dict[str, object]:
     """What tells one map from another."""
     ends = [task.family.at(p) for p in (task.low, task.high)]
@@ -372,7 +406,12 @@ def _within(branch: Branch, tolerance: float) -> list[float]:
 
 
 def _dataset(
-    task: Task, branches: Sequence[Branch], name: str, unit: str, attrs: dict[str, object]
+    task: Task,
+    branches: Sequence[Branch],
+    missing: Array,
+    name: str,
+    unit: str,
+    attrs: dict[str, object],
 ) -> xarray.Dataset:
     from bearingdyn.results import dataset, inputs_of
 
@@ -400,6 +439,8 @@ def _dataset(
         swing[i][np.isnan(signal).any(axis=0)] = np.nan
         amplitude[i, :: most // passages] = moved[:count]
     states = [m.stability for _, _, m in rows]
+    cut = np.full((len(rows), len(channels)), np.nan)
+    cut[[m.event != "failed" for _, _, m in rows]] = missing
 
     def each(value: Callable[[Mark], float]) -> Array:
         return np.array([value(m) for _, _, m in rows])
@@ -454,6 +495,7 @@ def _dataset(
             "residual": ("point", each(lambda m: m.point.residual), "1", "of the balance, relative"),
             "peak_to_peak": (("point", "channel"), swing, "", "swing of each channel; units in `unit`"),
             "rms": (("point", "channel"), rms, "", "about the mean; units in `unit`"),
+            "cut": (("point", "channel"), cut, "", "amplitude of the lines next above the last; in `unit`"),
             "amplitude": (("point", "order", "channel"), amplitude, "", "complex amplitudes, zero-to-peak"),
             **strains,
         },
@@ -472,7 +514,9 @@ def _dataset(
     )
     meaning = {"units": "", "long_name": "unit of each channel"}
     origins = {"units": "", "long_name": "how each branch was found"}
-    return made.assign_coords(
+    made = made.assign_coords(
         unit=("channel", [u for _, u in channels], meaning),
         origin=("point", [b.origin for b in branches for _ in b.marks], origins),
     )
+    _warn_of_cut(made, name, unit, task.harmonics)
+    return made

@@ -21,6 +21,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from bearingdyn.analysis.steady.balance import Balance, Found
+from bearingdyn.analysis.steady.layer_lines import frozen
+from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.material import Maxwell
 from bearingdyn.system import System
@@ -34,6 +37,12 @@ ALWAYS = 10
 FELT = 1e-5
 # of the fastest mode kept, the ω that a floating motion is measured by
 FLOATING = 0.1
+# samples of a period, at least, for the stability of one steady state
+SAMPLES = 256
+# poles of one state are all kept, what the bearings do not feel as well
+ALL = -1.0
+# multipliers of one state that are kept
+KEPT = 6
 # a multiplier this near to the real axis, as a share of its size, is real
 REAL = 1e-6
 
@@ -444,3 +453,32 @@ def pooled(blocks: Sequence[Array], m: int) -> Array:
         out[:, at : at + n, at : at + n] = b
         at += n
     return out
+
+
+def stability_of(
+    problem: Problem, balance: Balance, found: Found, model: FirstOrder | None = None, samples: int = SAMPLES
+) -> Stability | None:
+    """Stability of a steady motion with one base: its multipliers; None for several bases."""
+    if len(problem.bases.bases) != 1 or not problem.system.bearings:
+        return None
+    model = model or first_order(problem, balance, found)
+    lines = balance.lines
+    count = max(samples, 2 * (lines.samples // 2))
+    pressed = balance.press(found.z, lines=Lines(lines.index, lines.steps, count))
+    m = len(problem.system.B)
+    period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
+    K = pooled([a.K for a in pressed.bearings], m)
+    C = pooled([a.C for a in pressed.bearings], m)
+    return floquet(model, balance.speed, period, K, C, KEPT).stability
+
+
+def first_order(problem: Problem, balance: Balance, found: Found) -> FirstOrder:
+    """For the stability of one steady motion, the structure in first order up to its highest line.
+
+    Layers that soften keep the amplitude that they have in the motion.
+    """
+    highest = float(np.abs(balance.omega).max())
+    lowest = float(np.abs(balance.omega[1:]).min())
+    band = (lowest / (20 * np.pi), highest / (2 * np.pi))
+    system = frozen(problem.system, found.pressed.softened, band)
+    return FirstOrder.of(system, 2.0 * FOLLOWS * highest, band, felt=ALL)

@@ -16,10 +16,10 @@ from bearingdyn.analysis.softening import layer_names, warn_of_strain
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced
-from bearingdyn.analysis.steady.layer_lines import frozen
+from bearingdyn.analysis.steady.cut_harmonics import CUT, cut_off, share_cut, warn_of_cut
 from bearingdyn.analysis.steady.motion import Motion
 from bearingdyn.analysis.steady.problem import Problem, motion_of
-from bearingdyn.analysis.steady.stability import FOLLOWS, FirstOrder, Stability, floquet, pooled
+from bearingdyn.analysis.steady.stability import Stability, stability_of
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_of, one_speed, positive, require, whole
@@ -32,14 +32,6 @@ if TYPE_CHECKING:
 
 # harmonics where none are asked for: of the ball pass, or of the highest of several bases
 HARMONICS, SEVERAL = 40, 20
-# samples of a period for its stability, at least
-SAMPLES = 256
-# poles of one state are all kept, what the bearings do not feel as well
-ALL = -1.0
-# of a channel's largest line, what harmonics left out may add; and of its mean, below which it is no motion
-CUT, LEAST = 0.02, 1e-6
-# multipliers that are kept
-KEPT = 6
 
 
 @takes(speed="rad/s")
@@ -181,7 +173,7 @@ def steady_state(
         moved = Motion(balance, found).x
     if not found.converged:
         raise _failed(problem, balance, found, result)
-    warn_of_cut(result, f"the steady motion at {speed:g} rad/s", result.attrs["harmonics"])
+    _warn_of_cut(result, f"the steady motion at {speed:g} rad/s", result.attrs["harmonics"])
     warn_of_band(problem.system, balance.omega, moved)
     if balance.receptances.soft.layers:
         warn_of_strain(problem.system, found.pressed.softened.strain[:, None])
@@ -215,41 +207,8 @@ def _found(
     return balance, found, math.nan
 
 
-def stability_of(
-    problem: Problem, balance: Balance, found: Found, model: FirstOrder | None = None, samples: int = SAMPLES
-) -> Stability | None:
-    """Steady state of one base: its multipliers; None for several bases."""
-    if len(problem.bases.bases) != 1 or not problem.system.bearings:
-        return None
-    model = model or first_order(problem, balance, found)
-    lines = balance.lines
-    count = max(samples, 2 * (lines.samples // 2))
-    pressed = balance.press(found.z, lines=Lines(lines.index, lines.steps, count))
-    m = len(problem.system.B)
-    period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
-    K = pooled([a.K for a in pressed.bearings], m)
-    C = pooled([a.C for a in pressed.bearings], m)
-    return floquet(model, balance.speed, period, K, C, KEPT).stability
-
-
-def first_order(problem: Problem, balance: Balance, found: Found) -> FirstOrder:
-    """In a steady state's analysis, the structure in first order, up to the balance's speed.
-
-    Layers that soften keep the amplitude that they have in the motion.
-    """
-    highest = float(np.abs(balance.omega).max())
-    lowest = float(np.abs(balance.omega[1:]).min())
-    band = (lowest / (20 * np.pi), highest / (2 * np.pi))
-    system = frozen(problem.system, found.pressed.softened, band)
-    return FirstOrder.of(system, 2.0 * FOLLOWS * highest, band, felt=ALL)
-
-
-def warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
-    """Warn (CutHarmonics) of channels of a steady state to which the harmonics left out would add."""
-    amplitude, cut = np.abs(result["amplitude"].values), result["cut"].values
-    largest, whole_size = amplitude[1:].max(axis=0, initial=0.0), amplitude.max(axis=0, initial=0.0)
-    with np.errstate(invalid="ignore"):
-        wanting = (cut > CUT * largest) & (cut > LEAST * whole_size)
+def _warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
+    """Warn (CutHarmonics) of the line, and of the channel, of a steady state that misses most."""
     left = float(result.attrs["lines_left"])
     if left > CUT:
         warn(
@@ -257,15 +216,11 @@ def warn_of_cut(result: xarray.Dataset, what: str, harmonics: int) -> None:
             "out; give more harmonics",
             CutHarmonics,
         )
-    if wanting.any():
-        c = int(np.argmax(np.where(wanting, cut / np.maximum(largest, 1e-300), 0.0)))
-        name = str(result["channel"].values[c])
-        warn(
-            f"{what} wants more than {harmonics} harmonics: those next above would add {cut[c]:.2g} to "
-            f"{name!r}, whose largest line is {largest[c]:.2g} {result['unit'].values[c]}; give more "
-            "harmonics",
-            CutHarmonics,
-        )
+    cut = result["cut"].values
+    share = share_cut(result["amplitude"].values, cut)
+    c = int(np.argmax(share))
+    about = result.isel(channel=c)
+    warn_of_cut(what, harmonics, str(about["channel"].values), share[c], cut[c], str(about["unit"].values))
 
 
 def _failed(problem: Problem, balance: Balance, found: Found, result: xarray.Dataset) -> core.SolverError:
@@ -328,7 +283,7 @@ def _dataset(
             "record": (("time", "channel"), rows, "", "channels over time; their units are in `unit`"),
             "cut": (
                 "channel",
-                motion.beyond(asked),  # type: ignore[arg-type]
+                cut_off(balance, found.z, asked, motion.fine),  # type: ignore[arg-type]
                 "",
                 "amplitude of the lines next above the last",
             ),

@@ -12,7 +12,7 @@ from bearingdyn.bearing.ehl.march import March, march
 from bearingdyn.bearing.ehl.oil import relative_density
 from bearingdyn.bearing.ehl.steady_film import Level, Steady, steady
 from bearingdyn.bearing.ehl.table_lookup import Lookup, loads_between, lookup, nearest_in_table, table_ends
-from bearingdyn.bearing.ehl.table_places import turning_load
+from bearingdyn.bearing.ehl.table_nodes import turning_load
 
 __all__ = [
     "DECAYS",

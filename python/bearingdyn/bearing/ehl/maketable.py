@@ -16,7 +16,7 @@ from bearingdyn.bearing.ehl import harmonic_approach
 from bearingdyn.bearing.ehl.figures import Figures
 from bearingdyn.bearing.ehl.steady_film import Steady, steady
 from bearingdyn.bearing.ehl.table_lookup import OMEGA
-from bearingdyn.bearing.ehl.table_places import HIGHEST, D, L, loads, place
+from bearingdyn.bearing.ehl.table_nodes import HIGHEST, D, L, loads, place
 
 ACCURACY = (0.02, 0.05, 0.1)
 """What `steady` is asked for; the next where one needs too many nodes."""

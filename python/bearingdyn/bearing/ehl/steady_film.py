@@ -159,7 +159,7 @@ def steady(
     eta0: float = 0.04,
     nodes: int = 400_000,
 ) -> Steady:
-    """Steady film of a smooth, isothermal, fully flooded point contact with a Newtonian oil.
+    """Solve the steady film of a smooth, isothermal, fully flooded point contact with a Newtonian oil.
 
     Parameters
     ----------

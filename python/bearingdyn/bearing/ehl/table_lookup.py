@@ -2,7 +2,7 @@
 
 `table.csv` holds solutions of `ehl.steady` for Roelands' viscosity and Dowson and Higginson's density (alpha
 2.2e-8 1/Pa, eta0 0.04 Pa s) over M, L and D; `maketable` makes it. Smooth quantities are interpolated by
-cubic splines in the place on the load axis (`table_places`), L and ln D: the film over the formula of
+cubic splines in the place on the load axis (`table_nodes`), L and ln D: the film over the formula of
 Nijenbanning, Venner and Moes, the odds K0/(1 − K0), and logarithms of the others.
 """
 
@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ehl.figures import Figured, Figures
 from bearingdyn.bearing.ehl.film_decays import DECAYS, FilmDecays
-from bearingdyn.bearing.ehl.table_places import place
+from bearingdyn.bearing.ehl.table_nodes import place
 from bearingdyn.bearing.film_thickness import film_formula
 from bearingdyn.checks import require
 from bearingdyn.types import Array, Complex
@@ -130,18 +130,18 @@ def lookup(M: float, L: float, D: float) -> Lookup:
 
 
 def nearest_in_table(L: float, D: float) -> tuple[float, float]:
-    """Table lookup's nearest: the L and D of the table nearest to those asked."""
+    """Table lookup: the L and D of the table nearest to those asked."""
     _, (L_low, L_high), (D_low, D_high) = _pieces().ends
     return min(max(L, L_low), L_high), min(max(D, math.exp(D_low)), math.exp(D_high))
 
 
 def table_ends(D: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Table lookup's range at D: least and largest M, least and largest L."""
+    """Table lookup: its range at D, least and largest M, least and largest L."""
     return loads_between(D), _pieces().ends[1]
 
 
 def loads_between(D: float) -> tuple[float, float]:
-    """Range of M for a table lookup at D."""
+    """Table lookup: its range of M at D."""
     log_D = math.log(D)
     low, high = _pieces().ends[0]
     # x is linear in ln M

@@ -237,7 +237,7 @@ def check_given(what: str, given: float, found: float, who: str = "") -> float:
 
 
 def radial_and_axial(radial: float, axial: float) -> tuple[float, float]:
-    """Check the two loads of an equivalent load by the standards, N: of a force's magnitude, none negative.
+    """ISO ratings: check of the two loads of an equivalent load, N: of a force's magnitude, none negative.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ def radial_and_axial(radial: float, axial: float) -> tuple[float, float]:
 
 
 def warn_of_overload(P0: float, C0: float) -> None:
-    """Warn (BearingWarning) of a static equivalent load above the static rating of the standard, both N.
+    """ISO ratings: warn (BearingWarning) of an equivalent static load above the static rating, both N.
 
     Parameters
     ----------

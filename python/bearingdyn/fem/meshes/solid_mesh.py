@@ -35,7 +35,7 @@ MIDDLE = 0.3  # a middle node may lie this far from the middle of its edge, in l
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceSamples:
-    """A surface of a solid mesh by its integration points: Σ weights·f is ∫ f dA.
+    """Solid mesh, one surface of it by integration points: Σ weights·f is ∫ f dA.
 
     Parameters
     ----------
@@ -529,7 +529,7 @@ def second_order(points: ArrayLike, corners: ArrayLike) -> tuple[Array, Index, I
 
 
 def merged(points: ArrayLike, tolerance: float) -> tuple[Array, Index]:
-    """Points of a solid mesh with those closer than the tolerance made one; and each point's new number."""
+    """For a solid mesh: points closer than the tolerance made one; and each point's new number."""
     p = np.asarray(points, dtype=np.float64)
     pairs = cKDTree(p).query_pairs(tolerance, output_type="ndarray")
     graph = scipy.sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(p),) * 2)

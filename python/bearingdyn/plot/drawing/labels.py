@@ -85,7 +85,7 @@ def _inside(profiles: Any) -> tuple[float, float]:
 
 
 def place_names(ax: Axes, shown: Machine, top: float, scale: float) -> float:
-    """Label seats and points by name below the section, lines up to them; returns how far down, mm."""
+    """Labels of seats and points by name below the drawing, lines up to them; returns how far down, mm."""
     named: dict[tuple[float, float], list[str]] = {}
     for name, at in shown.places.items():
         key = (round(float(at[2]), 3), round(float(at[1]), 3))

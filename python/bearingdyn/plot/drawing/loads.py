@@ -43,7 +43,7 @@ def value(x: float, unit: str) -> str:
 
 
 def course(load: Load) -> str:
-    """Words beside a drawn load: what its value is multiplied by in time."""
+    """Beside a drawn load, how its value goes in time, in words."""
     if isinstance(load, HarmonicLoad):
         return f" cos at {load.frequency:g} Hz"
     if isinstance(load, SampledLoad):

@@ -94,7 +94,7 @@ def placed(plan: Plan, name: str, outline: Outline) -> Array:
 
 
 def surface(machine: Machine, place: Place) -> tuple[float, float, float, float] | None:
-    """For a drawn machine, sign, radius and reach along z, mm, of the cylinder by which a part is held."""
+    """For a shown machine: sign, radius and reach along z, mm, of the cylinder by which a part is held."""
     faces, at = machine.plan.faces(place), machine.places.get(str(place))
     if not faces or at is None:
         return None

@@ -34,7 +34,7 @@ _Mark = TypeVar("_Mark", bound=_Marked)
 
 
 def once(marks: Iterable[_Mark], tolerance: float) -> Iterator[_Mark]:
-    """Marks without events that repeat the last one: a crossing on a point is found before it and behind it.
+    """Events by accuracy, each once: without repeats of the last one, found before a point and behind it.
 
     Parameters
     ----------

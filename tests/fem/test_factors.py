@@ -1,0 +1,84 @@
+"""Factors of sparse matrices by SuperLU and, where the extra `fast` is installed, by PARDISO."""
+
+from __future__ import annotations
+
+import gc
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+from bearingdyn.fem import assemble_solid, box_mesh, factorise, lowest_modes
+from bearingdyn.fem import factors as room
+from bearingdyn.material import STEEL
+
+
+@pytest.fixture(scope="module")
+def solid():
+    """A block of bricks, one face held: stiffness and mass of 5100 coordinates."""
+    mesh = box_mesh(*[np.linspace(0.0, 0.1, n) for n in (7, 7, 15)], "hex20")
+    matrices = assemble_solid(mesh)
+    free = np.flatnonzero(np.repeat(mesh.points[:, 2] > 1e-9, 3))
+    K, M = matrices.stiffness(STEEL), STEEL.density * matrices.mass
+    return tuple(scipy.sparse.csc_matrix(A[free][:, free]) for A in (K, M))
+
+
+def plain(A, monkeypatch):
+    """Factors as without the extra."""
+    with monkeypatch.context() as m:
+        m.setattr(room, "_has_pardiso", lambda: False)
+        return factorise(A)
+
+
+def test_superlu_is_the_default(solid, monkeypatch):
+    assert not isinstance(plain(solid[0], monkeypatch), room.Cholesky)
+
+
+class TestPardiso:
+    """The extra gives the numbers of the default."""
+
+    @pytest.fixture(autouse=True)
+    def installed(self):
+        pytest.importorskip("pypardiso")
+
+    def test_solutions_agree(self, solid, monkeypatch):
+        K = solid[0]
+        b = np.random.default_rng(1).standard_normal((K.shape[0], 3))
+        ours, theirs = factorise(K), plain(K, monkeypatch)
+        assert isinstance(ours, room.Cholesky)
+        for load in (b, b[:, 0], b[:, :0]):
+            x, y = ours.solve(load), theirs.solve(load)
+            assert x.shape == load.shape
+            # condition of a solid of bricks, some 1e7, times rounding
+            assert np.abs(x - y).max(initial=0.0) <= 1e-9 * np.abs(y).max(initial=0.0)
+
+    def test_factors_do_not_disturb_each_other(self, solid):
+        K, M = solid
+        b = np.ones(K.shape[0])
+        one, other = factorise(K), factorise(K + 1e9 * M)
+        x, y = one.solve(b), other.solve(b)
+        del other
+        gc.collect()
+        assert one.solve(b).tobytes() == x.tobytes()
+        assert np.abs(x - y).max() > 1e-3 * np.abs(x).max()
+
+    def test_modes_agree(self, solid, monkeypatch):
+        K, M = solid
+        ours, _ = lowest_modes(K, M, n_modes=8)
+        theirs, _ = lowest_modes(K, M, n_modes=8, lu=plain(K, monkeypatch))
+        assert ours == pytest.approx(theirs, rel=1e-9)  # Lanczos ends at 1e-14 in 1/ω²
+
+    def test_pivots_are_those_of_the_default(self, solid):
+        K, M = solid
+        # three modes lie below 4 kHz: as many pivots are negative (Sylvester)
+        frequencies, _ = lowest_modes(K, M, n_modes=8)
+        omega = 2 * np.pi * (frequencies[2] + frequencies[3]) / 2
+        assert (room.pivots(K - omega**2 * M) < 0).sum() == 3
+
+    def test_what_is_not_positive_definite_goes_to_superlu(self, solid):
+        K, M = solid
+        shifted = K - 1e10 * M
+        found = factorise(shifted)
+        assert not isinstance(found, room.Cholesky)
+        b = np.ones(K.shape[0])
+        assert np.abs(shifted @ found.solve(b) - b).max() < 1e-6
