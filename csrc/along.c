@@ -46,6 +46,8 @@ bd_status bd_bearing_along(const bd_bearing_data *data, const bd_along_data *mot
         memcpy(found->g + i * n, g, n * sizeof *g);
         memcpy(found->loads + i * balls, work.force, balls * sizeof *work.force);
         found->heat[i] = bd_contact_loss(data, &work);
+        if (found->pressed)
+            memcpy(found->pressed + i * balls, work.pressed, balls * sizeof *work.pressed);
         double turning = 0.0, pressing = 0.0;
         for (size_t j = 0; j < balls; j++) {
             turning += work.force[j] * work.turning[j];

@@ -426,6 +426,7 @@ typedef struct bd_clock {
     double reference;   /* speed that S is factored at */
     bool inverse_set;   /* whether Newton's frozen inverse is one */
     bool reference_set; /* whether the reference speed is one */
+    bool films_set;     /* whether films remember more than how balls turned */
 } bd_clock;
 
 /* Views of a state's parts; vectors are padded and in the model's block order. */
@@ -456,6 +457,13 @@ int bd_model_stresses(const bd_model *model);
 /* Given: a state from bd_state_set; what the branches bear, layer by layer in the caller's order, branch by branch */
 void bd_state_stress(const bd_model *model, double *flat, const double *stress);
 
+/* How many numbers bd_state_films takes: of every bearing whose films are carried 1 + 2 n_echoes for a ball. */
+int bd_model_films(const bd_model *model);
+
+/* Given: a state from bd_state_set; of every such bearing what its films remember, ball by ball in each row: p, then of
+ * each echo the real and the imaginary parts of q */
+void bd_state_films(const bd_model *model, double *flat, const double *films);
+
 /* Returned: x, v, a (n) in the caller's order; any may be NULL */
 void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,
                   double *a);
@@ -484,7 +492,8 @@ void bd_soften(const bd_model *model, const bd_scheme *scheme, double *flat, boo
 double bd_reference_speed(const bd_model *model, const bd_scheme *scheme, double *flat, bool anew);
 
 /* The acceleration that satisfies (1) at the state's own displacement, velocity and branch stress.
- * Notes:    before bd_prepare; without BD_OK the acceleration is void */
+ * Notes:    before bd_prepare; without BD_OK the acceleration is void. Films that are carried remember what bd_state_films
+ *           gave, else that balls have always turned past what stood: velocities are then sudden to them */
 bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapack *lapack,
                    bd_work *work, double *flat);
 
@@ -593,6 +602,8 @@ typedef struct bd_along {
     double *g;     /* (n x n_coefs) */
     double *K, *C; /* (n x n_coefs x n_coefs) dg/dz, dg/dzdot */
     double *loads; /* (n x n_balls) */
+    double *
+        pressed; /* (n x n_balls) m/s: p of films that are carried (bd_echo_weights); may be NULL */
     /* (n) W: power that contacts turn into heat, that presses the balls in all, and that turning feeds in */
     double *heat, *pressing, *turning;
 } bd_along;

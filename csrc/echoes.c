@@ -3,26 +3,30 @@
 
 #include <string.h>
 
-void bd_echoes_forget(const bd_model *model, bd_work *work)
+#include "newton.h"
+
+void bd_echoes_settle(const bd_model *model, bd_work *work, bd_state *state)
 {
+    const size_t m = (size_t)model->coefs;
+    /* the balls turn past what stands, and have always done so: q = p / decay, which is fresh by 1 */
+    double *moving = work->z_rate,
+           *standing = work->z_rate_linear; /* the latter is free before a step */
+    memset(standing, 0, m * sizeof *standing);
     for (int b = 0; b < model->n_bearings; b++) {
         bd_bearing_work *balls = &work->bearings[b];
         memset(balls->carried, 0, (size_t)model->bearings[b].balls * sizeof *balls->carried);
         balls->fresh = 1.0;
     }
-}
+    work->z_rate = standing;
+    bd_force_bearings(model, work);
+    work->z_rate = moving;
 
-void bd_echoes_begin(const bd_model *model, const bd_work *work, bd_state *state)
-{
     for (int b = 0; b < model->n_bearings; b++) {
         const bd_bearing *bearing = &model->bearings[b];
         const bd_contact *contact = &bearing->data.contact;
-        if (contact->n_echoes == 0)
-            continue;
         const size_t balls = (size_t)bearing->balls;
         const double *pressed = work->bearings[b].pressed;
         double *q = state->echoes + bearing->echo + balls;
-        memcpy(q - balls, pressed, balls * sizeof *pressed);
         for (int i = 0; i < contact->n_echoes; i++, q += 2 * balls) {
             /* 1/decay */
             const double *d = contact->echoes[i].decay, size = d[0] * d[0] + d[1] * d[1];
@@ -32,6 +36,33 @@ void bd_echoes_begin(const bd_model *model, const bd_work *work, bd_state *state
                 q[balls + j] = slow[1] * pressed[j];
             }
         }
+    }
+}
+
+void bd_echoes_recall(const bd_model *model, bd_work *work, const bd_state *state)
+{
+    for (int b = 0; b < model->n_bearings; b++) {
+        const bd_bearing *bearing = &model->bearings[b];
+        const bd_contact *contact = &bearing->data.contact;
+        const size_t balls = (size_t)bearing->balls;
+        const double *q = state->echoes + bearing->echo + balls;
+        double *restrict carried = work->bearings[b].carried;
+        memset(carried, 0, balls * sizeof *carried);
+        for (int i = 0; i < contact->n_echoes; i++, q += 2 * balls)
+            for (size_t j = 0; j < balls; j++)
+                carried[j] += contact->echoes[i].strength[0] * q[j] -
+                              contact->echoes[i].strength[1] * q[balls + j];
+        work->bearings[b].fresh = 0.0;
+    }
+}
+
+void bd_echoes_press(const bd_model *model, const bd_work *work, bd_state *state)
+{
+    for (int b = 0; b < model->n_bearings; b++) {
+        const bd_bearing *bearing = &model->bearings[b];
+        if (bearing->data.contact.n_echoes > 0)
+            memcpy(state->echoes + bearing->echo, work->bearings[b].pressed,
+                   (size_t)bearing->balls * sizeof(double));
     }
 }
 

@@ -4,9 +4,12 @@
 
 #include "work.h"
 
-/* Before a start: films answer as if the rates had always been so; and after its forces: the state has them so. */
-void bd_echoes_forget(const bd_model *model, bd_work *work);
-void bd_echoes_begin(const bd_model *model, const bd_work *work, bd_state *state);
+/* Of a start, at z in work and the balls where they are. Films that know no motion: the state's echoes are those of balls
+ * that have always turned past it. Then what is carried at this moment, whatever the rates now are; and, once the forces
+ * are known, what is pressed. */
+void bd_echoes_settle(const bd_model *model, bd_work *work, bd_state *state);
+void bd_echoes_recall(const bd_model *model, bd_work *work, const bd_state *state);
+void bd_echoes_press(const bd_model *model, const bd_work *work, bd_state *state);
 
 /* Of a step: the film that the new rates add to, from a state that is only read; and, once the step has converged, the
  * state after it. */

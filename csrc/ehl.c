@@ -54,16 +54,20 @@ BD_INLINE void press(const elastic *spring, const lanes *c, const lanes *slope, 
 
 /* ---------------------------------------------------------------- the film's laws */
 
-/* Registers between looking up and using: their chains of division, look-up and cubic then overlap, which are longer
- * than a processor looks ahead. */
-enum { AHEAD = 4 };
+/* Registers at most between looking up and using: their chains of division, look-up and cubic then overlap, which are
+ * longer than a processor looks ahead. */
+enum { AHEAD = 8 };
 /* Binary digits of a double, of them those of a cell, and those of a cell's powers. */
 enum { DIGITS = 52, CELL_DIGITS = 6, POWER_DIGITS = 2 };
 /* Just below 1, so that no w reaches the end of the last cell. */
 static const double below_end = 1.0 - 0x1p-50;
 
+/* Digits of doubles as they stand, without a sign: AVX2 has no instruction that shifts signed ones to the right. */
+typedef unsigned long long lane_digits
+    __attribute__((vector_size(8 * BD_WIDTH), aligned(8), may_alias));
+
 /* The cubic of each lane's cell, a power a register. Written lane by lane: a loop would go by way of memory. */
-BD_INLINE void film_cubics(const double *film, const lane_mask *cell, lanes *k0, lanes *k1,
+BD_INLINE void film_cubics(const double *film, const lane_digits *cell, lanes *k0, lanes *k1,
                            lanes *k2, lanes *k3)
 {
 #define CUBIC(lane) (film + (*cell)[lane])
@@ -124,23 +128,25 @@ BD_INLINE void film_contacts(const bd_contact *contact, bool gives, bool carries
 {
     const bool settled = gives && !carries; /* w is of what the ring's give leaves */
     const double half = sqrt(contact->c);
-    for (int from = 0; from < n; from += AHEAD * BD_WIDTH) {
-        const int left = (n - from) / BD_WIDTH, count = left < AHEAD ? left : AHEAD;
+    const int registers = n / BD_WIDTH, groups = (registers + AHEAD - 1) / AHEAD;
+    for (int group = 0, from = 0; group < groups; group++) {
+        /* of nearly one size: a register left over would have nothing to overlap with */
+        const int count = (registers - from / BD_WIDTH) / (groups - group);
         elastic spring[AHEAD];
         lanes s_of[AHEAD], u[AHEAD], by_s[AHEAD];
-        lane_mask cell[AHEAD];
+        lane_digits cell[AHEAD];
         for (int i = 0; i < count; i++) {
             s_of[i] = LANES(delta + from + i * BD_WIDTH) + contact->h0;
             squeeze(contact, settled, &s_of[i], &spring[i]);
             lanes root = spring[i].root, s = root * root;
-            /* one division, by root (root + half); 0/0 where nothing touches, which `touching` takes out again */
-            lanes inverse = 1.0 / (s + half * root);
+            /* one division, by root (root + half); 0 where nothing touches, so that w is, where c and its slope are 0 */
+            lanes inverse = LANES_WHERE(spring[i].touching, 1.0 / (s + half * root));
             /* 1 + w: its leading digits are the cell, masked so that what is none reads inside the table */
             lanes place = (below_end * s) * inverse + 1.0;
-            lane_mask digits = (lane_mask)place;
+            lane_digits digits = (lane_digits)place;
             cell[i] = digits >> (DIGITS - CELL_DIGITS - POWER_DIGITS) &
                       ((BD_FILM_CELLS - 1) << POWER_DIGITS);
-            u[i] = place - (lanes)(digits & -(1LL << (DIGITS - CELL_DIGITS)));
+            u[i] = place - (lanes)(digits & -(1ULL << (DIGITS - CELL_DIGITS)));
             by_s[i] = ((0.5 * half) * root) * (inverse * inverse); /* dw/ds */
             if (settled)
                 by_s[i] *= spring[i].soft;
@@ -152,9 +158,7 @@ BD_INLINE void film_contacts(const bd_contact *contact, bool gives, bool carries
             lanes last = u[i] * k3, both = k2 + last;
             lanes c = (k0 + u[i] * k1) + (u[i] * u[i]) * both;
             lanes slope = (k1 + u[i] * (both + both + last)) * by_s[i];
-            c = LANES_WHERE(spring[i].touching, c);
             if (carries) {
-                slope = LANES_WHERE(spring[i].touching, slope);
                 press_carried(contact, gives, oil, first, &s_of[i], &c, &slope, rate + first,
                               force + first, stiffness + first, damping + first);
                 continue;
@@ -162,6 +166,7 @@ BD_INLINE void film_contacts(const bd_contact *contact, bool gives, bool carries
             press(&spring[i], &c, &slope, rate + first, force + first, stiffness + first,
                   damping + first);
         }
+        from += count * BD_WIDTH;
     }
 }
 

@@ -12,7 +12,7 @@
 #include "state.h"
 
 /* What the layers and the bearings see of the state: y_rate = L^T v, and g at B x, B v, as if it had always
- * been so. */
+ * been so; films remember what they did. */
 static void observe_state(const bd_model *model, bd_work *work, bd_state *state)
 {
     const size_t m = (size_t)model->coefs;
@@ -21,9 +21,13 @@ static void observe_state(const bd_model *model, bd_work *work, bd_state *state)
     columns_add_two(model->coefs, model->n_padded, model->B, model->coefs, state->x, state->v,
                     work->z, work->z_rate);
     bd_turn_bearings(model, work);
-    bd_echoes_forget(model, work);
+    if (model->n_echoes > 0) {
+        if (!state->clock.films_set)
+            bd_echoes_settle(model, work, state);
+        bd_echoes_recall(model, work, state);
+    }
     bd_force_bearings(model, work);
-    bd_echoes_begin(model, work, state);
+    bd_echoes_press(model, work, state);
     for (size_t k = 0; k < m; k++)
         state->g[k] = state->g_before[k] = state->g_before[m + k] = work->force[k];
 

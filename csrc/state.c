@@ -7,7 +7,7 @@
 /* ---------------------------------------------------------------- clock */
 
 /* Where the clock's parts lie at the head of a state; a flag is 1 or 0, a count a whole number. */
-enum { ORIGIN, STEPS, STEP, INVERSE_SET, REFERENCE, REFERENCE_SET };
+enum { ORIGIN, STEPS, STEP, INVERSE_SET, REFERENCE, REFERENCE_SET, FILMS_SET };
 
 /* From here on a count and the next are the same double. */
 static const double most_steps = 9007199254740992.0;
@@ -22,6 +22,7 @@ static bd_clock clock_of(const double *flat)
         .reference = flat[REFERENCE],
         .inverse_set = flat[INVERSE_SET] != 0.0,
         .reference_set = flat[REFERENCE_SET] != 0.0,
+        .films_set = flat[FILMS_SET] != 0.0,
     };
 }
 
@@ -52,6 +53,7 @@ void bd_clock_keep(const bd_state *state)
     state->flat[INVERSE_SET] = clock->inverse_set;
     state->flat[REFERENCE] = clock->reference;
     state->flat[REFERENCE_SET] = clock->reference_set;
+    state->flat[FILMS_SET] = clock->films_set;
 }
 
 /* ---------------------------------------------------------------- parts */
@@ -122,6 +124,33 @@ void bd_state_stress(const bd_model *model, double *flat, const double *stress)
         for (int i = 0; i < layer->n_branches; i++, from += layer->rank, to += layer->padded)
             memcpy(to, from, (size_t)layer->rank * sizeof *to);
     }
+}
+
+int bd_model_films(const bd_model *model)
+{
+    int count = 0;
+    for (int b = 0; b < model->n_bearings; b++) {
+        const bd_bearing_data *data = &model->bearings[b].data;
+        if (data->contact.n_echoes > 0)
+            count += (1 + 2 * data->contact.n_echoes) * data->n_balls;
+    }
+    return count;
+}
+
+void bd_state_films(const bd_model *model, double *flat, const double *films)
+{
+    const bd_state state = bd_state_view(model, flat);
+    for (int b = 0; b < model->n_bearings; b++) {
+        const bd_bearing *bearing = &model->bearings[b];
+        const int n_echoes = bearing->data.contact.n_echoes, n_balls = bearing->data.n_balls;
+        double *to = state.echoes + bearing->echo;
+        for (int row = 0; n_echoes > 0 && row < 1 + 2 * n_echoes; row++) {
+            memcpy(to, films, (size_t)n_balls * sizeof *to);
+            films += n_balls;
+            to += bearing->balls;
+        }
+    }
+    state.flat[FILMS_SET] = 1.0;
 }
 
 void bd_state_get(const bd_model *model, const double *flat, double *t, double *x, double *v,

@@ -96,9 +96,13 @@ class OneBall:
         load: Callable[[float], float],
         dt: float,
         steps: int,
+        velocity: float = 0.0,
         **scheme: object,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """δ − rest, m, and force, N, (steps,), of a mass, kg, under a load over time, N, from rest."""
+        """δ − rest, m, and force, N, (steps,), of a mass, kg, under a load over time, N.
+
+        From rest, or from a sudden velocity, m/s.
+        """
         time = np.arange(8 * steps + 1) * dt / 8
         one, zero = np.ones((1, 1)), np.zeros((1, 1))
         sampled = (core.LOAD_KINDS["sampled"], 0.0, one[0], zero[0], time, np.array([load(t) for t in time]))
@@ -106,7 +110,7 @@ class OneBall:
         model = core.Model(
             mass * one, zero, zero, zero, zero, [], [(kernel.packed(), one)], [sampled], channels
         )
-        start = model.state(0.0, np.array([self.rest]), np.zeros(1))
+        start = model.state(0.0, np.array([self.rest]), np.array([velocity]))
         stepping = core.Stepping(dt, scheme=core.Scheme(tolerance=1e-13, **scheme))  # type: ignore[arg-type]
         rows, _, report = core.march(model, start, stepping, steps, 1, start=True)
         assert report.status == 0

@@ -5,14 +5,16 @@
 
 const char bd_py_bearing_along_doc[] = PyDoc_STR(
     "bearing_along(bearing, z, z_rate, angle, speed, window, tangents)\n"
-    "-> g, loads, heat, pressing, turning, K, C\n\n"
+    "-> g, loads, heat, pressing, turning, K, C, pressed\n\n"
     "One bearing through samples z, z_rate (s, n) of a motion; angle (s, 4) and speed (4,)\n"
-    "of cage, inner ring, outer ring and ball spin. K, C (s, n, n), or None each.");
+    "of cage, inner ring, outer ring and ball spin. K, C (s, n, n), or None each; pressed (s, Z) "
+    "of\n"
+    "films that are carried, or None.");
 
 PyObject *bd_py_bearing_along(PyObject *module, PyObject *args)
 {
     PyObject *dict, *z_in, *rate_in, *angle_in, *speed_in, *result = NULL;
-    PyObject *arrays[7] = {NULL};
+    PyObject *arrays[8] = {NULL};
     int tangents;
     bd_bearing_data bearing = {0};
     bd_along_data motion = {0};
@@ -60,6 +62,8 @@ PyObject *bd_py_bearing_along(PyObject *module, PyObject *args)
         arrays[i] = bd_py_new_array(1, samples, 0);
     for (size_t i = 5; i < 7; i++)
         arrays[i] = tangents ? PyArray_SimpleNew(3, square, NPY_DOUBLE) : Py_NewRef(Py_None);
+    const bool remembers = bearing.contact.n_echoes > 0;
+    arrays[7] = remembers ? bd_py_new_array(2, samples, bearing.n_balls) : Py_NewRef(Py_None);
     for (size_t i = 0; i < Py_ARRAY_LENGTH(arrays); i++)
         if (!arrays[i])
             goto done;
@@ -71,6 +75,7 @@ PyObject *bd_py_bearing_along(PyObject *module, PyObject *args)
         .turning = bd_py_data(arrays[4]),
         .K = tangents ? bd_py_data(arrays[5]) : NULL,
         .C = tangents ? bd_py_data(arrays[6]) : NULL,
+        .pressed = remembers ? bd_py_data(arrays[7]) : NULL,
     };
     Py_BEGIN_ALLOW_THREADS
         status = bd_bearing_along(&bearing, &motion, scratch, &found);
@@ -78,8 +83,8 @@ PyObject *bd_py_bearing_along(PyObject *module, PyObject *args)
     if (status != BD_OK)
         bd_py_raise(status, "bearing_along");
     else
-        result = PyTuple_Pack(7, arrays[0], arrays[1], arrays[2], arrays[3], arrays[4], arrays[5],
-                              arrays[6]);
+        result = PyTuple_Pack(8, arrays[0], arrays[1], arrays[2], arrays[3], arrays[4], arrays[5],
+                              arrays[6], arrays[7]);
 done:
     for (size_t i = 0; i < Py_ARRAY_LENGTH(arrays); i++)
         Py_XDECREF(arrays[i]);

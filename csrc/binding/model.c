@@ -241,16 +241,17 @@ const bd_model *bd_py_model_of(PyObject *object)
 
 PyDoc_STRVAR(
     model_state_doc,
-    "state(t, x, v, stress=None) -> state\n\n"
+    "state(t, x, v, stress=None, films=None) -> state\n\n"
     "A flat state, at rest in its branches or with what they bear: layer by layer, branch by "
-    "branch.");
+    "branch; with films that have settled or remember a motion: see bd_state_films in "
+    "bearingdyn.h.");
 
 static PyObject *model_state(PyObject *object, PyObject *args)
 {
     const bd_model *model = bd_py_model_of(object);
-    PyObject *x_in, *v_in, *stress_in = Py_None, *state = NULL;
+    PyObject *x_in, *v_in, *stress_in = Py_None, *films_in = Py_None, *state = NULL;
     double t;
-    if (!PyArg_ParseTuple(args, "dOO|O:state", &t, &x_in, &v_in, &stress_in))
+    if (!PyArg_ParseTuple(args, "dOO|OO:state", &t, &x_in, &v_in, &stress_in, &films_in))
         return NULL;
     PyObject *keep = PyList_New(0);
     if (!keep)
@@ -260,11 +261,16 @@ static PyObject *model_state(PyObject *object, PyObject *args)
     const bool bears = v && stress_in != Py_None;
     const double *stress =
         bears ? bd_py_doubles(keep, stress_in, "stress", 1, bd_model_stresses(model), -1) : NULL;
-    if (v && (stress || !bears) && !bd_py_require_finite(&t, 1, "t") &&
+    const bool remembers = v && (stress || !bears) && films_in != Py_None;
+    const double *films =
+        remembers ? bd_py_doubles(keep, films_in, "films", 1, bd_model_films(model), -1) : NULL;
+    if (v && (stress || !bears) && (films || !remembers) && !bd_py_require_finite(&t, 1, "t") &&
         (state = bd_py_new_array(1, (npy_intp)bd_state_size(model), 0))) {
         bd_state_set(model, bd_py_data(state), t, x, v);
         if (stress)
             bd_state_stress(model, bd_py_data(state), stress);
+        if (films)
+            bd_state_films(model, bd_py_data(state), films);
     }
     Py_DECREF(keep);
     return state;

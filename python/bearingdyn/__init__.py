@@ -68,6 +68,7 @@ PUBLIC = {
             "EndFace",
             "Feet",
             "FlexibleBearing",
+            "FlexibleBore",
             "FlexibleRing",
             "Groove",
             "Housing",

@@ -310,6 +310,8 @@ class Along:
         that cage and rings feed in (s,), W.
     K, C
         Tangents dg/dz, dg/dż (s, n, n); empty where they were not asked for.
+    pressed
+        What each ball presses into films that are carried (s, Z), b dδ/dt, m/s; empty for others.
     """
 
     g: Array
@@ -319,6 +321,7 @@ class Along:
     turning: Array
     K: Array
     C: Array
+    pressed: Array
 
     __repr__ = short
 
@@ -356,11 +359,16 @@ def bearing_along(
     ArithmeticError
         Where a force is not finite.
     """
-    g, loads, heat, pressing, turning, K, C = _core.bearing_along(
+    g, loads, heat, pressing, turning, K, C, pressed = _core.bearing_along(
         kernel.packed(), z, z_rate, angle, speed, window, tangents
     )
-    none = np.zeros((0, 0, 0))
-    return Along(g, loads, heat, pressing, turning, none if K is None else K, none if C is None else C)
+    none, still = np.zeros((0, 0, 0)), np.zeros((0, 0))
+    K, C, pressed = (
+        none if K is None else K,
+        none if C is None else C,
+        still if pressed is None else pressed,
+    )
+    return Along(g, loads, heat, pressing, turning, K, C, pressed)
 
 
 def march(

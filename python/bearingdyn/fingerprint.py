@@ -36,11 +36,15 @@ def _own_version() -> str:
 VERSION = _own_version()
 # arrays of more numbers than this are told by their digest
 WRITTEN_OUT = 64
+# methods that write into a dict, a list or a set
+_WRITERS = ("setdefault", "append", "add")
 # HDF5 keeps an attribute of up to 64 kB
 LONGEST = 60_000
 
 
-def describe(value: Any, *, strict: bool = True, within: tuple[Any, ...] = ()) -> Any:
+def describe(
+    value: Any, *, strict: bool = True, within: tuple[Any, ...] = (), forgetful: bool = False
+) -> Any:
     """A value as JSON's own types, from which its fingerprint is taken: the same for equal values anywhere.
 
     Numbers, texts, dataclasses, arrays (sparse ones too), mappings, sequences, sets, functions, and objects
@@ -58,6 +62,9 @@ def describe(value: Any, *, strict: bool = True, within: tuple[Any, ...] = ()) -
         Refuse a value that has no content to tell it by.
     within
         What the value is a part of: one that holds itself is told by its name there.
+    forgetful
+        Tell global dicts, lists and sets into which functions write themselves, as a memory of what they have
+        computed, as empty: as they stand before the first call.
 
     Raises
     ------
@@ -67,7 +74,7 @@ def describe(value: Any, *, strict: bool = True, within: tuple[Any, ...] = ()) -
     """
 
     def told(part: Any) -> Any:
-        return describe(part, strict=strict, within=(*within, value))
+        return describe(part, strict=strict, within=(*within, value), forgetful=forgetful)
 
     if isinstance(value, np.generic):
         value = value.item()
@@ -94,7 +101,7 @@ def describe(value: Any, *, strict: bool = True, within: tuple[Any, ...] = ()) -
     if any(value is whole for whole in within):
         return {"again": getattr(value, "__qualname__", type(value).__qualname__)}
     if isinstance(value, types.FunctionType):
-        return _function(value, told)
+        return _function(value, told, forgetful)
     if isinstance(value, type) and not _installed(value.__module__):
         return _class(value, told)
     return _object(value, told, strict)
@@ -118,9 +125,9 @@ def fingerprint(value: Any) -> str:
     return _digest(describe(value))
 
 
-def loose(value: Any) -> str:
+def loose(value: Any, *, forgetful: bool = False) -> str:
     """Fingerprint that refuses nothing: what cannot be told by its content is told by its class."""
-    return _digest(describe(value, strict=False))
+    return _digest(describe(value, strict=False, forgetful=forgetful))
 
 
 def _digest(described: Any) -> str:
@@ -205,16 +212,18 @@ def _module(value: Any) -> str:
     return "__main__" if name == "__mp_main__" else name
 
 
-def _function(value: types.FunctionType, told: Callable[[Any], Any]) -> Any:
+def _function(value: types.FunctionType, told: Callable[[Any], Any], forgetful: bool) -> Any:
     name = f"{_module(value)}.{value.__qualname__}"
     if _installed(value.__module__) and value.__closure__ is None and "<lambda>" not in name:
         return name
     cells = value.__closure__ or ()
-    around = {
-        used: _told_of(f"{name} uses the global {used!r}", value.__globals__[used], told)
-        for used in sorted(_globals_of(value.__code__))
-        if used in value.__globals__
+    held = {
+        used: value.__globals__[used] for used in sorted(_globals_of(value.__code__) & {*value.__globals__})
     }
+    if forgetful:
+        memories = _memories_of(value.__code__)
+        held |= {k: type(v)() for k, v in held.items() if k in memories and type(v) in (dict, list, set)}
+    around = {used: _told_of(f"{name} uses the global {used!r}", part, told) for used, part in held.items()}
     enclosed = {
         used: _told_of(f"{name} uses {used!r} from around it", cell.cell_contents, told)
         for used, cell in zip(value.__code__.co_freevars, cells, strict=True)
@@ -271,3 +280,20 @@ def _globals_of(code: types.CodeType) -> set[str]:
         if instruction.opname in ("LOAD_GLOBAL", "LOAD_NAME")
     }
     return found.union(*(_globals_of(c) for c in code.co_consts if isinstance(c, types.CodeType)))
+
+
+def _memories_of(code: types.CodeType) -> set[str]:
+    """Names of globals that a function, or one within it, writes items into."""
+    steps = list(dis.get_instructions(code))
+    found = set[str]()
+    for i, step in enumerate(steps):
+        if step.opname == "LOAD_GLOBAL" and i + 1 < len(steps) and steps[i + 1].argval in _WRITERS:
+            found.add(str(step.argval))
+        elif step.opname == "STORE_SUBSCR":  # of value, container, key on the stack
+            above, k = 1, i
+            while above > 0 and k > 0:
+                k -= 1
+                above -= dis.stack_effect(steps[k].opcode, steps[k].arg, jump=False)
+            if k > 0 and steps[k - 1].opname == "LOAD_GLOBAL":
+                found.add(str(steps[k - 1].argval))
+    return found.union(*(_memories_of(c) for c in code.co_consts if isinstance(c, types.CodeType)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -121,6 +122,20 @@ def test_too_much_load_and_too_thin_a_film_are_named():
     assert "ISO 281 has no a_ISO below 0.1" in told
     assert any("static rating" in str(w.message) for w in caught)
     assert math.isnan(float(sheet["L10mh"][0]))
+
+
+@pytest.mark.parametrize("model", ["palmgren", "four-term"])
+def test_a_load_above_the_rating_is_told_once(model: str) -> None:
+    """Life and friction would each tell of it too."""
+    eq = one(radial=9000.0)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        bd.bearing_sheet(
+            eq, speed=SPEED, oil=OIL, temperature=40.0, friction_model=model, duty=[(eq, SPEED, 40.0, 1.0)]
+        )
+    told = [str(w.message) for w in caught if "above" in str(w.message) and "static rating" in str(w.message)]
+    assert len([text for text in told if "duty[0]" not in text]) == 1
+    assert len(told) == 2  # the phase of the duty is another state
 
 
 def test_a_bearing_that_carries_nothing_is_named():

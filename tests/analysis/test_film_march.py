@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from bearingdyn.analysis import equilibrium, frequency_response, transient
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, FilmDamping, Lubricant, Walther
+from bearingdyn.notice import CutHarmonics
 from bearingdyn.parts import RigidBody
 
 OIL, TEMPERATURE, OMEGA, LOAD = Lubricant(Walther.iso_vg(32)), 60.0, 523.6, 300.0
@@ -90,15 +92,6 @@ def test_slow_motions_find_the_viscous_damping() -> None:
     assert film.imag == pytest.approx(viscous.imag, rel=2e-3)  # bends as Ω²
     # films become thinner under load: K0 is below the stiffness of the dry contacts
     assert 0.985 < film.real / viscous.real < 0.995
-
-
-def test_a_mass_that_rests_stays() -> None:
-    """All balls carry what the law was made for, to the film that the dry bearing does not know."""
-    run = transient(oiled(), speed=OMEGA, dt=5e-6, steps=2000, record=PLACES, contacts="film")
-    z, force = run["record"].values.T
-    # 1.4 % more load than the dry bearing's, for which the law is, on .009/K_Hertz of film, over sin α
-    assert np.ptp(z) < 3e-9
-    np.testing.assert_allclose(force, LOAD, rtol=2e-3)
 
 
 def test_a_march_on_films_resumes_and_streams_bit_for_bit(tmp_path: Path) -> None:
@@ -198,3 +191,44 @@ def test_a_film_that_follows_the_load_is_refused(grade: int, load: float) -> Non
 def test_other_motions_are_not_sought_on_films() -> None:
     with pytest.raises(ValueError, match="check_unique looks for steady motions on viscous contacts"):
         transient(oiled(), speed=OMEGA, dt=5e-6, steps=1, record=PLACES, contacts="film", check_unique=True)
+
+
+@pytest.mark.parametrize(("radial", "speed"), [(0.0, OMEGA), (150.0, 0.0)])
+def test_a_mass_that_rests_stays(radial: float, speed: float) -> None:
+    """The law is for the mean load of the dry bearing's balls; under others films hold a mass elsewhere."""
+    eq = oiled(radial=radial)
+    run = transient(eq, speed=speed, dt=2e-6, steps=400, record=PLACES, contacts="film", filter=False)
+    z, force = run["record"].values.T
+    assert np.ptp(z) < 1e-14  # Newton's tolerance; from where viscous films hold it, it fell by 1.7 nm
+    np.testing.assert_allclose(force, LOAD, rtol=1e-8)
+    # 1.4 % more than the dry bearing's load, on .009/K_Hertz of film, over sin α; more with a radial load
+    assert 1e-10 < abs(z[0] - eq.displacement("mass.centre")[2]) < 1e-7
+
+
+@pytest.mark.parametrize("Omega", [0.3, 2.0])
+@pytest.mark.parametrize("found_with", ["film", "viscous"])
+def test_a_march_begins_in_a_steady_motion_and_so_do_its_films(Omega: float, found_with: str) -> None:
+    frequency = Omega / passage(oiled()) / (2 * math.pi)
+    eq = oiled(frequency)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CutHarmonics)  # of the ball passage, which moves nothing here
+        motion = bd.steady_state(eq, speed=OMEGA, record=PLACES[:1], contacts=found_with)
+    assert motion.attrs.get("contacts", "viscous") == found_with
+    per = max(200, round(1 / frequency / 5e-7))
+    run = transient(
+        eq,
+        speed=OMEGA,
+        dt=1 / frequency / per,
+        steps=12 * per,
+        record=PLACES[:1],
+        contacts="film",
+        initial=motion,
+        filter=False,
+    )
+    z = run["record"].values[:, 0].reshape(12, per)
+    departs = np.abs(z[0] - z[-1]).max() / np.ptp(z[-1])
+    if found_with == "film":
+        # the step's error, (ωΔt)²/12 = 8e-5; films that know nothing of the motion leave 4e-4 and 9e-4
+        assert departs < 1e-4
+    else:
+        assert departs > 2e-4  # it is another motion

@@ -9,7 +9,7 @@ import pytest
 import scipy
 
 from bearingdyn import core
-from bearingdyn.bearing import FilmDamping, FilmMemory, Lubricant, Walther, ehl, lubricate
+from bearingdyn.bearing import BearingKernel, FilmDamping, FilmMemory, Lubricant, Walther, ehl, lubricate
 from bearingdyn.bearing.catalogue import bearing
 from one_ball import OneBall
 from twins import bearing_twin
@@ -105,7 +105,7 @@ def test_kernel_and_twin_agree() -> None:
                 np.testing.assert_allclose(each, other, rtol=1e-9, atol=1e-12)
 
 
-def by_ode(ball: OneBall, mass: float, load: object, times: np.ndarray) -> np.ndarray:
+def by_ode(ball: OneBall, mass: float, load: object, times: np.ndarray, velocity: float = 0.0) -> np.ndarray:
     """δ − rest, m, at times from the mass and the echoes themselves, by an adaptive method of order 8."""
     film = ball.film
     rows = film.echoes
@@ -120,7 +120,7 @@ def by_ode(ball: OneBall, mass: float, load: object, times: np.ndarray) -> np.nd
         slope = -decay * q + b * y[1]
         return np.concatenate([[y[1], (load(t) - force) / mass], slope.real, slope.imag])  # type: ignore[operator]
 
-    start = np.concatenate([[ball.rest, 0.0], np.zeros(2 * n)])
+    start = np.concatenate([[ball.rest, velocity], np.zeros(2 * n)])
     found = scipy.integrate.solve_ivp(
         rates, (0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-11, atol=1e-17, max_step=times[0]
     )
@@ -150,25 +150,61 @@ def test_march_is_that_of_the_differential_equations(leaves: bool) -> None:
     assert ((orders > 1.7) & (orders < 2.3)).all()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("omega", "film", "viscous"), [(0.2, 2e-3, 0.025), (1.0, 4e-3, 0.025), (2.0, 0.01, 0.08)]
-)
-def test_march_is_that_of_reynolds_equation_in_time(omega: float, film: float, viscous: float) -> None:
-    """A free ball under a load that leaps by 5 %, at ωa/um, against `ehl.march`; viscous ones are far off."""
+def test_a_sudden_velocity_finds_films_that_had_settled() -> None:
+    """From a blow, second order in the step: the film remembers nothing of it when it begins."""
     ball = OneBall.of(100.0, 10.0)
-    start = ehl.steady(100, 10, grid=65)
-    dt, steps = 0.25 / omega * 0.2, 160
-    found = ehl.march(start, dt=dt, steps=steps, mass=omega**-2, load=1.05)
-    swing = (found.approach[1:] - found.approach[0]) * 2 * ball.contact.approach(ball.F)
+    mass = ball.stiffness * ball.passage**2
+    velocity = 0.2 * ball.F / ball.stiffness / ball.passage
+    span = 8 * ball.passage
+
+    def load(t: float) -> float:
+        return ball.F
+
+    exact = by_ode(ball, mass, load, span * np.arange(1, 801) / 800, velocity)
+    errors = []
+    for steps in (200, 400, 800):
+        found, _ = ball.march(ball.film, mass, load, span / steps, steps, velocity)
+        errors.append(np.abs(found - exact[800 // steps - 1 :: 800 // steps]).max() / np.abs(found).max())
+    assert errors[-1] < 1e-4
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert ((orders > 1.7) & (orders < 2.3)).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("omega", [0.2, 1.0, 2.0])
+@pytest.mark.parametrize("push", ["leap", "blow"])
+def test_march_is_that_of_reynolds_equation_in_time(omega: float, push: str) -> None:
+    """A free ball, at ωa/um, under a load that leaps by 5 % or after a blow, against `ehl.march`.
+
+    The bound: in the 8 rad of the run an error e of the stiffness turns the swing by 4 e of its amplitude,
+    half of the largest displacement after a leap and all of it after a blow. e is what the decays leave of
+    K̂, and what K0/K_Hertz changes under 5 % more load, from the table. The steps of both are of second order
+    and alike; what they leave is found by halving them here.
+    """
+    ball = OneBall.of(100.0, 10.0)
+    unit = 2 * ball.contact.approach(ball.F)
+    dt, steps, velocity = 0.25 / omega * 0.2, 160, 0.03 * omega
+    load, moved = (1.05, 0.0) if push == "leap" else (1.0, velocity)
+    found = ehl.march(
+        ehl.steady(100, 10, grid=65), dt=dt, steps=steps, mass=omega**-2, load=load, velocity=moved
+    )
+    swing = (found.approach[1:] - found.approach[0]) * unit
+    largest = np.abs(swing).max()
     mass = omega**-2 * ball.stiffness * ball.passage**2
-    off = []
-    for kernel in (ball.film, ball.viscous):
-        got, _ = ball.march(kernel, mass, lambda t: 1.05 * ball.F, dt * ball.passage, steps)
-        off.append(np.abs(got - swing).max() / np.abs(swing).max())
-    # of the swing: what the fit of K̂ leaves, and twice that
-    assert off[0] < film
-    assert off[1] > viscous
+
+    def marched(kernel: BearingKernel, finer: int = 1) -> np.ndarray:
+        h, v = dt * ball.passage / finer, moved * unit / ball.passage
+        return ball.march(kernel, mass, lambda t: load * ball.F, h, steps * finer, v)[0][finer - 1 :: finer]
+
+    film = marched(ball.film)
+    left_by_steps = 4 / 3 * np.abs(film - marched(ball.film, 2)).max() / largest
+    softer = ehl.lookup(105.0, 10.0, 1.0).K0 - ehl.lookup(100.0, 10.0, 1.0).K0
+    turned = (2 if push == "leap" else 4) * (FilmMemory.of(ball.law, ball.kappa).error + softer)
+    bound = turned + left_by_steps
+    assert bound < 0.01
+    assert np.abs(film - swing).max() < bound * largest
+    # the viscous ball must be told from it
+    assert np.abs(marched(ball.viscous) - swing).max() > 3 * bound * largest
 
 
 @pytest.mark.slow
@@ -190,5 +226,7 @@ def test_march_is_that_of_reynolds_equation_through_lost_contact() -> None:
             kernel, mass, lambda t: ball.F * load(t / ball.passage), dt * ball.passage, steps
         )
         off.append(np.abs(force / ball.F - found.force[1:]).max())
+    # of the load. Nothing derives what decays leave where a film breaks off and is made anew. Measured:
+    # 0.3 %, of viscous films 4 %
     assert off[0] < 0.01
     assert off[1] > 0.03

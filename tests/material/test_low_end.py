@@ -251,3 +251,44 @@ def test_times_that_the_data_reach_pass_and_so_does_the_instant_of_loading(what:
         getattr(known_to_16_s(), what)([0.0, 1e-5, 1e-3, 10.0])
         # a model given by hand without a band is believed
         getattr(bd.Maxwell(G0, G, TAU, **GIVEN), what)([1e-15, 1e15])
+
+
+@pytest.mark.parametrize("omega", [0, 0.0, [0.0], [0.0, 10.0], np.zeros((2, 2))])
+def test_rest_is_doubted_wherever_it_is_asked_for(omega: object) -> None:
+    """By itself the material answers G0, which no data have shown; nothing is said within the data."""
+    rubber = bd.fit_maxwell(curve(1.0), n=3, **GIVEN)
+    for ask in (rubber.complex_modulus, rubber.loss_factor, rubber.tan_delta):
+        with pytest.warns(BeyondData, match="the modulus at rest, at 0 Hz, of the material leaves the data"):
+            ask(omega)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rubber.complex_modulus(10.0)
+        bd.fit_maxwell(curve(1e-3), n=5, **GIVEN).complex_modulus(omega)
+        bd.Maxwell(G0, G, TAU, **GIVEN).complex_modulus(omega)
+
+
+def test_analyses_that_ask_at_rest_tell_of_it_once_in_their_own_words() -> None:
+    rubber = bd.fit_maxwell(curve(1.0), n=3, **GIVEN)
+    app = bd.Application()
+    app.add("mass", bd.RigidBody(1.0, (1e-3, 1e-3, 1e-3)))
+    app.add("layer", bd.Layer(0.02, 0.024, 0.015, rubber))
+    app.connect("layer.inner", "mass.centre")
+    app.ground("layer.outer")
+    app.load("mass.centre", (0, -5.0, 0, 0, 0, 0))
+    with pytest.warns(BeyondData) as told:
+        eq = bd.equilibrium(app)
+    assert len(told) == 1
+    for ask in (
+        lambda: bd.frequency_response(eq, [0.0, 10.0], inputs=["mass.centre.y"], outputs=["mass.centre.y"]),
+        lambda: bd.Layer(0.02, 0.024, 0.015, rubber).stiffness(),
+    ):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            ask()
+        texts = [str(w.message) for w in caught if w.category is BeyondData]
+        assert len(texts) == 1
+        assert "the modulus at rest" not in texts[0]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", BeyondData)
+        bd.modes(eq)
+        bd.transient(eq, speed=0.0, dt=1e-5, steps=3, record=["mass.centre.y"])

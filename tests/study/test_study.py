@@ -628,6 +628,49 @@ def test_an_unchanged_function_is_sent_without_a_word(tmp_path):
     assert len(list(tmp_path.iterdir())) == 1
 
 
+SEEN: dict[tuple[float, str], float] = {}
+LOG: list[float] = []
+
+
+def remembered(case):
+    key = (case["x"], "square")
+    if key not in SEEN:
+        SEEN[case["x"], "square"] = FACTOR * case["x"] ** 2
+        LOG.append(case["x"])
+    return {"y": SEEN[key]}
+
+
+def test_what_a_function_has_kept_of_its_own_calls_is_no_change_of_it(tmp_path, monkeypatch):
+    """Called once here, its memory is filled; the workers begin with an empty one, and compute the same."""
+    monkeypatch.setitem(remembered.__globals__, "SEEN", {})
+    monkeypatch.setitem(remembered.__globals__, "LOG", [])
+    assert remembered({"x": 3.0}) == {"y": 9.0}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = study.sweep(remembered, [{"x": 2.0}, {"x": 3.0}], store=tmp_path, progress=False)
+    assert [case.values["y"] for case in found] == [4.0, 9.0]
+    assert len(list(tmp_path.iterdir())) == 2
+    # what it only reads counts as before, and so does what it writes where it was not empty at the import
+    monkeypatch.setitem(remembered.__globals__, "FACTOR", 5.0)
+    with pytest.warns(ChangedFunction):
+        study.sweep(remembered, [{"x": 4.0}], progress=False)
+
+
+STATE = {"k": 100.0, "calls": 0}
+
+
+def counting(case):
+    STATE["calls"] += 1
+    return {"y": STATE["k"] * case["x"]}
+
+
+def test_a_setting_beside_what_a_function_writes_is_still_a_setting(monkeypatch):
+    monkeypatch.setitem(counting.__globals__, "STATE", {"k": 500.0, "calls": 0})
+    with pytest.warns(ChangedFunction):
+        found = study.sweep(counting, [{"x": 1.0}], progress=False)
+    assert found[0].values["y"] == 100.0
+
+
 @pytest.mark.parametrize("relative", [20.0, 2.5])
 def test_a_relative_deviation_in_per_cent_is_refused(relative):
     with pytest.raises(ValueError, match=r"LogNormal.relative is .*; is it in per cent\?"):

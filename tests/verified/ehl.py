@@ -54,6 +54,8 @@ CONTACTS = {
 }
 """(bearing, rpm, contact angle in degrees), oil's °C, load N, c0 N s/m of the inner and outer contact."""
 SERIES = 18.4
+REDUCED = (1.15, 1.31)
+"""Least and largest ĉ = c0 um/(E′Rx² √(η0us/E′Rx)) at D = 1, L = 10 and M from 10 to 1000: without an α."""
 
 
 def bearing_contacts() -> list[tuple[str, float, float]]:
@@ -74,6 +76,14 @@ def bearing_contacts() -> list[tuple[str, float, float]]:
             (f"{case}: c0, outer (N s/m)", expected[1], state.damping_outer),
         ]
     return [*found, ("6202-like, 70 °C: c0 of a ball (N s/m)", SERIES, state.damping)]
+
+
+def reduced_damping(M: float, L: float, D: float) -> float:
+    """ĉ of the table, whichever E′, Rx and us stand for M, L and D."""
+    E, Rx, U = 2.2e11, 1e-2, (L / (2.2e-8 * 2.2e11)) ** 4
+    contact, F = PointContact(Rx, Rx / D, E / 2), M * E * Rx**2 * U**0.75
+    c0_um = ehl.lookup(M, L, D).C0 * F / contact.approach(F) * min(contact.semi_axes(F))
+    return float(c0_um / (E * Rx**2 * math.sqrt(U)))
 
 
 def closed_form(least: float = 3.0) -> tuple[float, float, int]:
@@ -153,6 +163,12 @@ def lubricated_contact() -> list[Row]:
         found += rows("§4.3", 3e-3, "what was asked", INDEPENDENT, [(f"{label}: K", K, k.real)])
         found += rows("§4.3", 2e-2, "what was asked", INDEPENDENT, [(f"{label}: C", C, 1.5 * k.imag / Omega)])
     found += rows("§4.3", 5e-2, "what was asked; α is fitted to them", INDEPENDENT, bearing_contacts())
+    reduced = [reduced_damping(float(M), 10.0, 1.0) for M in np.geomspace(10, 1000, 25)]
+    labels = [f"ĉ of D = 1, L = 10, M = 10 … 1000, {extreme}" for extreme in ("least", "largest")]
+    ends = [(min(reduced)), max(reduced)]
+    found += rows(
+        "§4.3", 5e-2, "what was asked of c0", INDEPENDENT, list(zip(labels, REDUCED, ends, strict=True))
+    )
     corrected, bare, count = closed_form()
     found.append(
         Row(

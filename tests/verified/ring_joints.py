@@ -8,8 +8,9 @@ import numpy as np
 
 import bearingdyn as bd
 from bearingdyn.bearing import LooseFit
+from bearingdyn.fem import ring_mesh
 from bearingdyn.material import STEEL
-from bearingdyn.parts import Cylinder, FlexibleRing, Groove, Line, Region, Revolved
+from bearingdyn.parts import Cylinder, FlexibleBore, FlexibleRing, Groove, Line, Region, Revolved, Solid
 from bearingdyn.system import assemble
 from verified.ring_theory import annulus_hoop, annulus_in_bush
 from verified.row import MM, Row
@@ -29,13 +30,22 @@ def _ring() -> FlexibleRing:
 
 def rings_in_bores() -> list[Row]:
     """Give of the race of a ring that sits, closed all round and without friction, in a bush held outside."""
-    ring, half = _ring(), 0.5 * WIDTH
-    bush = Revolved(
+    half = 0.5 * WIDTH
+    revolved = Revolved(
         (Region((SEAT, FOOT), (-half, half), STEEL),),
         {"foot": Cylinder(FOOT)},
         grooves={"bore": Groove(Line((SEAT, -half), (SEAT, half)), SEAT, HIGHEST, z=0.0)},
         refinement=2.0,
     )
+    mesh = ring_mesh((SEAT, FOOT), WIDTH, across=6, along=1, around=48)
+    bore = FlexibleBore("inner", HIGHEST)
+    solid = Solid(mesh, STEEL, {"foot": "outer"}, f_max=0.0, inertia=0, bores={"bore": bore})
+    return [*_in_bush("a bush", revolved), *_in_bush("a bush of bricks", solid)]
+
+
+def _in_bush(what: str, bush: Revolved | Solid) -> list[Row]:
+    """Of one way to make the bush."""
+    ring = _ring()
     app = bd.Application()
     app.add("ring", ring)
     app.add("bush", bush)
@@ -54,7 +64,7 @@ def rings_in_bores() -> list[Row]:
         give = annulus_in_bush(n, STEEL.E, STEEL.nu, INNER, SEAT, FOOT, bed) / (math.pi * INNER * WIDTH)
         found.append(
             Row(
-                f"ring 40/60 mm, without friction in a bush 60/80 mm, race's give of order {n} (m/N)",
+                f"ring 40/60 mm, without friction in {what} 60/80 mm, race's give of order {n} (m/N)",
                 "plane elasticity, Michell, both bodies together",
                 give,
                 float(row @ np.linalg.lstsq(K, row, rcond=1e-15)[0]),

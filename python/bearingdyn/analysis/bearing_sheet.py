@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -154,17 +156,26 @@ def bearing_sheet(
     sources: list[str] = []
     for name, bearing in hung.items():
         T = given["temperature"].get(name, 40.0) if isinstance(temperature, Mapping) else temperature
-        row, doubts = _row(
-            eq, name, bearing, omega, oil, float(T), contamination, reliability, sigma,
-            given["C"].get(name), given["C0"].get(name), given["shoulder"].get(name), friction_model, supply,
-        )  # fmt: skip
+        with _rating_told_once():
+            row, doubts = _row(
+                eq, name, bearing, omega, oil, float(T), contamination, reliability, sigma,
+                given["C"].get(name), given["C0"].get(name), given["shoulder"].get(name), friction_model,
+                supply,
+            )  # fmt: skip
         row["duty_life"] = math.nan
         if phases:
             lives = []
             for k, phase in enumerate(phases):
-                life, doubted = _life_of_phase(
-                    phase, name, oil, contamination, reliability, given["C"].get(name), given["C0"].get(name)
-                )
+                with _rating_told_once():
+                    life, doubted = _life_of_phase(
+                        phase,
+                        name,
+                        oil,
+                        contamination,
+                        reliability,
+                        given["C"].get(name),
+                        given["C0"].get(name),
+                    )
                 lives.append(life)
                 doubts += [f"duty[{k}]: {doubt}" for doubt in doubted]
             known = all(life is not None for life in lives)
@@ -414,6 +425,14 @@ def _life_of_phase(
             return None, [*doubts, doubt]
         life *= found["a_iso"]
     return Phase(share, relative, life), doubts
+
+
+@contextmanager
+def _rating_told_once() -> Iterator[None]:
+    """Keep loads, life and friction silent of a load above the static rating: the sheet tells of it."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the static equivalent load is", BearingWarning)
+        yield
 
 
 def _overloaded(P0: float, C0: float) -> list[str]:

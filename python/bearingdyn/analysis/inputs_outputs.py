@@ -10,6 +10,7 @@ import numpy as np
 
 from bearingdyn.application import COMPONENTS, GROUND, QUANTITIES, Channel, Place
 from bearingdyn.bearing import NET
+from bearingdyn.material import answer_of
 from bearingdyn.system import PartTerm, SpringTerm, System
 from bearingdyn.types import Array, Complex
 
@@ -267,7 +268,7 @@ def _balance(
         if (term.name, place) in moduli:
             sheared += 2.0 * moduli[term.name, place] * np.einsum("k,fki->fi", soft.H[k], x)
             continue
-        G = np.asarray(soft.material.complex_modulus(omega))
+        G = answer_of(soft.material, omega)
         D = D + 2.0 * G[:, None] * soft.H[k]
     force = -np.einsum("fk,fki->fi", D, x) - sheared
     for i, given in enumerate(inputs):

@@ -12,6 +12,7 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.static_balance import HOLD
 from bearingdyn.application import COMPONENTS, Application
 from bearingdyn.checks import one_of
+from bearingdyn.material import answer_of
 from bearingdyn.system import Contacts, System, natural, system_of
 from bearingdyn.types import Array, Complex
 
@@ -63,7 +64,7 @@ class Linear:
         of: dict[int, Complex] = {}
         for layer in self.system.layers:
             if id(layer.material) not in of:
-                of[id(layer.material)] = np.asarray(layer.material.complex_modulus(omega))
+                of[id(layer.material)] = answer_of(layer.material, omega)
         found = np.ones((omega.size, len(self.system.layers)), dtype=np.complex128)
         for k, layer in enumerate(self.system.layers):
             found[:, k] = of[id(layer.material)]

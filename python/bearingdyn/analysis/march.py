@@ -20,6 +20,7 @@ from bearingdyn.analysis.march_state import Beginning, check_state, moved, syste
 from bearingdyn.analysis.recordable_channels import CoreChannel, channel_of
 from bearingdyn.analysis.softening import memory_of, softening_layers
 from bearingdyn.analysis.speed_profile import drive_of
+from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.analysis.step_size import step_error, warn_if_coarse, warn_if_growing
 from bearingdyn.application import Application
 from bearingdyn.bearing import OPEN_SIDE_REMEDY
@@ -153,6 +154,9 @@ class March:
                 "contacts is 'film', and no bearing runs on films; give one BallBearing(..., "
                 "lubrication=OilSupply(...)), or contacts='viscous'"
             )
+        elif contacts == "film" and isinstance(source, Equilibrium):
+            rest = Statics.of(system, "relaxed")
+            x = rest.T @ rest.balance(system.bearings, rest.T.T @ (system.M @ x), contacts)[0]
         if method == "exact":
             drive = _exact_speed(system, drive)
         warn_if_coarse(system, fastest, dt)
@@ -215,7 +219,10 @@ class March:
         """State that moves as the beginning says."""
         x, v = (self.T.T @ self.system.M @ each for each in (beginning.x, beginning.v))
         stress = beginning.stress
-        state = model.state(0.0, x, v, stress)
+        films = None
+        if self.contacts == "film" and beginning.films is not None:
+            films = np.concatenate([each.ravel() for each in beginning.films])
+        state = model.state(0.0, x, v, stress, films)
         if self.method == "newmark":
             return state
         if stress is None:

@@ -29,11 +29,15 @@ class Beginning:
         (n,) in the system's own coordinates.
     stress
         What the branches of the layers bear, layer by layer, branch by branch; None: nothing.
+    films
+        What the films of each bearing that remembers hold, (1 + 2 echoes, Z) each: what is pressed, then of
+        each echo the real and imaginary parts; None: of balls that turn past what stands.
     """
 
     x: Array
     v: Array
     stress: Array | None
+    films: tuple[Array, ...] | None = None
 
 
 def system_hash(system: System, contacts: Contacts = "viscous") -> str:

@@ -17,7 +17,7 @@ from bearingdyn import core
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.application import COMPONENTS, Place
 from bearingdyn.bearing import NoBalance, minimum
-from bearingdyn.system import BearingTerm, Modulus, System
+from bearingdyn.system import BearingTerm, Contacts, Modulus, System
 from bearingdyn.types import Array
 
 # ω², 1/s², of the test spring on free motions: of the order of a rotor's on its bearings, else of no effect
@@ -61,13 +61,14 @@ class Statics:
         return cls(system, T, squares, held, B, T.T @ system.static_load())
 
     def balance(
-        self, bearings: Sequence[BearingTerm], start: Array | None = None
+        self, bearings: Sequence[BearingTerm], start: Array | None = None, contacts: Contacts = "viscous"
     ) -> tuple[Array, dict[str, BearingState]]:
         """Modal coordinates (n,) at rest, and every bearing there.
 
-        Raises ArithmeticError that names the body which found no support.
+        Films that remember stand as viscous ones do under the mean load of the loaded balls, and a little off
+        under others. Raises ArithmeticError that names the body which found no support.
         """
-        kernels = [t.kernel() for t in bearings]
+        kernels = [t.kernel(contacts) for t in bearings]
         sizes = np.cumsum([0, *(len(k.order) for k in kernels)])
         rest = np.zeros(sizes[-1])
 

@@ -11,6 +11,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.driving_periods import rhythms
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.material import answer_of
 from bearingdyn.notice import CoarseStep, GrowingStep, OutsideBand, warn
 from bearingdyn.system import System, natural
 from bearingdyn.types import Array
@@ -66,7 +67,7 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
         with warnings.catch_warnings():
             # all modes of the model are looked at, those far above the march's band too
             warnings.simplefilter("ignore", OutsideBand)
-            loss = np.imag(np.asarray(material.complex_modulus(omega)))
+            loss = np.imag(answer_of(material, omega))
         loss -= omega * getattr(material, "eta0", 0.0)
         decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)
     gain = np.maximum(share, 0.0) * (omega * dt) ** 4 / (48.0 * dt)

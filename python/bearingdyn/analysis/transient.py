@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
@@ -93,7 +94,8 @@ def transient(
         Steps marched before the record begins, so that the ring-down of the start has passed.
     initial
         Displacement (6,) or (3,) of interfaces or outputs at the start, instead of the equilibrium's; or a
-        result of `steady_state` on the same source and at the same speed: the march begins in that motion.
+        result of `steady_state` on the same source and at the same speed: the march begins in that motion,
+        and so does what films remember.
     resume
         Result of an earlier call on the same application; the march continues where it ended, bit for bit.
         Speed, dt and record may differ; where dt, decimate or record do, and where the result was opened
@@ -139,7 +141,8 @@ def transient(
         the answer of `frequency_response` with contacts="film" holds in time, K(ω) and c(ω), at the mean load
         of the loaded balls; under others damping follows the load and the course over frequency stays. Films
         become thinner under load, which makes contacts softer by one part in fifty or so. Of the speed at
-        which they were lubricated, in a run-up too.
+        which they were lubricated, in a run-up too. They begin as films of balls that have always turned past
+        what stands, at the place where they then rest, some nanometres from the equilibrium.
     progress
         True for a bar, False for none, or a function called with (steps done, steps in all); None for a bar
         where standard error is a terminal.
@@ -242,7 +245,10 @@ def transient(
     elif motion is not None:
         from bearingdyn.analysis.steady import beginning
 
-        state = march.begun(model, beginning(source, motion, speed))
+        begun = beginning(source, motion, speed, contacts)
+        if contacts == "film" and isinstance(source, Equilibrium):  # about where its films let it rest
+            begun = replace(begun, x=begun.x + (march.x - source.x))
+        state = march.begun(model, begun)
     else:
         state = march.start(model, places)
     facts = march.facts(record, [unit for _, unit in found])

@@ -205,12 +205,12 @@ class Plan:
             orders = [max(n for _, n, _ in race.series.terms) for race in (ring, bore)]
             raise ValueError(
                 f"fit {name!r}: {joint.ring} moves by orders to {orders[0]} and {joint.bore} to {orders[1]}; "
-                f"make the bore with Groove(…, order={orders[0]})"
+                f"make the bore, a Groove or a FlexibleBore, with order={orders[0]}"
             )
         if not math.isclose(ring.arm, bore.arm, rel_tol=0.01):
             raise ValueError(
                 f"fit {name!r}: {joint.ring} has a radius of {ring.arm:.6g} m and {joint.bore} of "
-                f"{bore.arm:.6g} m; make the bore with Groove(…, arm={ring.arm:.6g})"
+                f"{bore.arm:.6g} m; make the bore with that radius, a Groove with arm={ring.arm:.6g}"
             )
 
     def raceways_used(self) -> set[Place]:

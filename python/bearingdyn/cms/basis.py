@@ -16,7 +16,7 @@ from bearingdyn.cms.full_model import FullModel
 from bearingdyn.cms.reduction_options import check_f_max, check_moduli, check_rounds
 from bearingdyn.cms.viscoelastic import ComplexModulus
 from bearingdyn.fem import factorise, lowest_modes
-from bearingdyn.material import Maxwell
+from bearingdyn.material import Maxwell, answer_of
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
@@ -218,7 +218,7 @@ def modulus_levels(
     low, high = [], []
     for material in materials:
         tau = np.asarray(getattr(material, "tau", ()), dtype=np.float64)
-        G0 = abs(complex(material.complex_modulus(0.0)))
+        G0 = abs(complex(answer_of(material, 0.0)))
         if tau.size == 0:
             if not G0 > 0:
                 raise ValueError(
@@ -313,6 +313,7 @@ def basis_of(
     moduli: Sequence[float] | None = None,
     inertia: int = 1,
     attach: Iterable[str] = (),
+    ports: Any = None,
 ) -> Basis:
     """The basis of a model's reduction.
 
@@ -322,6 +323,8 @@ def basis_of(
         The part's unreduced equations.
     f_max, n_modes, moduli, inertia, attach
         As in `reduce`.
+    ports
+        (p, n) rows, as those of raceways, whose unit loads bring their static shapes too; None: none.
 
     Returns
     -------
@@ -343,7 +346,7 @@ def basis_of(
     faces = list(model.interfaces.values())
     b = np.concatenate([f.dofs for f in faces])
     T = scipy.linalg.block_diag(*[f.T for f in faces])
-    rows = [model.outputs[name] for name in attach]
+    rows = [model.outputs[name] for name in attach] + ([] if ports is None else [ports])
     load = scipy.sparse.vstack(rows).toarray().T if rows else np.zeros((model.n, 0))
 
     extra: list[Array] = []

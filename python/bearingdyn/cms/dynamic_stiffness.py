@@ -11,6 +11,7 @@ import scipy
 
 from bearingdyn.cms.full_model import FullModel
 from bearingdyn.fem import Factors, order_of
+from bearingdyn.material import answer_of
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
@@ -85,7 +86,7 @@ class Dynamics:
         if self._damped:
             weights.append(1j * omega)
         for part in self.model.viscoelastic:
-            weights.append(2.0 * complex(np.asarray(part.material.complex_modulus(omega)).item()))
+            weights.append(2.0 * complex(answer_of(part.material, omega).item()))
         return weights
 
     def _solver(self, weights: Sequence[complex]) -> Any:

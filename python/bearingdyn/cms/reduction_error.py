@@ -16,6 +16,7 @@ from bearingdyn.cms.dynamic_stiffness import Dynamics, Transfer
 from bearingdyn.cms.full_model import FullModel
 from bearingdyn.cms.reduction import project
 from bearingdyn.fem import rigid_transfer
+from bearingdyn.material import answer_of
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
@@ -241,7 +242,7 @@ class _Case:
         inner = self.dynamics.inner
         K = self.model.K
         for part in self.model.viscoelastic:
-            G = np.exp(np.mean([np.log(np.abs(complex(part.material.complex_modulus(w)))) for w in omega]))
+            G = np.exp(np.mean([np.log(np.abs(complex(answer_of(part.material, w)))) for w in omega]))
             K = K + 2.0 * G * part.H
         K, M = K[inner][:, inner], self.model.M[inner][:, inner]
         own = basis.Psi[inner]

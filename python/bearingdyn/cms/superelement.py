@@ -12,6 +12,7 @@ from bearingdyn.cms.raceway import Raceway
 from bearingdyn.cms.radiating_surface import Skin, Surface
 from bearingdyn.cms.round_face import RoundFace
 from bearingdyn.cms.viscoelastic import Viscoelastic
+from bearingdyn.material import answer_of
 from bearingdyn.types import Array, Complex, Index
 
 
@@ -170,5 +171,5 @@ class Superelement:
         """Complex stiffness K + Σ 2 G*(ω) H, (n, n), N/m (paper (20)); ω in rad/s."""
         K = self.K.astype(np.complex128)
         for part in self.viscoelastic:
-            K = K + 2.0 * complex(np.asarray(part.material.complex_modulus(omega)).item()) * part.H
+            K = K + 2.0 * complex(answer_of(part.material, omega).item()) * part.H
         return K

@@ -15,7 +15,7 @@ from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.random_numbers import normals, uniforms
-from bearingdyn.material.reach_of_data import band_told_once, warn_beyond
+from bearingdyn.material.reach_of_data import answer_of, band_told_once, warn_beyond
 from bearingdyn.material.reading import (
     ReadingError,
     StrainSweep,
@@ -70,6 +70,7 @@ __all__ = [
     "Suspect",
     "TabulatedModulus",
     "Yeoh",
+    "answer_of",
     "band_told_once",
     "constant_bulk",
     "doubts",

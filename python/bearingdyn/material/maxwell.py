@@ -292,13 +292,15 @@ class Maxwell(Retunable, Softening, Drawable):
         require(self.payne is not None, "Maxwell.payne", self.payne, "a material without law has no rest")
         return rest_of(self)
 
-    def complex_modulus(self, omega: ArrayLike) -> Complex:
+    def complex_modulus(self, omega: ArrayLike, *, doubt: bool = True) -> Complex:
         """Complex shear modulus G*(ω) = G0 + iωη0 + Σ G_i iωτ_i/(1 + iωτ_i), Pa.
 
         Parameters
         ----------
         omega
             Angular frequency, rad/s, any shape.
+        doubt
+            Warn of rest, ω = 0, where the data do not reach it.
 
         Returns
         -------
@@ -310,6 +312,13 @@ class Maxwell(Retunable, Softening, Drawable):
         ValueError
             If a frequency is not finite.
 
+        Warns
+        -----
+        BeyondData
+            At ω = 0, where the data of a fit, or the band of a model that has one, show no plateau.
+        OutsideBand
+            For other frequencies outside the band.
+
         References
         ----------
         Paper eqs 17-19.
@@ -318,6 +327,8 @@ class Maxwell(Retunable, Softening, Drawable):
         if not np.all(np.isfinite(omega)):
             raise ValueError("omega: every angular frequency must be finite, rad/s")
         self._warn_outside(omega)
+        if doubt and np.any(omega == 0.0):
+            self._warn_of_times(np.array([math.inf]), "the modulus at rest, at 0 Hz,")
         x = omega[..., None] * self.tau
         branch = x / (1 + x * x) * (x + 1j)
         return np.asarray(self.G0 + 1j * omega * self.eta0 + branch @ self.G)

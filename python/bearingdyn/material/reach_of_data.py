@@ -8,9 +8,11 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+
 from bearingdyn.material.low_end import SLACK, LowEnd
 from bearingdyn.notice import BeyondData, OutsideBand, warn
-from bearingdyn.types import Array
+from bearingdyn.types import Array, Complex
 
 
 def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, first: str = "") -> None:
@@ -53,6 +55,13 @@ def warn_beyond(layers: Iterable[tuple[str, Any]], after: float, what: str, firs
     )
 
 
+def answer_of(law: Any, omega: Any) -> Complex:
+    """G*(ω) of a law, Pa, ω rad/s of any shape, for an analysis that itself tells of rest beyond the data."""
+    if hasattr(law, "low_end"):
+        return np.asarray(law.complex_modulus(omega, doubt=False))
+    return np.asarray(law.complex_modulus(omega))
+
+
 def warn_before(material: Any, time: float, what: str) -> None:
     """Warn of a material asked at a time, s, before its data and band begin; zero asks by name for the limit.
 
@@ -92,7 +101,7 @@ def band_told_once(laws: Iterable[Any], omega: Array) -> Iterator[None]:
         Once for each law, with the whole range.
     """
     for law in {id(law): law for law in laws}.values():
-        law.complex_modulus(omega)
+        answer_of(law, omega)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutsideBand)
         yield
@@ -102,7 +111,7 @@ def _numbers(material: Any, after: float) -> str:
     """The value, what the data reach, and the interval."""
     end: LowEnd = material.low_end
     value = (
-        material.complex_modulus(0.0).real
+        float(answer_of(material, 0.0).real)
         if math.isinf(after)
         else float(material.relaxation(after, doubt=False))
     )

@@ -5,6 +5,7 @@ from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.damping_sample import damping_sample
 from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.flexible_bearing import FlexibleBearing
+from bearingdyn.parts.flexible_bore import FlexibleBore
 from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.housing import Feet, Housing
 from bearingdyn.parts.imported import Imported
@@ -38,6 +39,7 @@ __all__ = [
     "EndFace",
     "Feet",
     "FlexibleBearing",
+    "FlexibleBore",
     "FlexibleRing",
     "Groove",
     "HasProfile",

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from bearingdyn.checks import positive, require
-from bearingdyn.material import Elastic, volume_of, warn_beyond
+from bearingdyn.material import Elastic, answer_of, volume_of, warn_beyond
 
 
 def quasi_static(material: Any, omega: float, after: float | None) -> complex:
@@ -29,7 +29,7 @@ def quasi_static(material: Any, omega: float, after: float | None) -> complex:
             "ask for stiffness(after=...) at a time that the data reach, ",
         )
     if after is None:
-        G = complex(material.complex_modulus(omega))
+        G = complex(answer_of(material, omega).item())
     else:
         G = complex(float(material.relaxation(after, doubt=False)))
     if not abs(G) > 1e-12 * getattr(material, "K", 0.0):
@@ -45,4 +45,4 @@ def quasi_static_bulk(material: Any, omega: float, after: float | None) -> compl
     volume = volume_of(material)
     if volume is None:
         return complex(material.K)
-    return complex(volume.complex_modulus(omega) if after is None else float(volume.relaxation(after)))
+    return complex(answer_of(volume, omega).item() if after is None else float(volume.relaxation(after)))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.cms import modulus_levels
-from bearingdyn.material import Elastic, Maxwell
+from bearingdyn.material import Elastic, Maxwell, answer_of
 from bearingdyn.parts.regions import Patch, Region
 
 
@@ -37,5 +37,5 @@ def moduli_at(regions: Sequence[Region | Patch], omega: float) -> list[complex]:
         bare = (
             replace(material, fit=None, band=None, spread=None) if isinstance(material, Maxwell) else material
         )
-        found.append(complex(np.asarray(bare.complex_modulus(omega)).item()))
+        found.append(complex(answer_of(bare, omega).item()))
     return found

@@ -42,6 +42,7 @@ from bearingdyn.fem import (
     rigid_motion,
 )
 from bearingdyn.material import Elastic, constant_bulk, volume_of
+from bearingdyn.parts.flexible_bore import FlexibleBore
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.quasi_static_modulus import quasi_static
 from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
@@ -136,6 +137,8 @@ class Solid:
     inertia
         How many rounds of cms.inertia_shapes follow the static shapes of each modulus. One round serves
         better than many fixed-interface modes; 0 with moduli=(G,) is the paper's basis.
+    bores
+        name -> FlexibleBore, in which a flexible ring may lie (`Application.fit`).
 
     Raises
     ------
@@ -159,6 +162,7 @@ class Solid:
     attach: tuple[str, ...] = ()
     radiating: tuple[str, ...] = ()
     inertia: int = 1
+    bores: Mapping[str, FlexibleBore] = field(default_factory=dict)
 
     __repr__ = short
 
@@ -191,6 +195,14 @@ class Solid:
             if name in self.interfaces:
                 raise ValueError(f"outputs has {name!r}, the name of an interface; choose another")
         _ = self._rows
+        for name, bore in self.bores.items():
+            instance(f"bores[{name!r}]", bore, FlexibleBore, "it must be a bd.FlexibleBore(surface, order)")
+            if name in self.interfaces or name in self.outputs:
+                raise ValueError(f"bores has {name!r}, the name of an interface or output; choose another")
+            try:
+                bore.place(self.mesh)
+            except ValueError as error:
+                raise ValueError(f"bores[{name!r}]: {error}") from error
         for name in self.attach:
             if name not in self.outputs:
                 raise ValueError(f"attach has {name!r}; the outputs are {sorted(self.outputs)}")
@@ -307,6 +319,11 @@ class Solid:
         return self._full_model
 
     @cached_property
+    def _ports(self) -> dict[str, Any]:
+        """Rows of the bores' coefficients."""
+        return {name: bore.rows(self.mesh) for name, bore in self.bores.items()}
+
+    @cached_property
     def _basis(self) -> Basis:
         return basis_of(
             self._full_model,
@@ -315,6 +332,7 @@ class Solid:
             moduli=self.moduli,
             inertia=self.inertia,
             attach=self.attach,
+            ports=scipy.sparse.vstack(list(self._ports.values())) if self.bores else None,
         )
 
     def basis(self) -> Basis:
@@ -336,20 +354,24 @@ class Solid:
             If moduli cannot be chosen for a material.
         """
         element = project(self._full_model, self._basis, damping=self.damping, held=self.held)
-        element = replace(element, faces=self.round_faces())
+        raceways = {
+            name: bore.raceway(self.mesh, np.asarray(self._ports[name] @ self._basis.Psi))
+            for name, bore in self.bores.items()
+        }
+        element = replace(element, raceways=raceways, faces=self.round_faces())
         if not self.radiating:
             return element
         surfaces = {name: self._radiation(name) for name in self.radiating}
         return replace(element, surfaces=surfaces, skin=self._skin())
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
-        """Cylinders at its interfaces, against which an application checks the neighbours."""
+        """Cylinders at its interfaces and bores, against which an application checks the neighbours."""
         p, known = self.mesh.points, {}
         for name, (nodes, reference) in self._faces.items():
             radius = np.hypot(*(p[:, :2] - reference[:2]).T)
             around = self.mesh.elements[np.isin(self.mesh.elements, nodes).sum(axis=1) >= 3]
             known[name] = face_of_nodes(radius[nodes], p[nodes, 2], radius[around], float(reference[2]))
-        return known
+        return known | {name: (bore.face(self.mesh),) for name, bore in self.bores.items()}
 
     def outline(self) -> Outline:
         """The faces of its elements on the boundary, each as triangles around its middle."""

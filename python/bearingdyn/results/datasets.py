@@ -55,7 +55,22 @@ def dataset(
 
 
 def check_dataset(field: str, value: object, holding: Sequence[str], maker: str) -> None:
-    """Check that an argument is a Dataset of results with these variables, made by `maker`."""
+    """Check that an argument is a Dataset of results with these variables, made by `maker`.
+
+    Parameters
+    ----------
+    field, value
+        The argument's name and what was given for it.
+    holding
+        Variables it must have.
+    maker
+        The function whose result it should be, for the message.
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
     good = hasattr(value, "data_vars") and all(name in value for name in holding)  # type: ignore[operator]
     told = value if not hasattr(value, "data_vars") else f"a Dataset of {sorted(map(str, value))}"  # type: ignore[call-overload]
     require(good, field, told, f"it must be the result of `{maker}`, with {', '.join(holding)}")

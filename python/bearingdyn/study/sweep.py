@@ -127,13 +127,14 @@ def sweep(
 
 
 class _Meant(NamedTuple):
-    """The function that was meant, by its fingerprint, and the process that meant it.
+    """The function that was meant, by its fingerprint, by that before its first call, and the process of it.
 
     A function is sent to other processes by its name, and these import its module afresh: what it takes from
     around it may have been changed since.
     """
 
     told: str
+    unused: str
     process: int
 
     def is_this(self, function: Study) -> bool:
@@ -141,9 +142,10 @@ class _Meant(NamedTuple):
         if os.getpid() == self.process:
             return True
         try:
-            return _told_at_first(function) == self.told
+            told = _told_at_first(function)
         except TypeError:  # no hash
-            return fingerprint.loose(function) == self.told
+            told = fingerprint.loose(function)
+        return told in (self.told, self.unused)
 
 
 @functools.lru_cache(maxsize=64)
@@ -206,7 +208,9 @@ def _run(
     try:
         try:
             with _worker_environment():  # a worker may be started with every submission
-                meant = _Meant(fingerprint.loose(function), os.getpid())
+                meant = _Meant(
+                    fingerprint.loose(function), fingerprint.loose(function, forgetful=True), os.getpid()
+                )
                 for index in ahead:
                     futures[pool.submit(_attempt, function, todo[index], meant)] = index
         except BrokenExecutor as broken:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bearingdyn.cms.coupled_blocks import coupled_blocks
+from bearingdyn.cms import coupled_blocks
 from bearingdyn.types import Array
 
 # below this share of the largest (scaled) eigenvalue a matrix has none: rigid motions of a deviatoric one

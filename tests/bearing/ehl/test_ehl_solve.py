@@ -71,6 +71,8 @@ def test_damping_hardly_depends_on_load(solved: ehl.LubricatedContact) -> None:
     [
         ({"us": 0.0}, "us is 0.0; without speed there is no film"),
         ({"us": math.nan}, "us is nan"),
+        ({"us": "3"}, "us is '3'; it must be a finite speed"),
+        ({"grid": 17, "F": 200.0}, r"grid is 17; too coarse .*; give \d+ or more"),
         ({"F": 0.0}, "F is 0.0"),
         ({"temperature": 400.0}, "T is 400.0; outside the viscosity law"),
         ({"contact": 3.0}, "contact is 3.0"),

@@ -18,8 +18,7 @@ GRAZING = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """For gradients: contact force g (n,), N, and tangents K, C (n, n); approach u (Z,) of the balls, m.
-    balls, m."""
+    """For gradients: contact force g (n,), N, and tangents K, C (n, n); approach u (Z,) of the balls, m."""
 
     g: Complex
     K: Complex

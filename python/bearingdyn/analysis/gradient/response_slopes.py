@@ -11,6 +11,7 @@ import numpy as np
 from bearingdyn.analysis.gradient.parameters import Change, modulus_slope
 from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import Linear
+from bearingdyn.material import answer_of
 from bearingdyn.types import Array, Complex, Index
 
 
@@ -106,7 +107,7 @@ class ResponseSlopes:
         w = omega[:, None, None]
         if isinstance(kind, str):
             return {"K": np.ones_like(w), "C": 1j * w, "M": -(w**2)}[kind]
-        modulus = self.state.system.layers[kind].material.complex_modulus(omega)
+        modulus = answer_of(self.state.system.layers[kind].material, omega)
         return 2.0 * np.asarray(modulus)[:, None, None]
 
     def _add_bearings(self, total: Complex, felt: Index, turned: Complex, x: Complex, w: Array) -> None:

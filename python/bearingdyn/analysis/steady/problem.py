@@ -16,7 +16,7 @@ from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
 from bearingdyn.checks import require
-from bearingdyn.material import Maxwell
+from bearingdyn.material import Maxwell, answer_of
 from bearingdyn.system import Contacts, LayerTerm, System, system_of
 from bearingdyn.types import Array, Complex, Index
 
@@ -128,7 +128,7 @@ def _plain(system: System) -> bool:
 
 def rest_modulus(layer: LayerTerm) -> float:
     """G*(0) of a layer's law, Pa, for the mean of a steady state's problem."""
-    return float(layer.material.complex_modulus(0.0).real)
+    return float(answer_of(layer.material, 0.0).real)
 
 
 def check_rest(layer: LayerTerm, system: System) -> None:

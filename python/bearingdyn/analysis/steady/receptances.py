@@ -18,7 +18,7 @@ import numpy as np
 
 from bearingdyn.analysis.linearised import Linear
 from bearingdyn.analysis.steady.layer_lines import SoftLayers, soft_layers
-from bearingdyn.material import Maxwell
+from bearingdyn.material import Maxwell, answer_of
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
@@ -86,13 +86,11 @@ class Poles:
 
 def dynamic_stiffness(block: System, omega: Array, speed: float) -> Complex:
     """Receptances' inverse, the dynamic stiffness D (f, n, n) of a system without its bearings."""
-    D = (
-        (block.K + speed * block.N)
-        + 1j * omega[:, None, None] * (block.C + speed * block.G)
-        - omega[:, None, None] ** 2 * block.M
-    )
+    still, moving = block.K + speed * block.N, block.C + speed * block.G
+    w = 1j * omega[:, None, None]
+    D = np.asarray(still + w * moving + w**2 * block.M, dtype=np.complex128)
     for term in block.layers:
-        G = np.asarray(term.material.complex_modulus(omega))
+        G = answer_of(term.material, omega)
         D += 2.0 * G[:, None, None] * (term.L @ term.L.T)
     return np.asarray(D)
 
@@ -225,9 +223,7 @@ class Receptances:
     def _at_rest(self) -> Array:
         """D (n, n) at 0 Hz with the reference on, and springs on free motions that no bearing feels."""
         linear = Linear(self.system, *self._bearings)
-        moduli = np.array(
-            [np.asarray(t.material.complex_modulus(np.zeros(1)))[0] for t in self.system.layers]
-        )
+        moduli = np.array([answer_of(t.material, 0.0).item() for t in self.system.layers])
         held = linear.held_at_rest(moduli, np.vstack([np.zeros(self.system.n), self.B]))
         K = held.K + self.B.T @ self.K @ self.B
         for layer, G in zip(self.system.layers, moduli.real, strict=True):

@@ -168,8 +168,13 @@ def steady_state(
         balance, found, left = _found(problem, speed, harmonics, subharmonic, start, tolerance)
         state = stability_of(problem, balance, found) if stability and found.converged else None
         several = len(problem.bases.bases) > 1
-        asked = {"harmonics": harmonics or (SEVERAL if several else HARMONICS), "subharmonic": subharmonic}
-        result = _dataset(problem, balance, found, record, channels, state, {**asked, "lines_left": left})
+        asked: dict[str, float | str] = {
+            "harmonics": harmonics or (SEVERAL if several else HARMONICS),
+            "subharmonic": subharmonic,
+            "lines_left": left,
+            **({} if contacts == "viscous" else {"contacts": contacts}),
+        }
+        result = _dataset(problem, balance, found, record, channels, state, asked)
         moved = Motion(balance, found).x
     if not found.converged:
         raise _failed(problem, balance, found, result)
@@ -246,7 +251,7 @@ def _dataset(
     record: Sequence[str],
     channels: Sequence[tuple[tuple[int, object, int, int], str]],
     state: Stability | None,
-    attrs: dict[str, float],
+    attrs: dict[str, float | str],
 ) -> xarray.Dataset:
     from bearingdyn.results import dataset, inputs_of
 

@@ -17,7 +17,7 @@ from bearingdyn.bearing.ehl.steady_film import Steady, steady
 from bearingdyn.bearing.ehl.table_lookup import Lookup, lookup
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.lubricant import Lubricant
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import number, positive, require
 from bearingdyn.types import Array, Complex
 
 _OFF = 0.1  # where a viscous damping no longer describes the contact
@@ -233,7 +233,7 @@ def _checked(
     wider = f"it must not exceed Ry = {contact.Ry!r} m: the film is solved for rolling across the long axis"
     require(contact.Rx <= contact.Ry, "contact.Rx", contact.Rx, wider)
     positive("F", F, "the contact load in N must be positive")
-    require(us != 0, "us", us, "without speed there is no film: give u1 + u2 in m/s")
-    speed = positive("us", abs(us), "u1 + u2 in m/s must be finite and not zero")
+    speed = abs(number("us", us, "it must be a finite speed u1 + u2, in m/s"))
+    require(speed != 0, "us", us, "without speed there is no film: give u1 + u2 in m/s")
     eta0 = lubricant.viscosity(temperature)
     return *scales(contact, F, speed, eta0, lubricant.alpha), speed, eta0

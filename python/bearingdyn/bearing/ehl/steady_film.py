@@ -241,11 +241,15 @@ def steady(
     first = flooding.square((n - 1) // 2**halvings + 1)
     try:
         levels = _cascade(groups, oil, first, halvings, compressed)
-    except NegativeFilm:
+    except ArithmeticError as failure:
         enough = (flooding.inlet + flooding.outlet) / flooding.pitch(0.1, compressed)
         enough = 4 * math.ceil(enough / 4) + 1
+        negative = isinstance(failure, NegativeFilm)
+        if n >= enough and not negative:
+            raise
+        fails = "comes out negative" if negative else "does not converge"
         raise ValueError(
-            f"grid is {n}; too coarse for a film of {compressed:.2g} a²/Rx, which comes out negative; "
+            f"grid is {n}; too coarse for a film of {compressed:.2g} a²/Rx, which {fails}; "
             f"give {max(enough, n + 4)} or more"
         ) from None
     return Steady(groups.M, groups.L, groups.D, levels, extrapolated=False)
