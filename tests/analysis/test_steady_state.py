@@ -29,7 +29,7 @@ from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady import balance
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, FilmDamping, Waviness
-from bearingdyn.material import FractionalZener, Maxwell, Payne, PowerLaw
+from bearingdyn.material import FractionalZener, Maxwell, PowerLaw
 from bearingdyn.notice import CutHarmonics
 from bearingdyn.parts import Layer, RigidBody, Section, Shaft
 from bearingdyn.results import open_result, save
@@ -465,12 +465,6 @@ def with_law(app: Application, law: object) -> System:
     """The system of an application, its layers of another law: an application takes Maxwell models alone."""
     system = assemble(app)
     return replace(system, layers=tuple(replace(t, material=law) for t in system.layers))
-
-
-def test_a_layer_that_softens_is_refused():
-    law = Payne(D=2.0344e6, gamma_c=3.588e-3, m=0.4817, Lm=0.1663e6, gamma_l=3.132e-3)
-    with pytest.raises(ValueError, match=r"layer 'layer' softens with its amplitude.*bd\.transient"):
-        steady_state(rotors.motor(rotors.RUBBER.with_payne(law)), speed=SPEED, record=RECORD)
 
 
 def test_a_law_without_a_modulus_at_rest_is_refused_under_a_dead_load():

@@ -25,7 +25,38 @@ def amplitude() -> list[Row]:
         gap = abs(found - complex(storage, loss))
         cases.append((f"EPDM 70 at {percent:g} % strain, |F + iL| (MPa)", size, size + gap))
     law = rows(SECTION, 1e-4, "to the digits given", INDEPENDENT, cases)
-    return law + (_fit() + _rings() if DATA.exists() else [])
+    return law + _steady() + (_fit() + _rings() if DATA.exists() else [])
+
+
+def _steady() -> list[Row]:
+    """A mass on a ring: the balance of harmonics, and the march, against the frequency response."""
+    rubber = bd.Maxwell(4e6, [6e5, 6e5, 7e5, 8e5], [1e-2, 2e-3, 4e-4, 7e-5], K=2e9, density=1150.0, payne=LAW)
+    place, hertz, size = "mass.centre.z", 260.0, 10.0
+
+    def app() -> bd.Application:
+        made = bd.Application()
+        made.add("mass", bd.RigidBody(mass=0.6, inertia=(1e-3, 1e-3, 1e-3)))
+        made.add("layer", bd.Layer(0.020, 0.024, 0.012, rubber))
+        made.connect("mass.centre", "layer.inner", fits=False)
+        made.ground("layer.outer")
+        return made
+
+    wanted = bd.frequency_response(app(), [hertz], [place], [place], amplitude=size)
+    pulled = app()
+    pulled.load("mass.centre", (0, 0, size, 0, 0, 0), frequency=hertz)
+    found = bd.steady_state(pulled, speed=100.0, record=[place])
+    line = int(abs(found["frequency"].values - hertz).argmin())
+    names = ("mass on a ring at 10 N, 260 Hz: amplitude (µm)", "mass on a ring at 10 N, 260 Hz: strain (%)")
+    response = 1e6 * size * abs(complex(wanted["response"].values[0, 0, 0]))
+    strain = 100 * float(wanted["strain"].values[0, 0, 0])
+    own = 1e6 * abs(complex(found["amplitude"].values[line, 0])), 100 * float(found["strain"][0])
+    return rows(
+        SECTION,
+        1e-9,
+        "balance of harmonics; both are exact but for their iterations",
+        "harmonic response with one strain for the layer, found in another way",
+        [(names[0], response, own[0]), (names[1], strain, own[1])],
+    )
 
 
 def _fit() -> list[Row]:

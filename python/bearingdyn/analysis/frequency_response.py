@@ -15,6 +15,7 @@ from bearingdyn.analysis.linearised import linear
 from bearingdyn.analysis.overload import warn_of_swings
 from bearingdyn.analysis.response_band import response_band
 from bearingdyn.analysis.softening import layer_names, moduli_of, softened, softening_layers, warn_of_strain
+from bearingdyn.analysis.softening_zones import Zones
 from bearingdyn.application import QUANTITIES, RATES, Application
 from bearingdyn.checks import name_list, numbers, one_of, one_speed, positive, require
 from bearingdyn.material import warn_beyond
@@ -53,6 +54,7 @@ def frequency_response(
     speed: float | None = None,
     quantity: str = "displacement",
     amplitude: float | Sequence[float] | Mapping[str, float] | None = None,
+    zones: int | None = None,
     contacts: Contacts = "film",
     progress: Progress | bool | None = None,
     rpm: float | None = None,
@@ -84,6 +86,10 @@ def frequency_response(
         layers with a law of softening (`Maxwell.payne`) answer to it, each input acting alone. One number for
         all inputs, a number by input, or a list of numbers, the levels. None: layers are linear, as at the
         strain of their isotherms.
+    zones
+        With an amplitude: how many zones the section of each softening layer is cut into, each in 8 sectors
+        around the axis and with a strain of its own; three or four resolve a thin layer that moves radially.
+        None: one strain for a layer, the mean that counts for its energy. Of bd.Layer and bd.Revolved.
     contacts
         How lubricated bearings (`BallBearing(lubrication=...)`, or `lubricate`) answer: "film", by the
         stiffness and damping that their films have at each frequency; "viscous", by those of low frequency,
@@ -106,14 +112,16 @@ def frequency_response(
         response (frequency, output, input), complex, per unit of the input. At 0 Hz it is the static
         response, without the free spin of a shaft unless a force drives it. With an amplitude also strain
         (frequency, layer, input), the shear strain amplitude of each layer that softens; with several levels
-        both have the dimension "amplitude" in front. With `uncertainty` also lower, median and upper, real,
-        of the magnitude of the response and of its dimensions.
+        both have the dimension "amplitude" in front. With zones also zone_strain (frequency, zone, input),
+        and strain is then their mean over ln γ, weighed by energy. With `uncertainty` also lower, median and
+        upper, real, of the magnitude of the response and of its dimensions.
 
     Raises
     ------
     ValueError
         For an unknown channel or quantity, a negative frequency, bearings without an equilibrium, a part that
-        would turn although its damping is known at rest only; for an uncertainty where no material has any.
+        would turn although its damping is known at rest only; for an uncertainty where no material has any;
+        for zones without an amplitude, of a part that knows none, or with forces of layers as outputs.
     ArithmeticError
         Where the dynamic stiffness is singular; at 0 Hz it names the motion that a force drives and nothing
         holds, such as the spin of a shaft.
@@ -171,7 +179,8 @@ def frequency_response(
         "input": (list(inputs), ""),
     }
     levels = None if amplitude is None else _levels(amplitude, inputs, state.system)
-    strain = None
+    strain, zone_strain = None, None
+    resolved = None if zones is None else _zones(zones, state.system, wanted, levels is not None)
     # only what passes forces asks for it
     bearings = state.dynamic(omega if any(o.bearings for o in wanted) else omega[:0])
     with told(progress, "frequency") as tell:
@@ -180,7 +189,7 @@ def frequency_response(
             response = recovered(wanted, given, x, omega, speed, power, bearings)
         else:
             drives = [_drive(level, given, omega, power) for level in levels]
-            found = softened(state, omega, force, rows, speed, drives, tell)
+            found = softened(state, omega, force, rows, speed, drives, tell, resolved)
             responses = []
             for drive, one in zip(drives, found, strict=True):
                 size = np.einsum("fii->fi", drive)
@@ -188,7 +197,11 @@ def frequency_response(
                 moduli = moduli_of(state.system, one.modulus)
                 responses.append(recovered(wanted, given, x, omega, speed, power, bearings, moduli))
             response, strain = np.stack(responses), np.stack([one.strain for one in found])
-            warn_of_strain(state.system, strain)
+            if resolved is not None:
+                zone_strain = np.stack([np.asarray(one.zone_strain) for one in found])
+                coords["zone"] = (resolved.names, "")
+            asked = strain if zone_strain is None or resolved is None else resolved.largest(zone_strain)
+            warn_of_strain(state.system, asked)
             if isinstance(source, Equilibrium):
                 swings = np.concatenate(
                     [o.x[:, len(rows) - len(B) :].transpose(0, 2, 1).reshape(-1, len(B)) for o in found]
@@ -201,6 +214,7 @@ def frequency_response(
                 coords["amplitude"] = (levels[:, 0], _amplitude_unit(quantity, given))
             else:
                 response, strain = response[0], strain[0]
+                zone_strain = None if zone_strain is None else zone_strain[0]
 
     band = None
     if uncertainty is not None:
@@ -214,6 +228,7 @@ def frequency_response(
                 speed=speed,
                 quantity=quantity,
                 amplitude=amplitude,
+                zones=zones,
                 contacts=contacts,
                 progress=False,
             )
@@ -234,7 +249,15 @@ def frequency_response(
     if strain is not None:
         over = tuple("layer" if d == "output" else d for d in dims)
         variables["strain"] = (over, strain, "1", "shear strain amplitude of each layer that softens")
-    more: dict[str, Any] = {}
+    if zone_strain is not None:
+        over = tuple("zone" if d == "output" else d for d in dims)
+        variables["zone_strain"] = (
+            over,
+            zone_strain,
+            "1",
+            "shear strain amplitude of each zone of the layers",
+        )
+    more: dict[str, Any] = {} if zones is None else {"zones": int(zones)}
     if band is not None:
         unit = variables["response"][2]
         more |= {"uncertainty": int(uncertainty or 0), "coverage": float(coverage)}
@@ -256,6 +279,21 @@ def frequency_response(
         },
         coords,
     )
+
+
+def _zones(zones: object, system: System, wanted: Sequence[Output], driven: bool) -> Zones:
+    """Zones of the layers that soften; ValueError without an amplitude, and for forces that layers exert."""
+    require(driven, "zones", zones, "zones have strains of their own under an amplitude: give amplitude=...")
+    soft = softening_layers(system)
+    parts = {system.layers[k].part for k in soft}
+    for output in wanted:
+        require(
+            not parts & {term.name for term, _ in output.parts},
+            f"zones with the output {output.name!r}",
+            zones,
+            "the force that a layer in zones exerts is not known; ask the motion of its neighbours",
+        )
+    return Zones.of(system, soft, layer_names(system), zones)
 
 
 def _levels(amplitude: Any, inputs: Sequence[str], system: System) -> Array:

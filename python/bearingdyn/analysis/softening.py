@@ -27,6 +27,7 @@ from bearingdyn.types import Array, Complex, Index
 
 if TYPE_CHECKING:
     from bearingdyn.analysis.linearised import Linear
+    from bearingdyn.analysis.softening_zones import Zones
 
 # below this strain the law is at its limit of small ones to 1e-12
 NO_STRAIN = 1e-10
@@ -53,6 +54,8 @@ class Softened:
         (f, l, c) the strain that counts.
     modulus
         (f, l, c) G* at that strain, Pa.
+    zone_strain
+        (f, q, c) the strain of each zone; None where there are no zones.
     """
 
     x: Complex
@@ -60,6 +63,7 @@ class Softened:
     modulus: Complex
     _linear: _Linear
     _loss: Complex
+    zone_strain: Array | None = None
 
     def each(self) -> Complex:
         """Motions (f, k, i) under each force alone, of unit size, at the moduli of the first case."""
@@ -94,6 +98,7 @@ def softened(
     speed: float,
     drives: Sequence[Complex],
     tell: core.Progress | None = None,
+    zones: Zones | None = None,
 ) -> list[Softened]:
     """Response of layers that soften: motions rows (k, n) under forces (i, n) driven together or alone.
 
@@ -105,6 +110,8 @@ def softened(
         (f,) rad/s.
     drives
         Of each level (f, i, c): how strongly, zero-to-peak and with its phase, each force acts in each case.
+    zones
+        Of the layers, each with a strain of its own; None: one strain for a layer.
 
     Raises
     ------
@@ -124,9 +131,24 @@ def softened(
     for drive in drives:
         y, strain, change, near = _strains(omega, of.R, of.seen @ drive, soft, ranks, near)
         loss = np.repeat(2 * change, ranks, axis=1)  # (f, r, c)
-        moved = of.direct @ drive - np.einsum("fkr,frc->fkc", of.by_layers, loss * y)
-        found.append(Softened(moved, strain, linear + change, of, loss))
+        forces, of_zones = loss * y, None
+        if zones is not None:
+            y, forces, of_zones, strain = _by_zones(zones, omega, of.R, of.seen @ drive, y)
+        moved = of.direct @ drive - np.einsum("fkr,frc->fkc", of.by_layers, forces)
+        found.append(Softened(moved, strain, linear + change, of, loss, of_zones))
     return found
+
+
+def _by_zones(
+    zones: Zones, omega: Array, R: Complex, linear: Complex, y: Complex
+) -> tuple[Complex, Complex, Array, Array]:
+    """Motions and forces (f, r, c), strains of zones (f, q, c) and of layers (f, l, c), begun at y."""
+    count, _, cases = y.shape
+    flat = [np.ascontiguousarray(a.transpose(0, 2, 1)).reshape(count * cases, -1) for a in (linear, y)]
+    found = zones.found(np.repeat(omega, cases), np.repeat(R, cases, axis=0), *flat)
+    moved, forces = (a.reshape(count, cases, -1).transpose(0, 2, 1) for a in found[:2])
+    of_zones, of_layers = (a.reshape(count, cases, -1).transpose(0, 2, 1) for a in found[2:])
+    return moved, forces, of_zones, of_layers
 
 
 def _strains(

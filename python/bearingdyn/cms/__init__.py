@@ -7,7 +7,7 @@ fixed-interface modes (Craig & Bampton, AIAA Journal 6 (1968) 1313-1319) and of 
 """
 
 from bearingdyn.cms.basis import Basis, basis_of, craig_bampton, inertia_shapes, modulus_levels, orthogonalise
-from bearingdyn.cms.coupled_blocks import coupled_blocks
+from bearingdyn.cms.coordinate_coupling import coupled_blocks
 from bearingdyn.cms.dynamic_stiffness import Dynamics, Transfer
 from bearingdyn.cms.full_model import FullModel, RigidInterface
 from bearingdyn.cms.kept_superelement import kept_superelement

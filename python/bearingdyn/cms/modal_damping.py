@@ -6,7 +6,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.cms.coupled_blocks import coupled_blocks
+from bearingdyn.cms.coordinate_coupling import coupled_blocks
 from bearingdyn.cms.reduction_options import check_damping
 from bearingdyn.types import Array
 

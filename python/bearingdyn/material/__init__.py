@@ -1,6 +1,6 @@
 """Materials: elastic ones, and viscoelastic ones from the measurement to the Maxwell model."""
 
-from bearingdyn.material.amplitude import Payne, PayneFit
+from bearingdyn.material.amplitude import Payne, PayneFit, held_at
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.complex_moduli import FractionalZener, PowerLaw, TabulatedModulus
 from bearingdyn.material.dma import DMAData
@@ -78,6 +78,7 @@ __all__ = [
     "fit_maxwell",
     "fit_payne",
     "group_isotherms",
+    "held_at",
     "is_volume",
     "kk_ratio",
     "master_curve",

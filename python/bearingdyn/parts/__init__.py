@@ -24,6 +24,7 @@ from bearingdyn.parts.rigid_body import RigidBody
 from bearingdyn.parts.ring import Ring
 from bearingdyn.parts.ring_compliance import RingCompliance
 from bearingdyn.parts.ring_support import RingBed, RingPoints
+from bearingdyn.parts.rubber_zones import RubberZone
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
 from bearingdyn.parts.specimen import specimen_factor
@@ -65,6 +66,7 @@ __all__ = [
     "RingBed",
     "RingCompliance",
     "RingPoints",
+    "RubberZone",
     "Section",
     "Shaft",
     "Solid",

@@ -23,6 +23,7 @@ from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.regions import Patch, Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
+from bearingdyn.parts.rubber_zones import RubberZone
 from bearingdyn.parts.shape_moduli import shape_moduli
 from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
 from bearingdyn.parts.strain import Strain
@@ -347,6 +348,10 @@ class Layer:
         )
         require(q.shape == (6,), "relative", relative, "it must be (6,): x, y, z, θx, θy, θz")
         return self.body.strain(np.concatenate([np.zeros(6), q]), modulus)
+
+    def zones(self, count: int, rubber: int = 0) -> list[RubberZone]:
+        """Zones of the rubber, in the coordinates of the superelement; see Revolved.zones."""
+        return self.body.zones(count, rubber)
 
     def nominal_strain(self, relative: ArrayLike) -> Array:
         """Nominal strain max |t + θ × ρ| / (r_outer − r_inner) under a relative motion of the interfaces.

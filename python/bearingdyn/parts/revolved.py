@@ -52,6 +52,7 @@ from bearingdyn.parts.revolved_matrices import reduced
 from bearingdyn.parts.revolved_modes import RevolvedModes, modes_of_order
 from bearingdyn.parts.revolved_shapes import ShapeMaker
 from bearingdyn.parts.revolved_strain import strain_of_motion
+from bearingdyn.parts.rubber_zones import RubberZone, rubber_zones
 from bearingdyn.parts.shape_moduli import moduli_at, shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.strain import Strain
@@ -566,6 +567,36 @@ class Revolved:
             damping=self.damping,
             faces=self.round_faces(),
         )
+
+    def zones(self, count: int, rubber: int = 0) -> list[RubberZone]:
+        """Zones of the rubber, in the coordinates of the superelement.
+
+        Parameters
+        ----------
+        count
+            Zones of the section, 1 or more, from where a radial motion strains it least to where most; each
+            is cut into 8 sectors around the axis.
+        rubber
+            Which of the viscoelastic materials, numbered as in the superelement.
+
+        Raises
+        ------
+        ValueError
+            For no zones, and for a body with raceways or one that is squeezed.
+        """
+        count = whole("count", count, 1)
+        require(not self.grooves, "grooves", sorted(self.grooves), "the zones of such a body are not known")
+        require(self.prestress is None, "prestress", "there", "the zones of a squeezed body are not known")
+        elements = soft_elements(self.mesh, self.regions, rubber)
+        require(elements.size > 0, "rubber", rubber, "there is no such viscoelastic material in the body")
+        if (count, rubber) not in self._zones:
+            placed = list(self._placed())
+            self._zones[count, rubber] = rubber_zones(self.mesh, elements, placed, self._size, count)
+        return self._zones[count, rubber]
+
+    @cached_property
+    def _zones(self) -> dict[tuple[int, int], list[RubberZone]]:
+        return {}
 
     def strain_field(self, motion: ArrayLike, modulus: float | None = None) -> tuple[Array, Array]:
         """Shear strain amplitude γ = √(2 e:e) of the rubber under motions of the interfaces, point by point.

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.cms import Viscoelastic
+from bearingdyn.cms import Viscoelastic, coupled_blocks
 from bearingdyn.system.matrix_factor import factor
 from bearingdyn.system.terms import LayerTerm
 from bearingdyn.types import Array
@@ -33,10 +33,16 @@ def softening_factor(term: Viscoelastic, part: str) -> tuple[Array, Array | None
         )
     if term.concentration is None:
         return L, np.full(L.shape[1], 2.0 / term.volume)
-    # rigid motion stays rigid when scaled, so that χL = L Qᵀ
-    Q = (np.linalg.pinv(L) @ (term.concentration[:, None] * L)).T
-    weights, turn = np.linalg.eigh(Q.T @ Q)
-    return L @ turn, 2.0 / term.volume * np.maximum(weights, 0.0)
+    turned, strain = np.zeros_like(L), np.zeros(L.shape[1])
+    for block in coupled_blocks(term.H):  # which L keeps apart
+        columns = np.flatnonzero((L[block] != 0.0).any(axis=0))
+        own = L[np.ix_(block, columns)]
+        # rigid motion stays rigid when scaled, so that χL = L Qᵀ
+        Q = (np.linalg.pinv(own) @ (term.concentration[block, None] * own)).T
+        weights, turn = np.linalg.eigh(Q.T @ Q)
+        turned[np.ix_(block, columns)] = own @ turn
+        strain[columns] = 2.0 / term.volume * np.maximum(weights, 0.0)
+    return turned, strain
 
 
 def marched_layer(layer: LayerTerm, memory: float | None) -> tuple[Any, ...]:

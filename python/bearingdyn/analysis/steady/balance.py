@@ -18,6 +18,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.analysis.steady.krylov import gmres
+from bearingdyn.analysis.steady.layer_lines import Softened
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines, body_angles, load_lines
 from bearingdyn.system import System
@@ -34,7 +35,7 @@ TANGENT_SAMPLES = 6
 
 @dataclass(frozen=True, eq=False)
 class Pressed:
-    """Balance of a steady motion: what the balls do along it, by bearing, and the sum of it on the lines.
+    """Balance of a steady motion: what balls and softening layers do along it, and their forces on the lines.
 
     Parameters
     ----------
@@ -43,13 +44,16 @@ class Pressed:
     g
         Force on all coefficients (L, m).
     K, C
-        Mean tangents (m, m), block-diagonal.
+        Mean tangents (m, m), block-diagonal, of the bearings.
+    softened
+        What the layers do that soften.
     """
 
     bearings: tuple[core.Along, ...]
     g: Complex
     K: Array
     C: Array
+    softened: Softened
 
     def without_tangents(self) -> Pressed:
         """The same, to be kept of many motions: the bearings' tangents sample by sample are most of it."""
@@ -71,6 +75,8 @@ class Balance:
         Of the shaft, rad/s.
     rows
         (k, n) motions that are asked for beside the bearings' own.
+    standing
+        (k,) of layers that soften their coordinates where they stand still.
     """
 
     system: System
@@ -79,6 +85,7 @@ class Balance:
     lines: Lines
     speed: float
     rows: Array | None = None
+    standing: Array = field(default_factory=lambda: np.zeros(0))
 
     @cached_property
     def omega(self) -> Array:
@@ -173,7 +180,7 @@ class Balance:
         return np.asarray(1j * self.omega[:, None] * z)
 
     def press(self, z: Complex, *, tangents: bool = True, lines: Lines | None = None) -> Pressed:
-        """What the balls do along the motion z (L, m)."""
+        """What balls and softening layers do along the motion z (L, m)."""
         lines = lines or self.lines
         signal = lines.signals(np.hstack([z, self.rates(z)]))
         m = z.shape[1]
@@ -195,7 +202,11 @@ class Balance:
             if tangents:
                 K[own, own], C[own, own] = along.K.mean(axis=0), along.C.mean(axis=0)
             found.append(along)
-        return Pressed(tuple(found), lines.amplitudes(g), K, C)
+        force = lines.amplitudes(g)
+        of_layers = self.receptances.of_layers
+        softened = self.receptances.soft.along(z[:, of_layers], self.omega, self.standing)
+        force[:, of_layers] = softened.change * z[:, of_layers] + softened.lasting
+        return Pressed(tuple(found), force, K, C, softened)
 
     def excess(self, z: Complex, g: Complex) -> Complex:
         """h (L, m): the balls' force less the reference's."""
@@ -238,6 +249,7 @@ class Linearised:
     balance: Balance
     lines: Lines
     tangents: tuple[Array, ...]
+    softened: Softened
     inverse: Complex = field(repr=False)
     R: Complex = field(repr=False)
 
@@ -247,6 +259,8 @@ class Linearised:
         omega = balance.omega[:, None, None]
         off = (pressed.K - reference.K) + 1j * omega * (pressed.C - reference.C)
         m = len(reference.K)
+        each = np.arange(m)[reference.of_layers]
+        off[:, each, each] += pressed.softened.change
         P = np.eye(m) + balance.R @ off
         inverse = np.linalg.inv(P)
         tangents = tuple(
@@ -255,7 +269,8 @@ class Linearised:
             for own, a in zip(balance.slots, pressed.bearings, strict=True)
         )
         # P⁻¹ (I + R (T − Z)) = I + P⁻¹ R (T − T̄)
-        return cls(balance, lines, tangents, np.asarray(inverse), np.asarray(inverse @ balance.R))
+        inverse_R = np.asarray(inverse @ balance.R)
+        return cls(balance, lines, tangents, pressed.softened, np.asarray(inverse), inverse_R)
 
     def forced(self, z: Complex) -> Complex:
         """What the tangents less their mean make of a change z (L, m)."""
@@ -266,7 +281,10 @@ class Linearised:
         for own, T in zip(b.slots, self.tangents, strict=True):
             both = np.concatenate([signal[:, own], signal[:, m + own.start : m + own.stop]], axis=1)
             g[:, own] = np.einsum("nij,nj->ni", T, both)
-        return self.lines.amplitudes(g)
+        force = self.lines.amplitudes(g)
+        of_layers = b.receptances.of_layers
+        force[:, of_layers] = self.softened.forced(z[:, of_layers])
+        return force
 
     def product(self, vector: Array) -> Array:
         """P⁻¹ J times a vector."""

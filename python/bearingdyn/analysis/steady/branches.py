@@ -14,6 +14,7 @@ from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
 from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, follow, locate
 from bearingdyn.analysis.steady.event_accuracy import once
+from bearingdyn.analysis.steady.layer_lines import Softened, frozen
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.stability import (
     FirstOrder,
@@ -136,20 +137,28 @@ class Task:
     def stability(self, balance: Balance, z: Complex, passages: int, fine: int = 1) -> Floquet:
         """Multipliers of a motion that repeats after so many passages."""
         base = abs(float(balance.bases.frequencies(balance.speed)[0]))
+        lines = balance.lines
+        count = max(SAMPLES * passages, PER_LINE * lines.count) * fine
+        pressed = balance.press(z, lines=Lines(lines.index, lines.steps, count))
+        m = len(balance.system.B)
+        K = pooled([a.K for a in pressed.bearings], m)
+        C = pooled([a.C for a in pressed.bearings], m)
+        model = self.model(balance, pressed.softened, base)
+        return floquet(model, balance.speed, 2 * np.pi / base, K, C)
+
+    def model(self, balance: Balance, softened: Softened, base: float) -> FirstOrder:
+        """The structure in first order, for stability; kept where no layer softens, else at its amplitude."""
         band = band_of(float(np.abs(balance.omega).max()))
+        fastest = 2.0 ** (band / 2)
+        hertz = (base / 60, fastest / 6)
+        if softened.strain.size:
+            return FirstOrder.of(frozen(balance.system, softened, hertz), fastest, hertz)
         key = (id(balance.system), band)
         if key not in self.models:
             if len(self.models) > MODELS:
                 self.models.clear()
-            fastest = 2.0 ** (band / 2)
-            self.models[key] = FirstOrder.of(balance.system, fastest, (base / 60, fastest / 6))
-        lines = balance.lines
-        count = max(SAMPLES * passages, PER_LINE * lines.count) * fine
-        pressed = balance.press(z, lines=Lines(lines.index, lines.steps, count))
-        m = z.shape[1]
-        K = pooled([a.K for a in pressed.bearings], m)
-        C = pooled([a.C for a in pressed.bearings], m)
-        return floquet(self.models[key], balance.speed, 2 * np.pi / base, K, C)
+            self.models[key] = FirstOrder.of(balance.system, fastest, hertz)
+        return self.models[key]
 
 
 # balances of a curve that are kept: what they have answered is asked again
@@ -315,6 +324,8 @@ class Tracer:
         direction = task.stability(balance, flip.point.z, self.passages, FINER).antiperiodic(tracer.lines)
         if direction is None:
             return None
+        # of layers that soften it is left to the corrector
+        direction = np.pad(direction, ((0, 0), (0, flip.point.z.shape[1] - direction.shape[1])))
         z = self.lines.moved(flip.point.z, tracer.lines, 2)
         size = BEGIN * float(np.linalg.norm(flip.point.z[1:])) / max(float(np.linalg.norm(direction)), 1e-300)
         grown = curve_of(task, tracer.lines, replace(_found(flip.point), z=z), twice)

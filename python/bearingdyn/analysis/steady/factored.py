@@ -48,6 +48,7 @@ def jacobian(balance: Balance, pressed: Pressed) -> Array:
         for part, out in ((straight, linear), (turned, mirrored)):
             side = part.transpose(0, 2, 1, 3).reshape(count, n, count * n)
             out[:, :, :, own] += (R[:, :, own] @ side).reshape(count, m, count, n)
+    _soften(balance, pressed, linear, mirrored)
     each = np.arange(count * m)
     linear.reshape(count * m, count * m)[each, each] += 1.0
     J = np.empty((count, m, 2, count, m, 2))
@@ -60,6 +61,18 @@ def jacobian(balance: Balance, pressed: Pressed) -> Array:
     J[:, :, :, 0, :, 1] = 0.0
     J[0, :, 1, 0, :, 1] = np.eye(m)
     return J.reshape(2 * count * m, 2 * count * m)
+
+
+def _soften(balance: Balance, pressed: Pressed, linear: Complex, mirrored: Complex) -> None:
+    """Adds what layers that soften do to the parts (L, m, L, m) of a derivative to be factored."""
+    own, softened, R = balance.receptances.of_layers, pressed.softened, balance.R
+    at = np.arange(len(R))
+    linear[at, :, at, own] += R[:, :, own] * softened.change[:, None]
+    for by, of in zip(softened.by, softened.of, strict=True):
+        # Re conj(of) dy is half of it and half of its conjugate
+        moved = 0.5 * np.einsum("lmk,lk->lm", R[:, :, own], by)
+        linear[:, :, :, own] += moved[:, :, None, None] * of.conj()
+        mirrored[:, :, :, own] += moved[:, :, None, None] * of
 
 
 @dataclass(frozen=True, eq=False)

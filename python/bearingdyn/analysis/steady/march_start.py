@@ -9,6 +9,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march_state import Beginning
+from bearingdyn.analysis.softening import layer_names
 from bearingdyn.analysis.steady.balance import Balance, Found
 from bearingdyn.analysis.steady.choosing import candidates, lattice
 from bearingdyn.analysis.steady.motion import Motion
@@ -33,7 +34,7 @@ def beginning(
     Raises
     ------
     ValueError
-        For the result of another speed, or of other bearings.
+        For the result of another speed, of other bearings, or of layers that soften.
     """
     require(
         speed == result.attrs.get("speed"),
@@ -44,6 +45,11 @@ def beginning(
     theirs: Contacts = result.attrs.get("contacts", "viscous")
     one_of("initial, by its contacts,", theirs, ("film", "viscous"))
     problem = Problem.of(source, int(result.attrs["subharmonic"]), theirs)
+    for name in layer_names(problem.system):
+        raise ValueError(
+            f"initial is a steady motion in which layer {name!r} softens with its amplitude (payne), and a "
+            f"march has no beginning of that; march from the equilibrium, and give it time with settle="
+        )
     told, here = result.attrs.get("inputs_hash"), inputs_of(problem.system.inputs).get("inputs_hash")
     require(
         told == here,

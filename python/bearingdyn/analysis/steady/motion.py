@@ -11,6 +11,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.dissipation import sinks
 from bearingdyn.analysis.recordable_channels import CoreChannel
+from bearingdyn.analysis.softening import softening_layers
 from bearingdyn.analysis.steady.balance import Balance, Found, Pressed
 from bearingdyn.types import Array, Complex
 
@@ -90,6 +91,8 @@ class Motion:
         for c, (kind, row, bearing, index) in enumerate(channels):
             if row is not None and kind in MOTIONS:
                 out[:, c] = (1j * b.omega) ** MOTIONS.index(kind) * (self.x @ row)
+            elif kind == core.CHANNEL_KINDS["strain"]:
+                out[0, c] = self.strain_of(index)
             elif kind == core.CHANNEL_KINDS["force"]:
                 at = b.slots[bearing].start + index
                 out[:, c] = self.found.pressed.g[:, at] + self.films[:, at]
@@ -102,7 +105,7 @@ class Motion:
     def signals(self, channels: Sequence[CoreChannel], amplitudes: Complex, times: Array) -> Array:
         """(t, channels) of the same."""
         out = self.at(amplitudes, times)
-        plain = (*MOTIONS, core.CHANNEL_KINDS["force"])
+        plain = (*MOTIONS, core.CHANNEL_KINDS["force"], core.CHANNEL_KINDS["strain"])
         if any(kind not in plain for kind, *_ in channels):
             pressed = self.pressed_at(times)
             for c, (kind, _, bearing, index) in enumerate(channels):
@@ -145,9 +148,19 @@ class Motion:
         b = self.balance
         term = b.system.layers[layer]
         omega = np.abs(b.omega[1:])
-        loss = np.imag(np.asarray(term.material.complex_modulus(omega)))
+        modulus = np.asarray(term.material.complex_modulus(omega))
+        if term.strain is not None:
+            number = softening_layers(b.system).index(layer)
+            soft = self.found.pressed.softened
+            modulus = modulus + term.material.payne.change(omega, soft.strain[number], soft.mean[number])
+        loss = np.imag(modulus)
         loss = loss - omega * float(getattr(term.material, "eta0", 0.0))
         return float((omega * loss * (np.abs(self.x[1:] @ term.L) ** 2).sum(axis=1)).sum())
+
+    def strain_of(self, layer: int) -> float:
+        """Strain amplitude of a layer that softens, of the system's layers the one of this number."""
+        number = softening_layers(self.balance.system).index(layer)
+        return float(self.found.pressed.softened.strain[number])
 
 
 def _of_balls(kind: int, index: int, along: core.Along) -> Array:

@@ -11,6 +11,7 @@ from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.analysis.steady.balance import Balance
+from bearingdyn.analysis.steady.layer_lines import soft_layers
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
@@ -40,7 +41,7 @@ class Problem:
     system, bases, receptances
         The system, its base frequencies and what its structure answers.
     rest
-        (m,) coefficients of all bearings at rest, m.
+        (m,) coefficients of all bearings at rest, m, and coordinates of the layers that soften.
     """
 
     source: Equilibrium | System
@@ -68,15 +69,15 @@ class Problem:
         """
         system = source.system if isinstance(source, Equilibrium) else system_of("source", source)
         for layer in system.layers:
-            check_linear(layer)
             check_rest(layer, system)
         bases = Bases.of(system, subharmonic)
         if not isinstance(source, Equilibrium) and _plain(system):
             source = equilibrium(source)
         if isinstance(source, Equilibrium):
-            system, states = source.system, source.bearings
+            system, states, x = source.system, source.bearings, source.x
         else:
-            source, states = system, _standing(system)
+            source = system
+            x, states = _standing(system)
         rest = np.concatenate([np.zeros(0), *(s.z for s in states.values())])
         K = np.zeros((len(rest), len(rest)))
         C = np.zeros_like(K)
@@ -87,12 +88,18 @@ class Problem:
             at += len(s.z)
         level = EVEN * float(np.trace(K)) / max(len(rest), 1)
         K = K + max(level, IDLE) * np.eye(len(rest))
+        # beside them the coordinates of layers that soften, which no reference touches
+        layers = soft_layers(system).rows(system.n) @ x
+        more = len(layers)
+        rest = np.concatenate([rest, layers])
+        K, C = np.pad(K, (0, more)), np.pad(C, (0, more))
         balls = source.balls if contacts == "film" and isinstance(source, Equilibrium) else None
         return cls(source, system, bases, Receptances(system, K, C, balls), rest)
 
     def balance(self, lines: Lines, speed: float, rows: Array | None = None) -> Balance:
         """Its equations on chosen lines at a speed, rad/s; rows (k, n) of motions asked for beside them."""
-        return Balance(self.system, self.bases, self.receptances, lines, speed, rows)
+        standing = self.rest[self.receptances.of_layers]
+        return Balance(self.system, self.bases, self.receptances, lines, speed, rows, standing)
 
     def standing(self, lines: Lines) -> Complex:
         """The motion (L, m) that stands still at the equilibrium."""
@@ -124,15 +131,6 @@ def rest_modulus(layer: LayerTerm) -> float:
     return float(answer_of(layer.material, 0.0).real)
 
 
-def check_linear(layer: LayerTerm) -> None:
-    """Refuse in a steady state's problem a law that softens with its own amplitude: ValueError."""
-    if layer.strain is not None:
-        raise ValueError(
-            f"layer {layer.part!r} softens with its amplitude (payne), and a steady motion is balanced with "
-            f"laws that do not; leave payne out of its material, or march with bd.transient"
-        )
-
-
 def check_rest(layer: LayerTerm, system: System) -> None:
     """Refuse in a steady state's problem a law without a modulus at rest under a dead load: ValueError."""
     G = rest_modulus(layer)
@@ -144,7 +142,8 @@ def check_rest(layer: LayerTerm, system: System) -> None:
         )
 
 
-def _standing(system: System) -> dict[str, BearingState]:
-    """Bearings at rest, layers at G*(0) of their own laws."""
+def _standing(system: System) -> tuple[Array, dict[str, BearingState]]:
+    """Coordinates and bearings at rest, layers at G*(0) of their own laws."""
     statics = Statics.of(system, [rest_modulus(layer) for layer in system.layers])
-    return statics.balance(system.bearings)[1]
+    q, states = statics.balance(system.bearings)
+    return statics.T @ q, states

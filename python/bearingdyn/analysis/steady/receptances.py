@@ -17,6 +17,7 @@ import scipy
 from bearingdyn import core
 from bearingdyn.analysis.linearised import Linear
 from bearingdyn.analysis.steady.kept_by_system import kept_by_system
+from bearingdyn.analysis.steady.layer_lines import SoftLayers, soft_layers
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
@@ -55,7 +56,7 @@ class Receptances:
     system
         The system.
     K, C
-        Reference stiffness and damping (m, m) of all bearings' coefficients.
+        Reference stiffness and damping (m, m) of all bearings' coefficients; none of the layers' coordinates.
     balls
         What lubricated balls add by frequency, as `Equilibrium.balls` says; None: nothing.
     """
@@ -67,8 +68,24 @@ class Receptances:
 
     @cached_property
     def B(self) -> Array:
-        """All bearings' coefficients (m, n)."""
-        return self.system.B
+        """All bearings' coefficients, and the coordinates of layers that soften (m, n)."""
+        return np.vstack([self.system.B, self.soft.rows(self.system.n)])
+
+    @property
+    def soft(self) -> SoftLayers:
+        """The layers that soften."""
+        return soft_layers(self.system)
+
+    @property
+    def of_layers(self) -> slice:
+        """The coordinates of layers that soften among all."""
+        return slice(len(self.system.B), len(self.K))
+
+    @cached_property
+    def _bearings(self) -> tuple[Array, Array]:
+        """The reference of the bearings alone."""
+        own = slice(len(self.system.B))
+        return self.K[own, own], self.C[own, own]
 
     def films(self, omega: Array) -> Complex:
         """What lubricated balls add to the tangents (f, m, m); nothing at 0 Hz, where their law holds."""
@@ -77,7 +94,8 @@ class Receptances:
         balls = self.balls and self.balls(omega[moving])
         if balls:
             k, v = balls
-            found[moving] = np.einsum("fb,bk,bl->fkl", k, v, v, optimize=True)
+            own = slice(v.shape[1])
+            found[moving, own, own] = np.einsum("fb,bk,bl->fkl", k, v, v, optimize=True)
         return found
 
     def answer(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
@@ -106,7 +124,7 @@ class Receptances:
         return known[key]
 
     def _found_at_rest(self) -> Array:
-        linear = Linear(self.system, self.K, self.C)
+        linear = Linear(self.system, *self._bearings)
         moduli = linear.moduli(np.zeros(1))[0]
         held = linear.held_at_rest(moduli, np.vstack([np.zeros(self.system.n), self.B]))
         K = held.K + self.B.T @ self.K @ self.B
@@ -117,7 +135,7 @@ class Receptances:
     def _moving(self, omega: Array, speed: float, rows: Array, forces: Complex | Array) -> Complex:
         """The same where no ω is 0; at −ω the conjugate of what unit forces give at ω."""
         backwards, omega = omega < 0.0, np.abs(omega)
-        modulus = Linear(self.system, self.K, self.C).moduli(omega)
+        modulus = Linear(self.system, *self._bearings).moduli(omega)
         balls = self.balls and self.balls(omega)
         found = np.zeros((len(omega), len(rows), len(forces)), dtype=np.complex128)
         for unit, part in ((1.0, np.real(forces)), (1j, np.imag(forces))):
@@ -127,7 +145,7 @@ class Receptances:
                 continue
             driven = part / np.where(size > 0.0, size, 1.0)[:, None]
             own = core.harmonic(
-                kept(self.system).model, omega, modulus, self.K, self.C, driven, rows, speed, None, balls
+                kept(self.system).model, omega, modulus, *self._bearings, driven, rows, speed, None, balls
             )
             own[backwards] = own[backwards].conj()
             found += unit * size * own

@@ -13,6 +13,7 @@ import numpy as np
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.march_state import system_hash
 from bearingdyn.analysis.recordable_channels import channel_of
+from bearingdyn.analysis.softening import layer_names, warn_of_strain
 from bearingdyn.analysis.steady.borne import PUSH, Borne, pushed, warn_of_motions
 from bearingdyn.analysis.steady.branch_files import BranchFiles
 from bearingdyn.analysis.steady.branches import (
@@ -106,9 +107,10 @@ def speed_map(
         the motion repeats; stable (1, 0, or −1 where it was not computed); multiplier, the largest by size;
         growth, 1/s; event ("", "fold", "flip", "neimark-sacker" or "failed"); located_within, how closely, in
         the unit of the speed: of folds that crowd at the tip of a branch, which are kinks of contacts between
-        samples, it is what they span; peak_to_peak and rms (point, channel); cut (point,
-        channel), the amplitude of the lines next above the last; amplitude (point, order, channel), complex,
-        at multiples of the passage, and of its half where periods doubled.
+        samples, it is what they span; strain (point, layer), of layers that soften (`Maxwell.payne`), whose
+        amplitude stands still while a departure is followed; peak_to_peak and rms (point, channel); cut
+        (point, channel), the amplitude of the lines next above the last; amplitude (point, order, channel),
+        complex, at multiples of the passage, and of its half where periods doubled.
 
     Raises
     ------
@@ -122,6 +124,8 @@ def speed_map(
         Where the contact pressure of a ball exceeds 4.2 GPa (ISO 76) in a motion; the worst of each bearing.
     OpenSideWarning
         Where balls of an angular contact bearing are pressed where it has no shoulder, or none onto it.
+    BeyondSweep
+        Where a layer's strain leaves the sweep its law of softening comes from.
     CutHarmonics
         Where the harmonics next above the last would add more than 2 % of a channel's largest line; of the
         point where they would add most.
@@ -186,7 +190,7 @@ def parameter_map(
 
     Warns
     -----
-    BearingWarning, OpenSideWarning, CutHarmonics
+    BearingWarning, OpenSideWarning, BeyondSweep, CutHarmonics
         As `speed_map`.
     """
     require(callable(make), "make", make, "it must be a function of one number that returns an Application")
@@ -421,12 +425,16 @@ def _dataset(
     count = task.harmonics * most + 1
     passing = np.zeros(len(rows))
     amplitude = np.zeros((len(rows), count, len(channels)), dtype=np.complex128)
+    soft = layer_names(problem.system)
+    strain = np.zeros((len(rows), len(soft)))
     swing, rms = np.full((2, len(rows), len(channels)), np.nan)
     for i, (_, passages, mark) in enumerate(rows):
         lines = task.lines(passages)
         own, speed = task.family.at(mark.point.parameter)
         passing[i] = abs(float(own.bases.frequencies(speed)[0])) / (2 * np.pi)
         omega = lines.index[:, 0] * float(own.bases.frequencies(speed)[0]) / passages
+        of = own.receptances.of_layers
+        strain[i] = own.receptances.soft.along(mark.point.z[:, of], omega, own.rest[of]).strain
         moved = mark.moved * (1j * omega[:, None]) ** rate
         signal = lines.signals(moved) if np.isfinite(moved).all() else np.full((1, len(channels)), np.nan)
         swing[i], rms[i] = np.ptp(signal, axis=0), signal.std(axis=0)
@@ -438,6 +446,12 @@ def _dataset(
 
     def each(value: Callable[[Mark], float]) -> Array:
         return np.array([value(m) for _, _, m in rows])
+
+    strains = dict[str, Any]()
+    if soft:
+        warn_of_strain(problem.system, strain[..., None])
+        of_layers = "shear strain amplitude of each layer that softens, of all lines"
+        strains["strain"] = (("point", "layer"), strain, "1", of_layers)
 
     made = dataset(
         {
@@ -485,6 +499,7 @@ def _dataset(
             "rms": (("point", "channel"), rms, "", "about the mean; units in `unit`"),
             "cut": (("point", "channel"), cut, "", "amplitude of the lines next above the last; in `unit`"),
             "amplitude": (("point", "order", "channel"), amplitude, "", "complex amplitudes, zero-to-peak"),
+            **strains,
         },
         {
             "analysis": "speed map" if name == "speed" else "parameter map",
@@ -493,7 +508,11 @@ def _dataset(
             **attrs,
             **inputs_of(problem.system.inputs),
         },
-        {"channel": (list(task.places), ""), "order": (np.arange(count) / most, "1")},
+        {
+            "channel": (list(task.places), ""),
+            "order": (np.arange(count) / most, "1"),
+            **({"layer": (soft, "")} if soft else {}),
+        },
     )
     meaning = {"units": "", "long_name": "unit of each channel"}
     origins = {"units": "", "long_name": "how each branch was found"}

@@ -22,6 +22,7 @@ import numpy as np
 import scipy
 
 from bearingdyn.analysis.steady.balance import Balance, Found
+from bearingdyn.analysis.steady.layer_lines import frozen
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.material import Maxwell
@@ -462,20 +463,24 @@ def stability_of(
     """Stability of a steady motion with one base: its multipliers; None for several bases."""
     if len(problem.bases.bases) != 1 or not problem.system.bearings:
         return None
-    model = model or first_order(problem, balance)
+    model = model or first_order(problem, balance, found)
     lines = balance.lines
     count = max(samples, 2 * (lines.samples // 2))
     pressed = balance.press(found.z, lines=Lines(lines.index, lines.steps, count))
-    m = found.z.shape[1]
+    m = len(problem.system.B)
     period = 2 * np.pi / abs(float(problem.bases.frequencies(balance.speed)[0]))
     K = pooled([a.K for a in pressed.bearings], m)
     C = pooled([a.C for a in pressed.bearings], m)
     return floquet(model, balance.speed, period, K, C, KEPT).stability
 
 
-def first_order(problem: Problem, balance: Balance) -> FirstOrder:
-    """For the stability of one steady motion, the structure in first order up to its highest line."""
+def first_order(problem: Problem, balance: Balance, found: Found) -> FirstOrder:
+    """For the stability of one steady motion, the structure in first order up to its highest line.
+
+    Layers that soften keep the amplitude that they have in the motion.
+    """
     highest = float(np.abs(balance.omega).max())
     lowest = float(np.abs(balance.omega[1:]).min())
     band = (lowest / (20 * np.pi), highest / (2 * np.pi))
-    return FirstOrder.of(problem.system, FOLLOWS_ONE * highest, band, felt=ALL)
+    system = frozen(problem.system, found.pressed.softened, band)
+    return FirstOrder.of(system, FOLLOWS_ONE * highest, band, felt=ALL)

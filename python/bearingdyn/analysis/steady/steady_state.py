@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium, state_of
 from bearingdyn.analysis.recordable_channels import channel_of
+from bearingdyn.analysis.softening import layer_names, warn_of_strain
 from bearingdyn.analysis.steady.balance import Balance, Found, newton
 from bearingdyn.analysis.steady.borne import warn_of_band, warn_of_motions
 from bearingdyn.analysis.steady.choosing import balanced
@@ -50,7 +51,9 @@ def steady_state(
 
     The motion is a sum of lines, Σ Re z_n e^{iω_n t}, whose amplitudes balance at every line; the structure
     answers with G*(ω) of any law, the balls are pressed in time; films of oil have their damping of low
-    frequency, as in a march, unless `contacts` says otherwise. Of two steady motions at one speed it finds
+    low frequency, as in a march, unless `contacts` says otherwise. Layers with a law of softening
+    (`Maxwell.payne`) soften with their own motion: the strain of each, of all its lines without the mean, is
+    found with them, and a lasting load sinks as in a march. Of two steady motions at one speed it finds
     the one near its start; `speed_map` follows them all.
 
     Parameters
@@ -89,11 +92,13 @@ def steady_state(
         (line, base) how often each base frequency stands in it; record (time, channel) over a period, so that
         `contact_statistics`, `orbit` and `spectrum` take the result; cut (channel,) what the harmonics next
         above the last would add; power (part,), W, what each part turns into heat, and supply (source,), W,
-        what feeds it; multipliers (multiplier,), complex; motion (line, coefficient), from which `start` goes
-        on. Attributes: stable (1, 0, or −1 where it was not computed), multiplier (largest size), growth
-        (1/s), loss ("fold", "flip" or "neimark-sacker": what the largest multiplier brings where it leaves
-        the unit circle), residual, energy_balance (what supply and power leave, relative), lines_left (the
-        share of the largest line that was left out, of several bases and up to twice the harmonics asked).
+        what feeds it; multipliers (multiplier,), complex, of departures about which the layers keep the
+        amplitude of the motion; strain (layer,), the shear strain amplitude of each layer that softens;
+        motion (line, coefficient), from which `start` goes on. Attributes: stable (1, 0, or −1 where it was
+        not computed), multiplier (largest size), growth (1/s), loss ("fold", "flip" or "neimark-sacker": what
+        the largest multiplier brings where it leaves the unit circle), residual, energy_balance (what supply
+        and power leave, relative), lines_left (the share of the largest line that was left out, of several
+        bases and up to twice the harmonics asked).
 
     Raises
     ------
@@ -115,6 +120,8 @@ def steady_state(
     CutHarmonics
         Where the harmonics next above the last would add more than 2 % of a channel's largest line; of
         several bases, where a line that would be 2 % of the bearings' largest was left out.
+    BeyondSweep
+        Where a layer's strain leaves the sweep its law of softening comes from.
     OutsideBand
         Where a line that counts in a layer's motion lies outside the band of its material.
 
@@ -171,6 +178,8 @@ def steady_state(
         raise _failed(problem, balance, found, result)
     _warn_of_cut(result, f"the steady motion at {speed:g} rad/s", result.attrs["harmonics"])
     warn_of_band(problem.system, balance.omega, motion.x)
+    if balance.receptances.soft.layers:
+        warn_of_strain(problem.system, found.pressed.softened.strain[:, None])
     warn_of_motions([(balance, found.z, f"in the steady motion at {speed:g} rad/s", found.pressed)])
     return result
 
@@ -254,6 +263,10 @@ def _dataset(
     missed = sum(fed.values()) - sum(lost.values())
     dt = float(times[1] - times[0]) if len(times) > 1 else 0.0
     multipliers = np.zeros(0, dtype=np.complex128) if state is None else state.multipliers
+    strains: dict[str, Any] = {}
+    if balance.receptances.soft.layers:
+        meaning = "shear strain amplitude of each layer that softens, of all lines"
+        strains["strain"] = ("layer", found.pressed.softened.strain, "1", meaning)
     return dataset(
         {
             "amplitude": (
@@ -280,7 +293,13 @@ def _dataset(
             "power": ("part", np.array(list(lost.values())), "W", "mean power turned into heat"),
             "supply": ("source", np.array(list(fed.values())), "W", "mean power that feeds the motion"),
             "multipliers": ("multiplier", multipliers, "1", "Floquet multipliers of a period, largest first"),
-            "motion": (("line", "coefficient"), found.z, "m", "raceway coefficients of all bearings"),
+            "motion": (
+                ("line", "coefficient"),
+                found.z,
+                "m",
+                "coefficients of bearings, and of layers that soften",
+            ),
+            **strains,
         },
         {
             "analysis": "steady state",
@@ -306,5 +325,6 @@ def _dataset(
             "part": (list(lost), ""),
             "source": (list(fed), ""),
             "unit": ("channel", [unit for _, unit in channels], "", "unit of each channel"),
+            **({"layer": (layer_names(problem.system), "")} if strains else {}),
         },
     )

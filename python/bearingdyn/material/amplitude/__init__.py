@@ -2,6 +2,6 @@
 
 from bearingdyn.material.amplitude.law import Payne, Softening
 from bearingdyn.material.amplitude.report import PayneFit
-from bearingdyn.material.amplitude.rest import Rest, rest_of
+from bearingdyn.material.amplitude.rest import Rest, held_at, rest_of
 
-__all__ = ["Payne", "PayneFit", "Rest", "Softening", "rest_of"]
+__all__ = ["Payne", "PayneFit", "Rest", "Softening", "held_at", "rest_of"]

@@ -10,7 +10,7 @@ load: a spring that followed Ω would lose some of that load whenever it weakens
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -58,6 +58,35 @@ class Rest:
         w = np.asarray(omega, dtype=np.float64)
         x = w[..., None] * self.tau
         return np.asarray(self.G0 + 1j * w * self.eta0 + (x / (1 + x * x) * (x + 1j)) @ self.G)
+
+    def lacking(self, rate: float) -> tuple[float, float]:
+        """`lacks`, Pa, at an angular frequency, rad/s: linear between its points over ln ω, held outside."""
+        at = np.linspace(math.log(self.omega[0]), math.log(self.omega[1]), self.lacks.shape[1])
+        storage, loss = (float(np.interp(math.log(rate), at, values)) for values in self.lacks)
+        return storage, loss
+
+
+def held_at(material: Any, gamma: float, rate: float) -> Any:
+    """The Maxwell model that a march has of one with a law of softening, while the amplitude stays.
+
+    Parameters
+    ----------
+    material
+        Maxwell model with a law.
+    gamma, rate
+        Shear strain amplitude, and mean angular frequency, rad/s.
+    """
+    law, rest = material.payne, material.rest
+    storage, loss = rest.lacking(rate)
+    spring, branch = float(law.elastic(gamma)), float(law.loss(gamma)) + loss
+    return replace(
+        material,
+        # the slow branch is a spring to what lasts no longer than the memory
+        G0=rest.G0 + spring + storage,
+        G=np.append(rest.G, 2.0 * branch),
+        tau=np.append(rest.tau, 1.0 / rate),
+        payne=None,
+    )
 
 
 def rest_of(material: Any) -> Rest:

@@ -1,4 +1,4 @@
-"""Which coordinates couple at all."""
+"""Coupling of coordinates: which ones any matrix joins."""
 
 from __future__ import annotations
 
