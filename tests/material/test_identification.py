@@ -34,7 +34,7 @@ from bearingdyn.material import (
     to_ansys,
     to_calculix,
 )
-from bearingdyn.notice import FewerBranches
+from bearingdyn.notice import BeyondData, FewerBranches
 from measured import DATA
 
 SOLID = {"K": 2e9, "density": 1200.0}
@@ -178,11 +178,14 @@ def test_bootstrap_knows_of_isotherms(master):
 
 
 def test_use_outside_the_band_warns_inside_and_at_rest_not(master):
-    """And the band moves with temperature."""
+    """The band moves with temperature; of rest, which lies below every band, the low end speaks instead."""
     rubber = fit_maxwell(master, 5, (1.0, 1e3), **SOLID)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
+        rubber.complex_modulus([2 * np.pi, 2e3 * np.pi])
+    with pytest.warns(BeyondData) as told:
         rubber.complex_modulus([0.0, 2 * np.pi, 2e3 * np.pi])
+    assert [w.category for w in told] == [BeyondData]
     with pytest.warns(OutsideBand, match=r"1e.04 Hz lies outside the band .* 1 to 1000 Hz"):
         rubber.complex_modulus(2e4 * np.pi)
     warm = rubber.at(40.0)

@@ -207,7 +207,13 @@ def test_bad_input_is_named() -> None:
         app.fit("b", LooseFit(1e-5), ring="ring.outside", bore="ground")
     with pytest.raises(ValueError, match="stations"):
         bd.equilibrium(loose(20e-6, stations=12))
-    for wrong in ({"clearance": -1e-6}, {"kappa": 0.0}, {"hold": math.nan}, {"stations": 2}):
+    for wrong in (
+        {"clearance": -1e-6},
+        {"kappa": 0.0},
+        {"hold": math.nan},
+        {"stations": 2},
+        {"stations": 11},
+    ):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             LooseFit(**{"clearance": 1e-5, **wrong})
     with pytest.raises(ValueError, match="terms"):

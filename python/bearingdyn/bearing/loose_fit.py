@@ -30,7 +30,8 @@ class LooseFit:
     clearance
         Bore less outside of the ring, or bore of the ring less shaft, diametral, m.
     stations
-        Number of them; more than twice the highest order of the ring.
+        Number of them, twelve or more, and more than twice the highest order of the ring: between two of n a
+        ring moves 1/cos(π/n) of the gap, 3.5 % too far at twelve, 0.14 % at sixty.
     kappa
         Of one station, N/m^1.5: at the default 1 kN gives 0.1 µm.
     hold
@@ -50,7 +51,12 @@ class LooseFit:
     def __post_init__(self) -> None:
         gap = nonnegative("clearance", self.clearance, "it must be zero or positive, in m (diametral)")
         plausible("mount clearance", "clearance", gap)
-        whole("stations", self.stations, 3, remedy="it must be a whole number, 3 or more")
+        whole(
+            "stations",
+            self.stations,
+            12,
+            remedy="it must be a whole number, 12 or more: between fewer a ring moves farther than its gap",
+        )
         kappa = positive("kappa", self.kappa, "it must be positive and finite, in N/m^1.5")
         plausible("deflection coefficient", "kappa", kappa)
         hold = positive("hold", self.hold, "it must be positive and finite, in N/m")

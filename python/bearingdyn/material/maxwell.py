@@ -75,7 +75,7 @@ class Maxwell(Retunable, Softening, Drawable):
         Vertical shift, by which :meth:`at` changes the moduli too; None for none.
     band
         Lowest and highest frequency, Hz, the model is good for; that of the fit unless given. The modulus
-        outside it comes with a warning (OutsideBand), except at rest.
+        outside it comes with a warning (OutsideBand), at rest with that of the low end.
     fit
         Report of the fit the model comes from.
     low_end
