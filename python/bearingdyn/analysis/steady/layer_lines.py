@@ -18,13 +18,14 @@ and two products of rank one for a layer.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from bearingdyn.analysis.softening import NO_STRAIN, softening_layers
+from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.material import Maxwell, held_at
 from bearingdyn.system import LayerTerm, System
 from bearingdyn.types import Array, Complex
@@ -124,7 +125,7 @@ def borne(material: Any) -> float:
     return float(material.payne.storage(material.payne.gamma_r))
 
 
-@lru_cache(maxsize=8)
+@kept_by_system
 def soft_layers(system: System) -> SoftLayers:
     """The layers of a system that soften in its steady motions; maybe none."""
     return SoftLayers(tuple(system.layers[k] for k in softening_layers(system)))
