@@ -259,7 +259,7 @@ def test_spectrum_marks_the_lines_inside_and_their_names_do_not_touch():
     assert {t.get_text() for t in ax.texts} == set(lines) - {"far"}
     assert ax.get_xlim() == (0.0, 1000.0)
     assert ax.get_xlabel() == "frequency, Hz"
-    assert ax.get_ylabel() == "amplitude, zero-to-peak, m/s"
+    assert ax.get_ylabel() == "amplitude, zero-to-peak, mm/s"
     assert texts_apart(ax)
 
 
