@@ -202,7 +202,10 @@ def test_a_map_has_the_steady_motions_of_softening_layers():
     one = bd.steady_state(app, speed=float(made["speed"][k]), record=RECORD, harmonics=10)
     # a map has fewer samples a harmonic: without the law its lines are as far off, 2e-4
     assert made["strain"].values[k] == pytest.approx(one["strain"].values, rel=5e-4)
-    assert made["multiplier"].values[k] == pytest.approx(one.attrs["multiplier"], rel=1e-4)
+    # a map follows what bearings feel, one state also the block's torsion, which decays slowly
+    sizes = np.abs(one["multipliers"].values)
+    assert np.abs(sizes / made["multiplier"].values[k] - 1).min() < 1e-4
+    assert sizes[0] == pytest.approx(one.attrs["multiplier"], rel=1e-12)
     orders = made["amplitude"].values[k, 1:6]
     assert orders == pytest.approx(one["amplitude"].values[1:6], rel=1e-3)
 

@@ -22,6 +22,7 @@ from bearingdyn.material.dma import DMAData
 from bearingdyn.material.identification import fit_maxwell
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.maxwell import Maxwell
+from bearingdyn.material.reach_of_data import warn_beyond
 from bearingdyn.material.shift_laws import Law, ShiftTable, moved_shift
 from bearingdyn.material.superposition import MasterCurve, one_curve
 from bearingdyn.pictures import picture
@@ -162,8 +163,21 @@ class TabulatedModulus(Softening):
         f, storage, loss = np.exp([[row[cell == c].mean() for c in kinds] for row in logs])
         return cls(f, storage, loss, K, density, master.law, master.T_ref)
 
-    def complex_modulus(self, omega: ArrayLike) -> Complex:
-        """G*(ω), Pa, at ω rad/s, any shape; ValueError outside the table."""
+    def complex_modulus(self, omega: ArrayLike, *, doubt: bool = True) -> Complex:
+        """G*(ω), Pa, at ω rad/s, any shape; ValueError outside the table.
+
+        Parameters
+        ----------
+        omega
+            Angular frequency, rad/s, any shape; at rest the answer is that of the lowest frequency.
+        doubt
+            Warn of rest, which no table reaches.
+
+        Warns
+        -----
+        BeyondData
+            At ω = 0.
+        """
         omega = np.asarray(omega, dtype=np.float64)
         f = np.abs(omega) / (2 * np.pi)
         low, high = self.frequency[0], self.frequency[-1]
@@ -174,6 +188,8 @@ class TabulatedModulus(Softening):
                 f"omega is {omega[~inside].flat[0]:.6g} rad/s; the table reaches from {low:.6g} to "
                 f"{high:.6g} Hz"
             )
+        if doubt and np.any(rest):
+            warn_beyond([("the table", self)], math.inf, "the modulus at rest, at 0 Hz,")
         x = np.log(np.clip(np.where(rest, low, f), low, high))
         storage = np.exp(scipy.interpolate.PchipInterpolator(np.log(self.frequency), np.log(self.storage))(x))
         tan = np.exp(
