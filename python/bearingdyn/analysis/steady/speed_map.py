@@ -105,12 +105,13 @@ def speed_map(
     xarray.Dataset
         Over "point", branch by branch and along each: speed, rad/s; branch, its number; passages, after which
         the motion repeats; stable (1, 0, or −1 where it was not computed); multiplier, the largest by size of
-        what bearings feel; growth, 1/s; event ("", "fold", "flip", "neimark-sacker" or "failed"); located_within, how closely, in
-        the unit of the speed: of folds that crowd at the tip of a branch, which are kinks of contacts between
-        samples, it is what they span; strain (point, layer), of layers that soften (`Maxwell.payne`), whose
-        amplitude stands still while a departure is followed; peak_to_peak and rms (point, channel); cut
-        (point, channel), the amplitude of the lines next above the last; amplitude (point, order, channel),
-        complex, at multiples of the passage, and of its half where periods doubled.
+        what bearings feel; growth, 1/s; event ("", "fold", "flip", "neimark-sacker" or "failed");
+        located_within, how closely, in the unit of the speed: of folds that crowd at the tip of a branch,
+        which are kinks of contacts between samples, it is what they span; strain (point, layer), of layers
+        that soften (`Maxwell.payne`), whose amplitude stands still while a departure is followed;
+        peak_to_peak and rms (point, channel); cut (point, channel), the amplitude of the lines next above the
+        last; amplitude (point, order, channel), complex, at multiples of the passage, and of its half where
+        periods doubled.
 
     Raises
     ------
