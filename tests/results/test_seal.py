@@ -50,6 +50,14 @@ def test_a_tail_of_zeros_is_no_number(saved: Path, tail: int) -> None:
         bd.open_result(saved, "a")
 
 
+def test_a_file_that_has_grown_is_not_read(saved: Path) -> None:
+    """Where a piece stands twice and the seal's mark is damaged too: HDF5 went round in it without end."""
+    content = saved.read_bytes()
+    saved.write_bytes(content[:9000] + content[8000:9000] + content[9000:-30])
+    with pytest.raises(ValueError, match="its content is not what was saved"):
+        bd.open_result(saved, "a")
+
+
 def test_the_seal_is_the_sha256_of_all_before_it(saved: Path) -> None:
     content = saved.read_bytes()
     assert content.endswith(hashlib.sha256(content[: -file_seal.LENGTH]).digest())
