@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import bearingdyn as bd
-from bearingdyn.notice import StrainedLayer, VolumeCounts
+from bearingdyn.notice import BearingWarning, StrainedLayer, VolumeCounts
 
 # all that stand in the catalogue by designation; the pitch decides on shaft and load
 DESIGNATIONS = sorted(bd.catalogue.CATALOGUE)
@@ -84,11 +84,46 @@ def strained(app: bd.Application, state: bd.Equilibrium) -> list[float]:
     return found
 
 
+def leaning(app: bd.Application, state: bd.Equilibrium) -> int:
+    """How many bearings have rings that lean against each other by more than .01 rad."""
+    found = 0
+    for side in state.bearings:
+        tilt = state.displacement(f"shaft.{side}")[3:5]
+        if f"ring_{side}" in app.plan.sources:
+            tilt = tilt - state.displacement(f"ring_{side}.centre")[3:5]
+        found += math.hypot(*tilt) > 0.01
+    return found
+
+
+def overloaded(
+    app: bd.Application, state: bd.Equilibrium, bearing: bd.BallBearing, speed: float
+) -> tuple[bool, bool]:
+    """Whether the unbalance response warns of a ball load, and whether it could exceed 4.2 GPa (ISO 76).
+
+    Could: the heaviest ball at rest, pressed on by all that its rings move, in phase and towards each other.
+    """
+    rings = [
+        *(f"shaft.{side}" for side in state.bearings),
+        *(f"{n}.centre" for n in app.plan.sources if n[:4] == "ring"),
+    ]
+    places = ["shaft.middle.y", *(f"{ring}.{c}" for ring in rings for c in ("x", "y", "z", "θx", "θy"))]
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", BearingWarning)
+        response = bd.unbalance_response(state, [speed], places)["response"].values
+    assert np.isfinite(response).all()
+    arms = np.array([1.0, 1.0, 1.0, bearing.Dpw, bearing.Dpw])
+    swing = (np.abs(response.ravel()[1:]).reshape(len(rings), 5) * arms).sum()
+    rest = max(float(b.loads.max()) for b in state.bearings.values())
+    heaviest = bearing.kappa * ((rest / bearing.kappa) ** (2 / 3) + swing) ** 1.5
+    return bool(told), bearing.pressure(heaviest) > 4.2e9
+
+
 @pytest.mark.parametrize("count", [30, pytest.param(350, marks=pytest.mark.slow)])
 def test_ordinary_applications_neither_fail_nor_warn_without_cause(count):
-    """The one cause: a layer displaced by more than 4 % of its thickness, whose stiffness is 1 % off."""
+    """Causes: a layer displaced by more than 4 % of its thickness, whose stiffness is 1 % off; rings that
+    lean by more than .01 rad; a resonance in which balls are pressed harder than their static rating."""
     rng = np.random.default_rng(350)
-    seconds, pressures, lowest, far = [], [], [], 0
+    seconds, pressures, lowest, far, lean, heavy = [], [], [], 0, 0, 0
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for _ in range(count):
@@ -96,20 +131,25 @@ def test_ordinary_applications_neither_fail_nor_warn_without_cause(count):
             began = time.process_time()
             with warnings.catch_warnings(record=True) as told:
                 warnings.simplefilter("always", StrainedLayer)
+                warnings.simplefilter("always", BearingWarning)
                 state = bd.equilibrium(app)
+            strains = [w for w in told if w.category is StrainedLayer]
             # 6e² = 1 %: the finite-strain stiffness of a bonded ring
-            assert len(told) == sum(6.0 * e**2 > 0.01 for e in strained(app, state))
-            far += bool(told)
+            assert len(strains) == sum(6.0 * e**2 > 0.01 for e in strained(app, state))
+            assert len(told) - len(strains) == leaning(app, state)
+            far += bool(strains)
+            lean += len(told) > len(strains)
             # speed value below 0.5e6 mm/min
             speed = rng.uniform(0.05, 0.5) * 1e6 / (bearing.Dpw * 1e3) * math.pi / 30
             found = bd.modes(state, 8, speed=0.0)["frequency"].values
-            response = bd.unbalance_response(state, [speed], ["shaft.middle.y"])["response"].values
+            told_heavy, can_be = overloaded(app, state, bearing, speed)
+            assert can_be or not told_heavy
+            heavy += told_heavy
             run = bd.transient(
                 state, speed=speed, dt=1e-6, steps=20, record=["shaft.middle.y", "left.loaded"]
             )
             seconds.append(time.process_time() - began)
             assert np.isfinite(found).all()
-            assert np.isfinite(response).all()
             assert np.isfinite(run["record"].values).all()
             heaviest = max(float(b.loads.max()) for b in state.bearings.values())
             pressures.append(bearing.pressure(heaviest))
@@ -117,5 +157,8 @@ def test_ordinary_applications_neither_fail_nor_warn_without_cause(count):
     print(
         f"{count} applications: pressures {min(pressures) / 1e9:.2f} to {max(pressures) / 1e9:.2f} GPa, "
         f"lowest modes {min(lowest):.0f} to {max(lowest):.0f} Hz, "
-        f"{1e3 * statistics.median(seconds):.0f} ms each; {far} with a layer displaced by more than 4 %"
+        f"{1e3 * statistics.median(seconds):.0f} ms each; {far} with a layer displaced by more than 4 %, "
+        f"{lean} with rings that lean, {heavy} with an overload in the unbalance response"
     )
+    # resonances are rare
+    assert heavy <= 0.02 * count
