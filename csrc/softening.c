@@ -10,8 +10,9 @@ enum { A_ONCE, A_TWICE, B_ONCE, B_TWICE, SPRING, BRANCH, RATE, LIFT, RENEWED, SE
 
 /* Shares of E that E and L may be off by in the long run: a third of a percent of E is a thousandth of a layer's
  * modulus, and so is the other of its loss. While the amplitude builds up, for `patience` memories after a renewal, S is
- * factored more seldom. */
+ * factored more seldom; once it has held still for `settled`, what is left of the difference is taken out. */
 static const double spring_off = 3e-3, branch_off = 5e-4, hurry = 4.0, patience = 3.0;
+static const double settled = 6.0, rest = 0.2;
 /* Steps between two looks at them: they are slow. */
 enum { LOOK = 8 };
 /* Periods that a memory is long, where nothing has moved yet. */
@@ -20,7 +21,7 @@ static const double two_pi = 6.283185307179586476925286766559;
 /* Least share of D that stays a spring, where the law is used beyond its range. */
 static const double least_spring = 1e-3;
 
-/* Memories that the slow branch is long: its own loss is then a thousandth of its storage. */
+/* Memories that the slow branch is long: its own loss is then three thousandths of its storage. */
 static const double slow = 10.0;
 
 typedef struct law {
@@ -68,11 +69,13 @@ static law law_at(const bd_softening_data *data, const double *numbers)
     const double loss = data->Lm * v / (1.0 + v);
     const double storage =
         data->D * pow(1.0 + pow(amplitude / data->gamma_c, data->p), -data->m / data->p);
+    const double lift = lacked(data, rate, 0);
     return (law){
         .spring = fmax(storage - loss, least_spring * data->D),
-        .branch = loss + lacked(data, rate, 1),
+        /* of the loss that is lacked the slow branch brings a little */
+        .branch = fmax(loss + lacked(data, rate, 1) - lift / (slow * data->memory * rate), 0.0),
         .rate = rate,
-        .lift = lacked(data, rate, 0),
+        .lift = lift,
     };
 }
 
@@ -158,7 +161,8 @@ bool bd_softening_moved(const bd_model *model, const bd_state *state)
         if (!isfinite(now.spring + now.branch + now.rate + now.lift))
             continue; /* the march will say so */
         const double age = (t - numbers[RENEWED]) / layer->softening->memory;
-        const double slack = (age < patience ? hurry : 1.0) * held.spring;
+        const double share = age < patience ? hurry : age < settled ? 1.0 : rest;
+        const double slack = share * held.spring;
         if (!(fabs(now.spring - held.spring) <= spring_off * slack) ||
             !(fabs(now.branch - held.branch) <= branch_off * slack) ||
             !(fabs(now.lift - held.lift) <= spring_off * slack) ||

@@ -34,6 +34,7 @@ def make() -> None:
     drawn = (
         pictures.drawing,
         pictures.squeezed,
+        pictures.deformed,
         pictures.stiffness,
         pictures.ring,
         pictures.sound,

@@ -34,6 +34,16 @@ def squeezed(path: Path) -> None:
     plt.close(figure)
 
 
+def deformed(path: Path) -> None:
+    """The pad of the guide's page on squeeze: pressed, sheared and turned."""
+    rubber = bd.Maxwell(G0=1e6, G=[1e6, 2e6], tau=[1e-3, 1e-4], K=2e9, density=1150.0)
+    lines = [np.linspace(0.0, size, n + 1) for size, n in ((0.040, 8), (0.012, 4), (0.030, 6))]
+    pad = bd.Solid(bd.box_mesh(*lines, element="hex27"), rubber, {"foot": "y-", "plate": "y+"})
+    ax = bd.plot.squeezed_solid(pad.assembled({"plate": (0.004, -0.0006, 0.001, 0.0, 0.15, 0.0)}))
+    ax.figure.savefig(path, dpi=110)
+    plt.close(ax.figure)
+
+
 def stiffness(path: Path) -> None:
     """The page on how stiff a rubber is: effects by size, and the law of softening with its sweep."""
     text = (Path(__file__).parent / "guide" / "stiffness.md").read_text("utf-8")

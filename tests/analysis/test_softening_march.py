@@ -84,18 +84,20 @@ def test_a_small_vibration_meets_the_unbroken_rubber():
 
 
 @pytest.mark.parametrize(
-    ("tones", "kept", "allowed"),
+    ("tones", "kept"),
     [
-        ([(6.0, 150.0), (6.0, 230.0)], 45, 2e-3),
-        ([(6.0, 230.0), (6.0, 260.0)], 46, 2e-3),
-        ([(20.0, 330.0), (20.0, 400.0)], 66, 2e-3),
-        # on both flanks, where .1 % of stiffness is .2 % of motion: what the rest lacks is added for one
-        # frequency, and between two its storage rises by (2/π) L(γr) ln(f2/f1) more than was measured
-        ([(6.0, 200.0), (6.0, 320.0)], 40, 4e-3),
+        ([(6.0, 150.0), (6.0, 230.0)], 45),
+        ([(6.0, 230.0), (6.0, 260.0)], 46),
+        ([(20.0, 330.0), (20.0, 400.0)], 66),
+        # on both flanks, where .1 % of stiffness is .2 % of motion
+        ([(6.0, 200.0), (6.0, 320.0)], 40),
     ],
 )
-def test_two_tones_share_one_strain(tones, kept, allowed):
-    """Each tone against the formula for several, E + 2 L iω/(iω + Ω), of the strain of both."""
+def test_two_tones_share_one_strain(tones, kept):
+    """Each tone against the formula for several, E + 2 L iω/(iω + Ω), of the strain of both, to .2 %.
+
+    What the rest lacks is added for one frequency, and is off by up to .07 % of the modulus at another.
+    """
     found, run = driven(tones, periods=240, kept=kept, steps=400, memory=10 / tones[0][1])
     gamma = float(run.record.sel(channel="layer.strain").values[-1])
     omega = 2 * np.pi * np.array([hz for _, hz in tones])
@@ -110,7 +112,7 @@ def test_two_tones_share_one_strain(tones, kept, allowed):
 
     for (size, hz), z in zip(tones, found, strict=True):
         linear = bd.frequency_response(mass_on_layer(Met()), [hz], [PLACE], [PLACE])
-        assert abs(z) == pytest.approx(size * abs(linear.response.values[0, 0, 0]), rel=allowed)
+        assert abs(z) == pytest.approx(size * abs(linear.response.values[0, 0, 0]), rel=2e-3)
 
 
 def test_a_lasting_load_is_no_amplitude():

@@ -7,6 +7,7 @@ import pytest
 from tests.analysis.test_softening import LAW, RUBBER, mass_on_layer
 
 import bearingdyn as bd
+import softened_field
 from bearingdyn.notice import BeyondSweep
 
 MASS = 0.6
@@ -90,7 +91,8 @@ def test_zones_resolve_what_one_number_stands_for(thickness, hz):
         return abs(k.real / exact.real - 1), abs((k.imag / k.real) / (exact.imag / exact.real) - 1)
 
     assert off(by_rms)[0] > 0.02
-    # the reference page's .7 % of the energy-logarithmic mean; its loss factor errs twice as much
+    # the reference page's .7 %, which is meant of a field that gives way (the next test); the sum over points
+    # at given shape is itself up to .7 % off in the loss factor
     assert off(one)[0] < 7e-3
     assert off(one)[1] < 1.6e-2
     # what is left: shapes give way where the rubber is soft, which the sum over points does not
@@ -100,6 +102,22 @@ def test_zones_resolve_what_one_number_stands_for(thickness, hz):
     assert run.sizes["zone"] == 32
     least, most = run.zone_strain.values.min(), run.zone_strain.values.max()
     assert least < 0.5 * float(run.strain[0, 0, 0]) < 0.5 * most
+
+
+@pytest.mark.parametrize(("thickness", "rms"), [(2e-3, (0.055, -0.079)), (4e-3, (0.041, -0.048))])
+def test_one_number_against_a_field_that_gives_way(thickness, rms):
+    """The reference page: the rms strain errs by so much in stiffness and loss factor; other means by .7 %.
+
+    Its modulus is not given: at 4.2 MPa both rings show its errors. The energy-weighted modulus has the .7 %
+    in both; the logarithmic mean .4 % in stiffness, and 1 % in the loss factor, which bends over ln γ.
+    """
+    found = softened_field.stiffnesses(thickness)
+    told = {name: softened_field.errors(k, found["field"]) for name, k in found.items()}
+    print({name: [f"{100 * e:+.2f} %" for e in two] for name, two in told.items()})
+    assert told["rms"] == pytest.approx(rms, abs=6e-3)  # half a point: the modulus
+    assert np.abs(told["energy"]).max() < 7.5e-3
+    assert abs(told["logarithmic"][0]) < 7e-3
+    assert abs(told["logarithmic"][1]) < 1e-2
 
 
 def test_zones_add_up_to_the_rubber():

@@ -85,11 +85,14 @@ def test_two_tones_share_one_strain_and_its_mean_frequency():
     assert abs(gamma / alone - 1) > 0.01  # not each tone's own
 
 
-@pytest.mark.parametrize("tones", [[(10.0, 250.0)], [(6.0, 230.0), (6.0, 260.0)]])
-def test_the_march_settles_in_it(tones):
+@pytest.mark.parametrize(
+    ("tones", "kept"),
+    [([(10.0, 250.0)], 46), ([(6.0, 230.0), (6.0, 260.0)], 46), ([(6.0, 200.0), (6.0, 320.0)], 40)],
+)
+def test_the_march_settles_in_it(tones, kept):
     """The issue's .2 %; of the march's running amplitude, its ripple."""
     found = bd.steady_state(pulled(tones), speed=100.0, record=[PLACE])
-    marched, run = driven(tones, periods=240, kept=46, steps=400, memory=10 / tones[0][1])
+    marched, run = driven(tones, periods=240, kept=kept, steps=400, memory=10 / tones[0][1])
     for (_, hz), z in zip(tones, marched, strict=True):
         assert abs(z) == pytest.approx(abs(line(found, hz)), rel=2e-3)
     running = float(run.record.sel(channel="layer.strain").values[-1])

@@ -104,6 +104,9 @@ def good() -> dict[str, dict[str, object]]:
     }  # fmt: skip
 
 
+UNASKED = {"mode_scene", "squeezed_section", "squeezed_solid"}
+
+
 def wrong(good: dict[str, dict[str, object]]) -> list[object]:
     return [
         5, "6205", None, [], {}, {"a": 5}, {5: 5}, np.zeros(3), np.nan, object(), BALL, RUBBER, bd.Layer,
@@ -113,14 +116,15 @@ def wrong(good: dict[str, dict[str, object]]) -> list[object]:
 
 
 def test_each_figure_is_asked(good: dict[str, dict[str, object]]) -> None:
-    """But mode_scene, which needs pyvista, and squeezed_section, whose part takes long to squeeze."""
-    assert {*good} == {*plot.__all__} - {"mode_scene", "squeezed_section"}
+    """But mode_scene, which needs pyvista, and the two whose part takes long to squeeze."""
+    assert {*good} == {*plot.__all__} - UNASKED
     for given in wrong(good):
-        with pytest.raises(ValueError, match="squeezed is "):
-            plot.squeezed_section(given)
+        for draw in (plot.squeezed_section, plot.squeezed_solid):
+            with pytest.raises(ValueError, match="squeezed is "):
+                draw(given)
 
 
-@pytest.mark.parametrize("name", sorted({*plot.__all__} - {"mode_scene", "squeezed_section"}))
+@pytest.mark.parametrize("name", sorted({*plot.__all__} - UNASKED))
 def test_a_wrong_object_is_refused_by_name(name: str, good: dict[str, dict[str, object]]) -> None:
     """Or drawn, where it means something: no AttributeError, KeyError and their like from within."""
     draw, right = getattr(plot, name), good[name]

@@ -7,6 +7,7 @@ import warnings
 import shaker
 
 import bearingdyn as bd
+import softened_field
 from measured import DATA
 from verified.row import INDEPENDENT, Row, rows, to_the_digit
 
@@ -25,7 +26,7 @@ def amplitude() -> list[Row]:
         gap = abs(found - complex(storage, loss))
         cases.append((f"EPDM 70 at {percent:g} % strain, |F + iL| (MPa)", size, size + gap))
     law = rows(SECTION, 1e-4, "to the digits given", INDEPENDENT, cases)
-    return law + _steady() + (_fit() + _rings() if DATA.exists() else [])
+    return law + _steady() + _one_number() + (_fit() + _rings() if DATA.exists() else [])
 
 
 def _steady() -> list[Row]:
@@ -57,6 +58,27 @@ def _steady() -> list[Row]:
         "harmonic response with one strain for the layer, found in another way",
         [(names[0], response, own[0]), (names[1], strain, own[1])],
     )
+
+
+def _one_number() -> list[Row]:
+    """Rings moved radially by 1 % of rms strain: one modulus for all of it over each point's own."""
+    given = {
+        2e-3: ((0.055, -0.079), "2×17 mm"),
+        4e-3: ((0.041, -0.048), "4×17 mm"),
+    }
+    cases, means = [], []
+    for thickness, (rms, name) in given.items():
+        found = softened_field.stiffnesses(thickness)
+        own = {mean: softened_field.errors(k, found["field"]) for mean, k in found.items()}
+        for k, what in enumerate(("stiffness", "loss factor")):
+            case = f"ring {name} radially, one modulus for all over each point's own"
+            cases.append((f"{case}, of the rms strain: {what}", 1 + rms[k], 1 + own["rms"][k]))
+            means.append((f"{case}, by energy: {what}", 1.0, 1 + own["energy"][k]))
+        means.append((f"{case}, of the logarithmic strain: stiffness", 1.0, 1 + own["logarithmic"][0]))
+    return [
+        *rows(SECTION, 7e-3, "half a point; its modulus is not given, 4.2 MPa here", INDEPENDENT, cases),
+        *rows(SECTION, 7.5e-3, "asked for to .7 %", INDEPENDENT, means),
+    ]
 
 
 def _fit() -> list[Row]:

@@ -11,6 +11,7 @@ import numpy as np
 from bearingdyn.analysis.bearing_state import BearingState
 from bearingdyn.analysis.lubricated_balls import averaged, contact_angles, lubricated_balls
 from bearingdyn.analysis.static_balance import Statics, diagonal_blocks
+from bearingdyn.analysis.strained_rubber import warn_of_strained_rubber
 from bearingdyn.application import Application
 from bearingdyn.bearing import (
     OPEN_SIDE_REMEDY,
@@ -23,8 +24,7 @@ from bearingdyn.bearing import (
 )
 from bearingdyn.checks import one_of, positive, require, whole
 from bearingdyn.material import is_volume
-from bearingdyn.notice import StrainedLayer, UnloadedBearing, warn
-from bearingdyn.parts import Layer
+from bearingdyn.notice import UnloadedBearing, warn
 from bearingdyn.pictures import picture
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import BearingTerm, LoadTerm, System, system_of, warn_at_rest
@@ -33,12 +33,6 @@ from bearingdyn.units import takes
 
 PARTED = 1e-9
 """Load, N, below which a ball is not pressed: what a search leaves where nothing pushes, and no weight is."""
-
-
-HARDENING = 2.0
-"""Rise of a bonded layer's secant stiffness across the axis, over (displacement/thickness)²."""
-STRAINED = 0.01
-"""Error of a layer's linear stiffness about a static state that is worth a warning."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +221,8 @@ def equilibrium(
     BeyondData
         Where the data of a layer's material do not speak of the time asked for, and show no plateau.
     StrainedLayer
-        Where a layer is displaced so far across the axis that its linear stiffness is 1 % wrong or more.
+        Where a layer is displaced so far across the axis, or a solid's rubber strained so far, that its
+        linear stiffness is 1 % wrong or more.
 
     References
     ----------
@@ -292,34 +287,8 @@ def equilibrium(
     }
     found = Equilibrium(first, x, mean, state if after is None else "after", after, average)
     if isinstance(app, Application):
-        _warn_of_strained_layers(app, found)
+        warn_of_strained_rubber(app, found.displacement, after)
     return found
-
-
-def _warn_of_strained_layers(app: Application, eq: Equilibrium) -> None:
-    """Warn (StrainedLayer) of layers displaced so far across the axis that their linear stiffness is wrong.
-
-    With e the displacement over the thickness, a layer pushes back 2e² more than linearly, and is 6e² stiffer
-    for a small motion about that state (computed at finite strain for a bonded ring 20/24×12 mm; along the
-    axis it is .06 e², which nobody notices).
-    """
-    for part, source in app.plan.sources.items():
-        if not isinstance(source, Layer):
-            continue
-        e = float(source.eccentricity(eq.displacement(f"{part}.outer") - eq.displacement(f"{part}.inner")))
-        if not HARDENING * 3.0 * e**2 <= STRAINED:
-            own = HARDENING * e**2
-            told = (
-                f"its linear stiffness is about {own:.1%} low for the state itself, and {3 * own:.1%} for a "
-                "small motion about it"
-                if e < 0.5
-                else "its linear stiffness says nothing of such a state: make the layer stiffer, thicker or "
-                "larger, or the load smaller"
-            )
-            warn(
-                f"layer {part!r} is displaced across the axis by {e:.1%} of its thickness here; {told}",
-                StrainedLayer,
-            )
 
 
 def _lubricated(system: System, rest: Statics, angle: float, q: Array | None) -> tuple[System, Array]:

@@ -24,6 +24,7 @@ from bearingdyn.fem.meshes.solid_element import (
     shapes,
 )
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
+from bearingdyn.fem.node_pairs import NodePairs
 from bearingdyn.material import Elastic
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -88,43 +89,25 @@ def assemble_solid(
     SolidMatrices
     """
     chosen = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
-    n = len(mesh.points)
     groups = []
     for kind, of_kind in mesh.groups:
         at = chosen[np.isin(chosen, of_kind)]
         groups += [(kind, mesh.elements[at[s : s + CHUNK], : kind.nodes]) for s in range(0, len(at), CHUNK)]
-    keys = [(nodes[:, :, None] * n + nodes[:, None, :]).ravel() for _, nodes in groups]
-    pairs, where = np.unique(np.concatenate(keys), return_inverse=True)
-    where = where.ravel()
-    size, start = pairs.size, 0
-    mass = np.zeros(size)
-    blocks = np.zeros((2, 3, 3, size))  # volumetric and deviatoric, by axes, over pairs of nodes
-    for kind, nodes in groups:
-        k = kind.nodes
-        place = where[start : start + nodes.size * k]
-        start += place.size
+    pairs = NodePairs.of([nodes for _, nodes in groups], len(mesh.points))
+    mass = np.zeros(pairs.size)
+    volumetric, deviatoric = pairs.zeros(), pairs.zeros()
+    for place, (kind, nodes) in enumerate(groups):
         m, *stiff = _element_matrices(kind, mesh.points[nodes], incompressible)
-        mass += np.bincount(place, m.ravel(), size)
-        for sums, A in zip(blocks, stiff, strict=True):
-            by_axes = A.reshape(-1, k, 3, k, 3).transpose(2, 4, 0, 1, 3)
-            for a in range(3):
-                for b in range(3):
-                    sums[a, b] += np.bincount(place, by_axes[a, b].ravel(), size)
-
-    row, column = pairs // n, pairs % n
-    indptr = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=n))])
-
-    def block_matrix(values: Array) -> scipy.sparse.csr_matrix:
-        data = np.ascontiguousarray(values.transpose(2, 0, 1))
-        return scipy.sparse.bsr_matrix((data, column, indptr), shape=(3 * n, 3 * n)).tocsr()
-
-    masses = block_matrix(mass * np.eye(3)[:, :, None])
+        mass += np.bincount(pairs.where[place], m.ravel(), pairs.size)
+        for sums, A in zip((volumetric, deviatoric), stiff, strict=True):
+            pairs.add(sums, place, A)
+    masses = pairs.matrix(mass * np.eye(3)[:, :, None])
     masses.eliminate_zeros()
     return SolidMatrices(
         points=mesh.points,
         mass=masses,
-        volumetric=block_matrix(blocks[0]),
-        deviatoric=block_matrix(blocks[1]),
+        volumetric=pairs.matrix(volumetric),
+        deviatoric=pairs.matrix(deviatoric),
     )
 
 
@@ -132,7 +115,7 @@ def _element_matrices(kind: SolidElement, p: Array, incompressible: bool) -> tup
     """Mass (m, k, k) of a component, volumetric and deviatoric stiffness (m, 3k, 3k); p: (m, k, 3) nodes."""
     X, w = points(kind)
     N = shapes(kind, X)[0]
-    D, dV = _gradients(kind, p, X, w)
+    D, dV = gradients(kind, p, X, w)
     mass = np.einsum("mq,qi,qj->mij", dV, N, N, optimize=True)
     bubbled = incompressible and kind in BUBBLES
     if bubbled:
@@ -147,10 +130,10 @@ def _element_matrices(kind: SolidElement, p: Array, incompressible: bool) -> tup
     deviatoric = deviatoric.reshape(count, 3 * k, 3 * k)
     volumetric = full.reshape(count, 3 * k, 3 * k)
     if incompressible and kind is HEX20:
-        D, dV = _gradients(kind, p, *points(kind, reduced=True))
+        D, dV = gradients(kind, p, *points(kind, reduced=True))
         volumetric = (D * dV[:, None, :]) @ D.transpose(0, 2, 1)
     elif incompressible:
-        basis = _pressures(kind, p, X, N, dV)  # (m, q, modes)
+        basis = pressure_modes(kind, p, X, N, dV)  # (m, q, modes)
         d = (D * dV[:, None, :]) @ basis  # ∫ div N_i p_j
         gram = basis.transpose(0, 2, 1) @ (dV[:, :, None] * basis)
         volumetric = d @ np.linalg.solve(gram, d.transpose(0, 2, 1))
@@ -171,24 +154,40 @@ def _with_bubble(kind: SolidElement, p: Array) -> tuple[Array, Array, Array]:
     Returns
     -------
     D, dV
-        As `_gradients`, the bubble behind the nodes; (m, 3 k + 3, q) and (m, q).
+        As `gradients`, the bubble behind the nodes; (m, 3 k + 3, q) and (m, q).
     follow
         (m, 3 k + 3, 3 k) motions of nodes and bubble by those of the nodes.
     """
-    X, w = points(kind, fine=True)
-    D, dV = _gradients(kind, p, X, w)
-    N, reference = shapes(kind, X)
-    J = np.einsum("mka,qkb->mqab", p, reference, optimize=True)
-    b = np.einsum("qb,mqba->maq", bubble_gradient(kind, X), np.linalg.inv(J), optimize=True)
-    x = N @ p
-    x = (x - (dV[:, None, :] @ x) / dV.sum(axis=1)[:, None, None]) * dV[:, :, None]
+    D, dV, b, x = bubble_gradients(kind, p)
+    b, x = b.transpose(0, 2, 1), x * dV[:, :, None]
     d, d_b = D @ x, b @ x
     carried = -np.linalg.solve(d_b.transpose(0, 2, 1), d.transpose(0, 2, 1))
     unity = np.broadcast_to(np.eye(D.shape[1]), (len(p), D.shape[1], D.shape[1]))
     return np.concatenate([D, b], axis=1), dV, np.concatenate([unity, carried], axis=1)
 
 
-def _gradients(kind: SolidElement, p: Array, X: Array, w: Array) -> tuple[Array, Array]:
+def bubble_gradients(kind: SolidElement, p: Array) -> tuple[Array, Array, Array, Array]:
+    """What an inner bubble of elements with nodes p (m, k, 3) needs, at the finer points of integration.
+
+    Returns
+    -------
+    D, dV
+        As `gradients`; (m, 3 k, q) and (m, q).
+    b
+        (m, q, 3) gradient of the bubble.
+    x
+        (m, q, 3) the points from the middle of their element, in which a linear part is linear.
+    """
+    X, w = points(kind, fine=True)
+    D, dV = gradients(kind, p, X, w)
+    N, reference = shapes(kind, X)
+    J = np.einsum("mka,qkb->mqab", p, reference, optimize=True)
+    b = np.einsum("qb,mqba->mqa", bubble_gradient(kind, X), np.linalg.inv(J), optimize=True)
+    x = N @ p
+    return D, dV, b, x - (dV[:, None, :] @ x) / dV.sum(axis=1)[:, None, None]
+
+
+def gradients(kind: SolidElement, p: Array, X: Array, w: Array) -> tuple[Array, Array]:
     """∂N_i/∂x_a at points X (q, 3), (m, 3 k, q) with 3 i + a the row, and weights times volume (m, q)."""
     reference = shapes(kind, X)[1]  # (q, k, 3)
     J = np.einsum("mka,qkb->mqab", p, reference, optimize=True)
@@ -196,7 +195,7 @@ def _gradients(kind: SolidElement, p: Array, X: Array, w: Array) -> tuple[Array,
     return D.reshape(len(p), len(w), -1).transpose(0, 2, 1), np.linalg.det(J) * w
 
 
-def _pressures(kind: SolidElement, p: Array, X: Array, N: Array, dV: Array) -> Array:
+def pressure_modes(kind: SolidElement, p: Array, X: Array, N: Array, dV: Array) -> Array:
     """Functions that keep the pressure of nearly incompressible elements, (m, q, modes).
 
     1 in 27-node bricks and x, y, z, in the place itself, not on the unit element: there a skewed one would

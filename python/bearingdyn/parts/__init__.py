@@ -27,6 +27,7 @@ from bearingdyn.parts.ring_support import RingBed, RingPoints
 from bearingdyn.parts.rubber_zones import RubberZone
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.parts.solid_prestress import SolidPrestress
 from bearingdyn.parts.specimen import specimen_factor
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.strain import Strain
@@ -70,6 +71,7 @@ __all__ = [
     "Section",
     "Shaft",
     "Solid",
+    "SolidPrestress",
     "Squeezed",
     "Strain",
     "ViscoelasticSolid",

@@ -32,9 +32,10 @@ STABLE = 1e-3  # least modulus of a further change of shape, over the first, tha
 DOUBTFUL = 0.1  # below which the law is to blame where a search for balance ends
 FOLDED = 1e-6  # how far past a rigid face, over the section's size, a free surface is folded over it
 
-FOLD = (
-    "the free surface folds over the edge of {name!r}, where it is bonded; recess the free ends "
-    "(Layer(..., recess=...)), or let the surface slip while it is squeezed (outside='slip', inside='slip')"
+FOLD = "the free surface folds over the edge of {name!r}, where it is bonded; {remedy}"
+RECESS = (
+    "recess the free ends (Layer(..., recess=...)), or let the surface slip while it is squeezed "
+    "(outside='slip', inside='slip')"
 )
 UNSTABLE = (
     "the law is not stable there (its least modulus is {least:.2g} of that at rest, at a stretch of "
@@ -58,6 +59,25 @@ def check_law(law: object) -> Hyperelastic:
 def check_branches(branches: object) -> None:
     """Check which share of a prestress the Maxwell branches see; ValueError for another word."""
     one_of("branches", branches, (CURRENT, SEPARABLE))
+
+
+def constant_volume(materials: Iterable[Any]) -> None:
+    """Check that no material of a body to be prestressed has a bulk modulus that relaxes."""
+    for material in materials:
+        bulk = getattr(material, "bulk", None)
+        remedy = "of a squeezed body the bulk modulus must be constant: give the material without, bulk=None"
+        require(bulk is None, "bulk", bulk, remedy)
+
+
+def unstable(least: float, stretch: float) -> str | None:
+    """Why a prestress is refused whose law is not stable at its largest stretch; None for one that is."""
+    return None if least > STABLE else UNSTABLE.format(least=least, stretch=stretch)
+
+
+def blame_the_law(failure: NoBalance, least: float, stretch: float) -> None:
+    """Say that a search for a prestress ended because of its law, where that has become doubtful."""
+    if least < DOUBTFUL:
+        failure.reason = UNSTABLE.format(least=least, stretch=stretch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -327,9 +347,9 @@ def squeeze(
     inside = np.isin(at, free)
 
     def refused(state: RevolvedState) -> str | None:
-        stability = float(state.elements.stability.min())
-        if not stability > STABLE:
-            return UNSTABLE.format(least=stability, stretch=float(state.elements.stretches.max()))
+        elements = state.elements
+        if (reason := unstable(float(elements.stability.min()), float(elements.stretches.max()))) is not None:
+            return reason
         for name, side in sides.items():
             if name in slip or not side.flat:
                 continue
@@ -338,17 +358,14 @@ def squeeze(
             short_of = side.sign * (side.place - before[free_nodes]) >= -SAME * mesh.size
             past = side.sign * (now[free_nodes] - now[faces[name].nodes[0]]) > FOLDED * mesh.size
             if (short_of & past).any():
-                return FOLD.format(name=name)
+                return FOLD.format(name=name, remedy=RECESS)
         return None
 
     try:
         found = balance(body.state, 2 * mesh.r.size, free, at[inside], move[inside], walls, refused)
     except NoBalance as failure:
-        least = float(failure.state.elements.stability.min())
-        if least < DOUBTFUL:
-            failure.reason = UNSTABLE.format(
-                least=least, stretch=float(failure.state.elements.stretches.max())
-            )
+        elements = failure.state.elements
+        blame_the_law(failure, float(elements.stability.min()), float(elements.stretches.max()))
         raise
     state: RevolvedState = found.state
     touched = {}

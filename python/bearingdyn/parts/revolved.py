@@ -39,7 +39,7 @@ from bearingdyn.parts.groove_compliance import carried_compliance, groove_compli
 from bearingdyn.parts.hoop_stress import hoop_stress_rows
 from bearingdyn.parts.mesh_waves import check_waves
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, squeeze
+from bearingdyn.parts.prestress import Prestress, Travel, check_branches, check_law, constant_volume, squeeze
 from bearingdyn.parts.profile import Profile
 from bearingdyn.parts.quasi_static_modulus import quasi_static, quasi_static_bulk
 from bearingdyn.parts.raceway_shapes import Order, PortShapes, port_shapes
@@ -340,13 +340,7 @@ class Revolved:
         require(not self.grooves, "grooves", sorted(self.grooves), "a body with raceways cannot be squeezed")
         require(self.prestress is None, "prestress", "there", "squeeze the body once, from its state at rest")
         require(bool(press), "press", press, f"name one of the interfaces {sorted(self.interfaces)}")
-        for q in self.regions:
-            require(
-                getattr(q.material, "bulk", None) is None,
-                "bulk",
-                getattr(q.material, "bulk", None),
-                "of a squeezed body the bulk modulus must be constant: give the material without, bulk=None",
-            )
+        constant_volume(q.material for q in self.regions)
         check_branches(branches)
         rubber = check_law(law)
         prestress = squeeze(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse
 
-from bearingdyn.checks import instance, name_list
+from bearingdyn.checks import instance, name_list, named, require
 from bearingdyn.cms import (
     F_MAX,
     Basis,
@@ -33,19 +33,23 @@ from bearingdyn.cms import (
     project,
 )
 from bearingdyn.fem import (
+    NoBalance,
+    SolidElements,
     SolidMesh,
     SurfaceSamples,
     assemble_solid,
-    by_size,
-    face_shapes,
     factorise,
     rigid_motion,
 )
-from bearingdyn.material import Elastic, constant_bulk, volume_of
+from bearingdyn.material import NEO_HOOKE, Elastic, Hyperelastic, constant_bulk, volume_of
 from bearingdyn.parts.flexible_bore import FlexibleBore
 from bearingdyn.parts.outline import Outline
+from bearingdyn.parts.prestress import check_branches, check_law, constant_volume
 from bearingdyn.parts.quasi_static_modulus import quasi_static
 from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
+from bearingdyn.parts.solid_outline import solid_outline
+from bearingdyn.parts.solid_prestress import Move, SolidPrestress, deform
+from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -139,6 +143,9 @@ class Solid:
         better than many fixed-interface modes; 0 with moduli=(G,) is the paper's basis.
     bores
         name -> FlexibleBore, in which a flexible ring may lie (`Application.fit`).
+    prestress
+        The static state of a solid that `assembled` has deformed; its mesh is then where the state is. None:
+        at rest, without stress.
 
     Raises
     ------
@@ -163,6 +170,7 @@ class Solid:
     radiating: tuple[str, ...] = ()
     inertia: int = 1
     bores: Mapping[str, FlexibleBore] = field(default_factory=dict)
+    prestress: SolidPrestress | None = field(default=None, repr=False)
 
     __repr__ = short
 
@@ -228,6 +236,8 @@ class Solid:
 
     @cached_property
     def _faces(self) -> dict[str, tuple[Index, Array]]:
+        if self.prestress is not None:
+            return {name: (plate.nodes, plate.reference) for name, plate in self.prestress.plates.items()}
         found = {}
         for name, surface in self.interfaces.items():
             rigid = surface if isinstance(surface, RigidSurface) else RigidSurface(surface)
@@ -248,21 +258,26 @@ class Solid:
                 except ValueError as error:
                     raise ValueError(f"outputs[{name!r}]: {error}") from error
                 continue
-            at = np.asarray(place, dtype=np.float64)
-            if at.shape != (3,) or not np.all(np.isfinite(at)):
-                raise ValueError(f"outputs[{name!r}] is {place!r}; it must be (x, y, z), m, or a surface")
-            distance = np.linalg.norm(p - at, axis=1)
-            node = int(np.argmin(distance))
-            near = self.mesh.elements[np.any(self.mesh.elements == node, axis=1)]
-            of = p[np.where(near >= 0, near, near[:, :1])]
-            if not distance[node] <= float(np.ptp(of, axis=1).max()):
-                raise ValueError(
-                    f"outputs[{name!r}] is {place!r}, {distance[node]:.3g} m away from the nearest node at "
-                    f"{p[node].tolist()} m; it must lie in the body"
-                )
-            columns = 3 * node + np.arange(3)
+            columns = 3 * self._nearest(name, place) + np.arange(3)
             found[name] = scipy.sparse.csr_matrix((np.ones(3), (np.arange(3), columns)), (3, 3 * len(p)))
         return found
+
+    def _nearest(self, name: str, place: Point) -> int:
+        """The node nearest to an output's point; ValueError for a point away from the body."""
+        p = self.mesh.points
+        at = np.asarray(place, dtype=np.float64)
+        if at.shape != (3,) or not np.all(np.isfinite(at)):
+            raise ValueError(f"outputs[{name!r}] is {place!r}; it must be (x, y, z), m, or a surface")
+        distance = np.linalg.norm(p - at, axis=1)
+        node = int(np.argmin(distance))
+        near = self.mesh.elements[np.any(self.mesh.elements == node, axis=1)]
+        of = p[np.where(near >= 0, near, near[:, :1])]
+        if not distance[node] <= float(np.ptp(of, axis=1).max()):
+            raise ValueError(
+                f"outputs[{name!r}] is {place!r}, {distance[node]:.3g} m away from the nearest node at "
+                f"{p[node].tolist()} m; it must lie in the body"
+            )
+        return node
 
     @property
     def mass(self) -> float:
@@ -276,22 +291,32 @@ class Solid:
         rubbers: list[tuple[ViscoelasticSolid, Any]] = []
         volumes: list[float] = []
         swelling: list[Viscoelastic] = []
-        for name, elements in self.mesh.regions.items():
+        rest = self.mesh if self.prestress is None else self.prestress.state.body.mesh
+        for region, (name, elements) in enumerate(self.mesh.regions.items()):
             material = self._materials[name]
-            unit = assemble_solid(self.mesh, elements, incompressible=is_rubber(material))
+            unit = assemble_solid(rest, elements, incompressible=is_rubber(material))
             M = M + material.density * unit.mass
+            H = unit.deviatoric
             if isinstance(material, Elastic):
-                E = E + unit.stiffness(material)
+                E = E + (
+                    unit.stiffness(material)
+                    if self.prestress is None
+                    else self.prestress.state.stiffness([region])
+                )
                 continue
-            bulk = bulk + constant_bulk(material) * unit.volumetric
+            if self.prestress is None:
+                bulk = bulk + constant_bulk(material) * unit.volumetric
+            else:
+                own, H = self.prestress.tangents(region)
+                bulk = bulk + own
             if (volume := volume_of(material)) is not None:
                 swelling.append(Viscoelastic(volume, 0.5 * unit.volumetric))
             same = [k for k, (other, _) in enumerate(rubbers) if other is material]
             if same:
-                rubbers[same[0]] = (material, rubbers[same[0]][1] + unit.deviatoric)
+                rubbers[same[0]] = (material, rubbers[same[0]][1] + H)
                 volumes[same[0]] += float(unit.mass.sum()) / 3
             else:
-                rubbers.append((material, unit.deviatoric))
+                rubbers.append((material, H))
                 volumes.append(float(unit.mass.sum()) / 3)
         interfaces = {}
         for name, (nodes, reference) in self._faces.items():
@@ -299,6 +324,8 @@ class Solid:
             interfaces[name] = RigidInterface(
                 dofs, rigid_motion(self.mesh.points[nodes], reference), reference
             )
+        if self.prestress is not None:
+            bulk = bulk + self.prestress.loads(interfaces)
         return FullModel(
             M=M,
             K=E + bulk,
@@ -312,6 +339,8 @@ class Solid:
                 ),
                 *swelling,
             ),
+            # plates that push turn with the body, and their forces resist or help
+            grounded=self.prestress is not None and not self.prestress.self_balanced,
         )
 
     def full_model(self) -> FullModel:
@@ -375,25 +404,7 @@ class Solid:
 
     def outline(self) -> Outline:
         """The faces of its elements on the boundary, each as triangles around its middle."""
-        p, boundary = self.mesh.points, self.mesh.boundary
-        used, index = np.unique(boundary, return_inverse=True)
-        index = index.reshape(boundary.shape)
-        # weight of every node in every point: the nodes themselves, and the shape functions at the middles
-        parts, faces, count = [scipy.sparse.eye(len(p), format="csr")[used]], [], used.size
-        for rows, n in by_size(boundary):
-            f, corners = rows.size, 3 if n == 6 else 4
-            around = (
-                np.arange(2 * corners).reshape(2, -1).T.ravel()
-            )  # corner, middle of the side, corner, ...
-            ring = index[rows][:, around]
-            middle = np.broadcast_to(count + np.arange(f)[:, None], ring.shape)
-            N = face_shapes(n, np.full((1, 2), 0.5 if corners == 4 else 1.0 / 3.0))[0]
-            at = (np.repeat(np.arange(f), n), boundary[rows, :n].ravel())
-            parts.append(scipy.sparse.csr_matrix((np.tile(N[0], f), at), shape=(f, len(p))))
-            faces.append(np.stack([ring, np.roll(ring, -1, axis=1), middle], axis=-1).reshape(-1, 3))
-            count += f
-        W = scipy.sparse.vstack(parts)
-        return Outline(W @ p, np.vstack(faces), scipy.sparse.kron(W, scipy.sparse.eye(3)) @ self._basis.Psi)
+        return solid_outline(self.mesh, self._basis.Psi)
 
     def _radiation(self, name: str) -> Surface:
         samples, rows = self.surface(name)
@@ -439,6 +450,104 @@ class Solid:
             u[inner] = -factorise(K[inner][:, inner]).solve(load)
         S = u.T @ (K @ u)
         return np.asarray(0.5 * (S + S.T), dtype=np.complex128)
+
+    def assembled(
+        self,
+        press: Mapping[str, Move],
+        *,
+        slip: Iterable[str] = (),
+        law: Hyperelastic | None = None,
+        branches: str = "current",
+        after: float | None = None,
+    ) -> Squeezed:
+        """The solid deformed by its rigid interfaces, at finite strain, to which it then sticks.
+
+        Pads pressed, sheared or turned, mount blocks under their load: what the result is asked is of a small
+        motion about the static state. Elements are those of the undeformed part.
+
+        Parameters
+        ----------
+        press
+            interface -> depth, m, by which it moves into the body, each node along its normal; or its motion
+            (x, y, z), m, or (x, y, z, θx, θy, θz), m and rad, a rotation about its reference by the length of
+            that vector. All others stay where they are.
+        slip
+            Plane interfaces, with normals along x, y or z, without friction while they are pressed on. The
+            body may part from them, and more of its free surface come to touch their planes. All others are
+            bonded from the start.
+        law
+            Strain energy of the viscoelastic regions, and of elastic ones with ν of 0.45 or more: NeoHooke(),
+            the default, MooneyRivlin or Yeoh, scaled to the modulus of each. Other regions are neo-Hookean.
+        branches, after
+            As for Revolved.assembled.
+
+        Returns
+        -------
+        Squeezed
+            Its `part` is the deformed solid; of its forces, each is (6,), force and moment about the
+            interface's reference, and `widths` and `lost` are areas, m².
+
+        Raises
+        ------
+        ValueError
+            Naming the share of the motion that was reached, where elements turn inside out, a free surface
+            folds over the edge of a bond, or the law is not stable; for names of no interface, a solid with
+            bores, or one that is deformed already.
+
+        Examples
+        --------
+        >>> import bearingdyn as bd, numpy as np
+        >>> rubber = bd.Maxwell(G0=1e6, G=[2e6], tau=[1e-4], K=2e9, density=1150.0)
+        >>> lines = [np.linspace(0.0, size, n + 1) for size, n in ((0.04, 4), (0.01, 2), (0.04, 4))]
+        >>> pad = bd.Solid(bd.box_mesh(*lines, element="hex27"), rubber, {"foot": "y-", "plate": "y+"})
+        >>> clamped = pad.assembled({"plate": 0.5e-3})  # 5 % of its height
+        >>> k, rest = clamped.stiffness()[7, 7].real, pad.stiffness()[7, 7].real
+        >>> f"{clamped.force:.0f} N, along its height {k / rest - 1:.0%} stiffer"
+        '870 N, along its height 19% stiffer'
+        """
+        try:
+            return self.deformed(press, slip=slip, law=law, branches=branches, after=after)
+        except NoBalance as failure:
+            raise ValueError(
+                f"press is {dict(press)}; {failure.share:.0%} of it is reached: {failure.reason}"
+            ) from None
+
+    def deformed(
+        self,
+        press: Mapping[str, Move],
+        *,
+        slip: Iterable[str] = (),
+        law: Hyperelastic | None = None,
+        branches: str = "current",
+        after: float | None = None,
+    ) -> Squeezed:
+        """What `assembled` does, with a NoBalance that knows the share reached, for others to tell."""
+        named("press", press, "it must be {interface: depth in m, or motion}")
+        require(
+            not self.bores, "bores", sorted(self.bores), "a solid with bores for rings cannot be deformed"
+        )
+        require(self.prestress is None, "prestress", "there", "deform the solid once, from its state at rest")
+        require(bool(press), "press", press, f"name one of the interfaces {sorted(self.interfaces)}")
+        check_branches(branches)
+        rubber = check_law(law)
+        materials = [self._materials[name] for name in self.mesh.regions]
+        constant_volume(materials)
+        soft = [is_rubber(m) for m in materials]
+        body = SolidElements(
+            mesh=self.mesh,
+            laws=[rubber if own else NEO_HOOKE for own in soft],
+            shear=[quasi_static(m, 0.0, after).real for m in materials],
+            bulk=[m.K for m in materials],
+            incompressible=soft,
+        )
+        prestress = deform(body, self._faces, press, slip, branches)
+        now = prestress.mesh.points
+        outputs = {
+            name: place if isinstance(place, str) else tuple(now[self._nearest(name, place)].tolist())
+            for name, place in self.outputs.items()
+        }
+        part = replace(self, mesh=prestress.mesh, outputs=outputs, prestress=prestress)
+        return prestress.told(part, next(iter(press)))
 
     def surface(self, name: str) -> tuple[SurfaceSamples, Array]:
         """A surface's integration points, and rows (q, n) giving their outward normal displacement.

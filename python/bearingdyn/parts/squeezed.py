@@ -12,7 +12,7 @@ from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.fem import NoBalance
 from bearingdyn.notice import MeshDependent, warn
 from bearingdyn.parts.outline import Outline
-from bearingdyn.parts.profile import Profile
+from bearingdyn.parts.profile import HasProfile, Profile
 from bearingdyn.short_repr import short
 from bearingdyn.types import Complex
 
@@ -28,8 +28,6 @@ class _Part(Protocol):
     def superelement(self) -> Superelement: ...
 
     def outline(self) -> Outline: ...
-
-    def profile(self) -> list[Profile]: ...
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]: ...
 
@@ -113,8 +111,8 @@ class Squeezed:
         return self.part.outline()
 
     def profile(self) -> list[Profile]:
-        """What the plane x = 0 shows of it, deformed."""
-        return self.part.profile()
+        """What the plane x = 0 shows of it, deformed; of a solid nothing: its outline tells."""
+        return list(self.part.profile()) if isinstance(self.part, HasProfile) else []
 
     def round_faces(self) -> Mapping[str, tuple[RoundFace, ...]]:
         """Cylinders at its interfaces, where they are now."""

@@ -30,6 +30,7 @@ from bearingdyn.plot.sound_intensity import sound_intensity
 from bearingdyn.plot.spectrum import spectrum
 from bearingdyn.plot.speed_map import speed_map, speed_waterfall
 from bearingdyn.plot.squeezed_section import squeezed_section
+from bearingdyn.plot.squeezed_solid import squeezed_solid
 from bearingdyn.plot.strain_softening import strain_softening
 from bearingdyn.plot.time_traces import time
 from bearingdyn.plot.trade_off import trade_off
@@ -70,6 +71,7 @@ __all__ = [
     "speed_map",
     "speed_waterfall",
     "squeezed_section",
+    "squeezed_solid",
     "strain_softening",
     "time",
     "trade_off",

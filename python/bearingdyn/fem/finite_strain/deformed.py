@@ -90,10 +90,10 @@ class Deformed:
         """The pressures that a further motion du (m, c) leads to, linearised, (m, k, 1)."""
         return np.asarray(
             self.bulk[:, None, None]
-            * (self._swelling + np.linalg.solve(self._gram, self._swelling_rows(B) @ du[:, :, None]))
+            * (self._swelling + np.linalg.solve(self._gram, self.swelling_rows(B) @ du[:, :, None]))
         )
 
-    def _swelling_rows(self, B: Array) -> Array:
+    def swelling_rows(self, B: Array) -> Array:
         """∫ modes δJ dV0 from the coordinates, (m, k, c)."""
         weighted = (self.weights * self.J)[..., None] * self.modes
         return np.asarray(weighted.transpose(0, 2, 1) @ (B[:, :, 0] + B[:, :, 4] + B[:, :, 8]))
@@ -144,7 +144,7 @@ class Deformed:
         pressures
             (m, k, 1) to take the geometric part at, Pa; None: those of the deformation.
         """
-        D = self._swelling_rows(B)
+        D = self.swelling_rows(B)
         volume = D.transpose(0, 2, 1) @ np.linalg.solve(self._gram, self.bulk[:, None, None] * D)
         p = self.pressure if pressures is None else (self.modes @ pressures)[:, :, 0]
         return self._integral(self._tangent(p), B) + volume

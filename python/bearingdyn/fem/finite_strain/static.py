@@ -109,7 +109,7 @@ def balance(
     n: int,
     free: Index,
     held: Index,
-    travel: Array,
+    travel: Array | Callable[[float], Array],
     walls: Sequence[Wall] = (),
     check: Callable[[Any], str | None] = lambda state: None,
 ) -> Balance:
@@ -126,7 +126,7 @@ def balance(
     held
         Coordinates that are moved.
     travel
-        How far each of them is moved, m.
+        How far each of them is moved, m; or that by the share s of the whole, as of a surface that turns.
     walls
         Rigid surfaces without friction.
     check
@@ -142,12 +142,13 @@ def balance(
     reached, step = 0.0, 1.0
     reasons: list[str] = []  # since the last step that worked
     here = Balance(u, state(u), touching)
-    if not np.any(travel) and not any(wall.travel for wall in walls):
+    moved = travel if callable(travel) else (lambda share: share * travel)
+    if not np.any(moved(1.0)) and not any(wall.travel for wall in walls):
         return here  # nothing moves, and there are no forces to measure a balance by
     while reached < 1.0:
         target = min(1.0, reached + step)
         try:
-            here = _newton(state, n, free, held, travel, walls, here, target)
+            here = _newton(state, n, free, held, moved(target), walls, here, target)
             refused = check(here.state)
             if refused:
                 reasons.insert(0, refused)  # what is known of a state tells more than a search that failed
@@ -174,12 +175,12 @@ def _newton(
     n: int,
     free: Index,
     held: Index,
-    travel: Array,
+    place: Array,
     walls: Sequence[Wall],
     start: Balance,
     target: float,
 ) -> Balance:
-    """One step, from a balanced state.
+    """One step, from a balanced state, to where the held coordinates are at their place.
 
     Pressures are iterated beside the displacements (the mixed form of Newton's method): those of a trial
     displacement are the bulk modulus times what it gets wrong of the volume, and would spoil the next
@@ -190,7 +191,7 @@ def _newton(
     worst, changes = np.inf, 0
     for iteration in range(ITERATIONS + sum(wall.at.size > 0 for wall in walls) * CHANGES):
         goal = np.full(n, np.nan)
-        goal[held] = target * travel
+        goal[held] = place
         for wall, touch in zip(walls, touching, strict=True):
             goal[wall.at[touch]] = (wall.sign * wall.gap + wall.travel * target)[touch]
         given = np.flatnonzero(~np.isnan(goal))

@@ -197,10 +197,14 @@ def face_shapes(nodes: int, X: Array) -> tuple[Array, Array]:
     gradient : Array
         (q, nodes, 2).
     """
+    return _shapes(FACE_INTERPOLATION[nodes], face_places(nodes), X)
+
+
+def face_places(nodes: int) -> Array:
+    """Places (nodes, 2) on the unit triangle or square of a solid element's face of 6, 8 or 9 nodes."""
     c = np.array([(0, 0), (1, 0), (0, 1)] if nodes == 6 else [(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
     middles = 0.5 * (c + np.roll(c, -1, axis=0))
-    places = np.vstack([c, middles, c.mean(axis=0)[None]])[:nodes]
-    return _shapes(FACE_INTERPOLATION[nodes], places, X)
+    return np.vstack([c, middles, c.mean(axis=0)[None]])[:nodes]
 
 
 def gauss(n: int, dimensions: int) -> tuple[Array, Array]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import copy
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -22,6 +23,7 @@ from bearingdyn.fem.meshes.solid_element import (
     OF_CORNERS,
     SolidElement,
     by_size,
+    face_places,
     face_points,
     face_shapes,
     points,
@@ -446,7 +448,10 @@ class SolidMesh:
         ValueError
             As `faces` does.
         """
-        faces = self.faces(name)
+        return self.samples_of(self.faces(name))
+
+    def samples_of(self, faces: Index) -> SurfaceSamples:
+        """The integration points of some faces of the boundary, (f, nodes of a face), at least one."""
         positions, normals, weights, parts = [], [], [], []
         for at, n in by_size(faces):
             X, w = face_points(n)
@@ -469,6 +474,21 @@ class SolidMesh:
             weights=np.concatenate(weights),
             interpolation=scipy.sparse.vstack(parts, format="csr"),
         )
+
+    def face_normals(self, faces: Index) -> Iterator[tuple[Index, Array]]:
+        """Nodes (f, n) of faces of the boundary by their size, and outward unit normals (f, n, 3) there."""
+        for at, n in by_size(faces):
+            nodes = faces[at, :n]
+            gradient = face_shapes(n, face_places(n))[1]
+            tangents = np.einsum("fka,qkb->fqba", self.points[nodes], gradient, optimize=True)
+            normal = np.cross(tangents[:, :, 0], tangents[:, :, 1])
+            yield nodes, normal / np.linalg.norm(normal, axis=2, keepdims=True)
+
+    def moved(self, points: Array) -> SolidMesh:
+        """The mesh with its nodes at other points (n, 3), unchecked: a deformation has kept it whole."""
+        found = copy.copy(self)  # and what is known of how its elements hang together
+        object.__setattr__(found, "points", points)
+        return found
 
     def with_centres(self) -> SolidMesh:
         """20-node bricks made 27-node ones, new nodes where the 20-node shapes put them; else unchanged."""

@@ -20,9 +20,9 @@ from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 _POINTS = 160  # of the fit, evenly in ln ω
-_LOSS = 10.0  # weight of the loss against the storage: damping cannot be made good where L is small
-_TRIES, _TOO_MUCH = 8, 1e-5  # of loss too much, over G′
-TABLE = 33  # frequencies of the correction, evenly in ln ω
+_LOSS = 10.0  # weight of the loss against the storage: damping is what resonances show
+_LEAST = 0.1  # of a material's loss that may stay where the law would take more: near the ends of a band
+TABLE = 129  # frequencies of the correction, evenly in ln ω: it is linear between them
 _DECADE = 10.0  # of a model without a band: so far beyond its times
 
 
@@ -110,22 +110,20 @@ def rest_of(material: Any) -> Rest:
             f"modulus {linear.real[worst]:.4g} Pa that the material has at "
             f"{omega[worst] / 2 / math.pi:.3g} Hz: the law is of a harder rubber; scale it, law.scaled(...)"
         )
-    weight = 1 / np.abs(linear)
     x = omega[:, None] * material.tau
     shapes = np.column_stack([np.ones_like(omega), x / (1 + x * x) * (x + 1j)])
-    fixed = 1j * omega * material.eta0
-    A = np.vstack([shapes.real * weight[:, None], _LOSS * shapes.imag * weight[:, None]])
-    target = wanted - fixed
-    # of loss the rest must not have too much: the law's branch can add some, and take none away
-    reserve, found = 0.0, np.zeros(A.shape[1])
-    for _ in range(_TRIES):
-        b = np.concatenate([target.real * weight, _LOSS * (target.imag - reserve) * weight])
-        found = scipy.optimize.nnls(A, b)[0]
-        more = float(np.max(shapes.imag @ found - target.imag))
-        if more <= _TOO_MUCH * float(np.median(linear.real)):
-            break
-        reserve += more
-    G0, G = float(found[0]), found[1:]
+    target = wanted - 1j * omega * material.eta0
+    # never too much loss: the law's branch can add some, and take none away; nor too much storage, with
+    # what that branch brings. All of it is linear in the strengths, and so is what is left to add
+    allowed = np.maximum(target.imag, _LEAST * (linear.imag - omega * material.eta0))
+    left = ((_LOSS - 1.0) * shapes.imag + shapes.real) / np.abs(linear)[:, None]
+    scale = float(np.median(linear.real))
+    found = scipy.optimize.linprog(
+        -left.sum(axis=0),
+        A_ub=np.vstack([shapes.imag, shapes.real - shapes.imag]),
+        b_ub=np.concatenate([allowed, target.real - allowed]) / scale,
+    ).x
+    G0, G = scale * float(found[0]), scale * found[1:]
     at = np.geomspace(*band, TABLE)
     x = at[:, None] * material.tau
     branches = 1j * at * material.eta0 + (x / (1 + x * x) * (x + 1j)) @ G

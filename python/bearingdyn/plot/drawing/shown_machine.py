@@ -74,8 +74,8 @@ def _shown(plan: Plan, places: dict[str, Array]) -> Iterator[Shown]:
         if at is None:
             continue
         source = plan.sources[name]
-        if isinstance(source, HasProfile):
-            own = source.profile()
+        own = source.profile() if isinstance(source, HasProfile) else ()
+        if own:
             yield Shown(name, tuple(Profile(at[[2, 1]] + 1e3 * p.corners, p.matter) for p in own))
         elif isinstance(source, Outlined):
             matter: Matter = "rubber" if element.viscoelastic else "metal"
