@@ -83,7 +83,7 @@ class _Krylov:
     @property
     def size(self) -> int:
         """Number of vectors once the next block has joined."""
-        return len(self.T) + self.next.shape[1]
+        return len(self.T) + int(self.next.shape[1])
 
     def join(self, width: int) -> None:
         """Widen the next block by random vectors, orthogonal to all, their lowest modes strengthened."""
