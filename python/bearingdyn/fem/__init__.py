@@ -18,6 +18,7 @@ from bearingdyn.fem.finite_strain import (
     Wall,
     balance,
 )
+from bearingdyn.fem.held_harmonic import held_factors
 from bearingdyn.fem.lowest_modes import lowest_modes
 from bearingdyn.fem.matrix_files import (
     MM_TONNE,
@@ -102,6 +103,7 @@ __all__ = [
     "face_shapes",
     "factorise",
     "harmonic_slopes",
+    "held_factors",
     "lagrange",
     "lowest_modes",
     "o_ring_mesh",

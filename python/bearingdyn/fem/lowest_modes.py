@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 import scipy
 
+from bearingdyn.fem.block_lanczos import lowest_pairs
 from bearingdyn.fem.factors import factorise
 from bearingdyn.types import Array
 
 DENSE_LIMIT = 400  # below this size LAPACK's dense eigensolver is quicker than a factorisation and Lanczos
+EQUAL = 1e-10  # relative distance of ω² below which two modes are of one frequency, but for round-off
 
 
 def lowest_modes(
@@ -19,7 +21,8 @@ def lowest_modes(
 ) -> tuple[Array, Array]:
     """Lowest modes of K φ = ω² M φ: rising frequencies (m,), Hz, and shapes (n, m) of unit modal mass.
 
-    Every run gives the same shapes: the start vector is fixed, and the largest entry of a shape is positive.
+    Every run gives the same shapes: modes of equal frequency are turned to a fixed direction, and the largest
+    entry of a shape is positive.
 
     Parameters
     ----------
@@ -35,27 +38,34 @@ def lowest_modes(
     n = K.shape[0]
     limit = n if n_modes is None else min(n_modes, n)
     omega_max = 2.0 * math.pi * f_max
-    k = min(limit, 20 if math.isfinite(f_max) else limit)
     if limit == 0 or f_max == 0:
         return np.zeros(0), np.zeros((n, 0))
-    while n > DENSE_LIMIT and k < n // 2:
+    found = None
+    if n > DENSE_LIMIT and (math.isfinite(f_max) or limit < n // 2):
         lu = factorise(K) if lu is None else lu
-        inverse = scipy.sparse.linalg.LinearOperator((n, n), matvec=lu.solve, dtype=np.float64)
-        start = np.random.default_rng(0).standard_normal(n)
-        lam, phi = scipy.sparse.linalg.eigsh(
-            scipy.sparse.csc_matrix(K), k, scipy.sparse.csc_matrix(M), sigma=0.0, OPinv=inverse, v0=start
-        )
-        if k == limit or lam.max() > omega_max**2:
-            break
-        k = min(2 * k, limit)
-    else:
+        found = lowest_pairs(lu.solve, scipy.sparse.csc_matrix(M), limit, omega_max**2, n // 2)
+    if found is None:
         dense = [A.toarray() if scipy.sparse.issparse(A) else np.asarray(A) for A in (K, M)]
-        lam, phi = scipy.linalg.eigh(dense[0], dense[1])
+        found = scipy.linalg.eigh(dense[0], dense[1])
+    lam, phi = found
     order = np.argsort(lam)
     order = order[lam[order] <= omega_max**2][:limit]
-    phi = phi[:, order]
+    phi = _turned(lam[order], phi[:, order])
     if phi.size:
         size = np.abs(phi)  # of entries equal by symmetry, the first: round-off must not turn the sign
         first = np.argmax(size > (1 - 1e-6) * size.max(axis=0), axis=0)
         phi = phi * np.sign(phi[first, np.arange(phi.shape[1])])
     return np.sqrt(np.maximum(lam[order], 0.0)) / (2.0 * math.pi), phi
+
+
+def _turned(lam: Array, phi: Array) -> Array:
+    """Shapes of equal λ combined anew: the first of a set takes all of a fixed random direction."""
+    ends = [*(np.flatnonzero(np.diff(lam) > EQUAL * lam[1:]) + 1).tolist(), lam.size]
+    start, draws = 0, np.random.default_rng(0)
+    phi = phi.copy()
+    for end in ends:
+        if end - start > 1:
+            part = phi[:, start:end].T @ draws.standard_normal((len(phi), end - start))
+            phi[:, start:end] = phi[:, start:end] @ np.linalg.qr(part)[0]
+        start = end
+    return phi

@@ -10,6 +10,7 @@ ch. 4), which does not lock as ν → ½. Bulk and shear modulus enter as scalar
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -26,6 +27,7 @@ from bearingdyn.types import Array, Index
 AXIAL = (0, 2)  # components U, W of order 0
 TORSION = (1,)  # component V of order 0
 ALL_COMPONENTS = (0, 1, 2)
+KEPT_BELOW = 1000  # elements: their pattern takes some 6 MB
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -251,11 +253,23 @@ class Pattern:
 
 
 def pattern(mesh: RevolutionMesh, c: int) -> Pattern:
-    """The pattern of a harmonic's matrix for a mesh with c components at each node."""
-    nodes = mesh.r.size
-    key = (
-        mesh.elements[:, None, :] * nodes + mesh.elements[:, :, None]
-    ).ravel()  # column node major, row node minor
+    """The pattern of a harmonic's matrix for a mesh with c components at each node.
+
+    It depends on the elements' nodes alone, which designs of different dimensions share: those of small
+    meshes are kept.
+    """
+    if len(mesh.elements) > KEPT_BELOW:
+        return _pattern(mesh.elements, mesh.r.size, c)
+    return _known_pattern(mesh.elements.tobytes(), mesh.r.size, c)
+
+
+@functools.lru_cache(maxsize=24)
+def _known_pattern(elements: bytes, nodes: int, c: int) -> Pattern:
+    return _pattern(np.frombuffer(elements, dtype=np.intp).reshape(-1, 9), nodes, c)
+
+
+def _pattern(elements: Index, nodes: int, c: int) -> Pattern:
+    key = (elements[:, None, :] * nodes + elements[:, :, None]).ravel()  # column node major, row node minor
     pairs, where = np.unique(key, return_inverse=True)
     column, row = pairs // nodes, pairs % nodes
     count = np.bincount(column, minlength=nodes)
@@ -272,7 +286,7 @@ def pattern(mesh: RevolutionMesh, c: int) -> Pattern:
     indptr = np.concatenate([[0], np.cumsum(per_column)]).astype(np.intc)
 
     # Element entry (9c, 9c) as (node i, a, node j, b); `where` runs over (element, i, j).
-    place = at[where.reshape(-1, 9, 9)].transpose(0, 1, 3, 2, 4).reshape(len(mesh.elements), -1)
+    place = at[where.reshape(-1, 9, 9)].transpose(0, 1, 3, 2, 4).reshape(len(elements), -1)
     return Pattern(indices, indptr, place)
 
 

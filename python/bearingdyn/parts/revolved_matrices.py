@@ -59,7 +59,8 @@ def reduced(
     rows = {name: np.zeros((3, n)) for name in outputs}
     for h, Psi, places in placed:
         parts = [(M, h.mass_matrix(density)), (K, h.stiffness(bulk, shear))]
-        parts += [(E, h.stiffness(np.where(owner < 0, bulk, 0.0), shear))]
+        if np.any(owner < 0):
+            parts += [(E, h.stiffness(np.where(owner < 0, bulk, 0.0), shear))]
         parts += [(H[j], h.matrix((owner == j).astype(float) @ h.deviatoric)) for j in range(len(rubbers))]
         parts += [(S, h.matrix(0.5 * (owner == j) @ h.volumetric)) for j, S in swelling.items()]
         small = [(full, Psi.T @ (A @ Psi)) for full, A in parts]

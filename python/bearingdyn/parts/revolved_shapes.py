@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.cms import inertia_shapes, orthogonalise
-from bearingdyn.fem import Harmonic, factorise, lowest_modes
+from bearingdyn.fem import Harmonic, held_factors, lowest_modes
 from bearingdyn.parts.revolved_joints import Boundaries
 from bearingdyn.types import Array
 
@@ -48,13 +48,8 @@ class ShapeMaker:
         u = np.zeros((h.n, R.shape[1]), dtype=K.dtype)
         u[at] = R
         if inner.size and R.shape[1]:
-            u[inner] = -self._held(h, K).solve(np.asarray(K[inner][:, at] @ R, dtype=K.dtype))
+            u[inner] = -held_factors(h, K, inner).solve((K @ u)[inner])
         return u, u.T @ (K @ u)
-
-    def _held(self, h: Harmonic, K: Any) -> Any:
-        """Factors of a stiffness (n, n), the interfaces held."""
-        inner = np.setdiff1d(h.free, self.boundaries.held(h)[0])
-        return factorise(K[inner][:, inner])
 
     def basis(self, h: Harmonic, levels: Sequence[Sequence[float]]) -> tuple[Array, int]:
         """Basis (n, columns) of a family: constraint shapes, then internal ones; and the number of the first.
@@ -87,7 +82,7 @@ class ShapeMaker:
         if not inner.size:
             return []
         static = self.constraint_shapes(h, level)[0]
-        lu = self._held(h, K)
+        lu = held_factors(h, K, inner)
 
         def answer(load: Array) -> Array:
             u = np.zeros((h.n, load.shape[1]))

@@ -34,7 +34,7 @@ from bearingdyn.study.store import Store, name_of
 
 Study: TypeAlias = Callable[[dict[str, Any]], Mapping[str, float]]
 # each worker is one process on one core: a BLAS with threads of its own would only get in the others' way
-WORKER_ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
+WORKER_ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 # Windows waits for no more handles than this
 MOST_WORKERS = 61
 log = logging.getLogger(__name__)
