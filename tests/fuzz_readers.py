@@ -12,6 +12,7 @@ READERS. `python tests/fuzz_readers.py npz 1 4711` repeats mutant 4711 and shows
 
 from __future__ import annotations
 
+import functools
 import io
 import json
 import resource
@@ -31,6 +32,9 @@ from typing import Any
 
 import numpy as np
 
+from measured import DATA
+
+XLS = DATA / "formats" / "eplexor.xls"
 SECONDS, BYTES = 5.0, 1 << 30
 # a refused request would come out as an OSError and pass: a reader gets more, and what it takes is counted
 LIMIT = 3 << 30
@@ -303,6 +307,31 @@ def _netcdf() -> Reader:
     return Reader(_result, read, _sealed)
 
 
+def _hdf5_of_old() -> Reader:
+    """A file of another program: no seal, and headers of HDF5's first kind, which carry no checksum."""
+    import h5py
+
+    from bearingdyn.results import open_result
+
+    def write(folder: Path) -> None:
+        with h5py.File(folder / "o.nc", "w", libver="earliest") as file:
+            t = file.create_dataset("t", data=np.linspace(0.0, 1.0, 50))
+            t.make_scale("t")
+            for name, values in (("x", np.arange(50.0)), ("n", [f"p{i}" for i in range(50)])):
+                made = file.create_dataset(name, data=values)
+                made.dims[0].attach_scale(t)
+                made.attrs["units"] = "m"
+            packed = file.create_dataset("c", data=np.arange(50.0), chunks=(20,), compression="gzip")
+            packed.dims[0].attach_scale(t)
+            file.attrs["made_by"] = "another program"
+
+    def of_its_length(data: bytes, mutate: Mutate) -> bytes:
+        # another length is refused before HDF5 looks
+        return mutate(data).ljust(len(data), b"\0")[: len(data)]
+
+    return Reader(write, lambda f: open_result(f / "o.nc"), of_its_length)
+
+
 def _show() -> Reader:
     """The command says in one line what is wrong, and names the file, whatever is in it."""
     import contextlib
@@ -436,6 +465,93 @@ def _dma_kinds() -> Reader:
     return Reader(write, read)
 
 
+def _zip_changed(data: bytes, mutate: Mutate) -> bytes:
+    """A packed file one of whose members was damaged before it was packed."""
+    made = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(made, "w") as new:
+        members = old.infolist()
+        k = zlib.crc32(mutate(b"which")) % len(members)
+        for i, member in enumerate(members):
+            content = old.read(member.filename)
+            new.writestr(member.filename, mutate(content) if i == k else content, member.compress_type)
+    return made.getvalue()
+
+
+def _xlsx() -> Reader:
+    import openpyxl
+
+    import bearingdyn as bd
+
+    def write(folder: Path) -> None:
+        book = openpyxl.Workbook()
+        book.active.append(["frequency_Hz", "temperature_C", "G_storage_Pa", "G_loss_Pa"])
+        for T in (20.0, 40.0):
+            for f in (0.1, 0.3, 1.0, 3.0, 10.0):
+                book.active.append([f, T, 5e6 * f**0.1 - 1e4 * T, 1e6 * f**0.1])
+        book.save(folder / "d.xlsx")
+
+    return Reader(write, lambda f: bd.read_dma(f / "d.xlsx"), _zip_changed)
+
+
+def _xls() -> Reader:
+    import bearingdyn as bd
+
+    def write(folder: Path) -> None:
+        (folder / "d.xls").write_bytes(XLS.read_bytes())
+
+    return Reader(write, lambda f: bd.read_dma(f / "d.xls"))
+
+
+def _mesh(*endings: str) -> Reader:
+    """Sound meshes of these endings, those of tests/fem/test_mesh_hostile.py."""
+    import bearingdyn as bd
+    from fem.test_mesh_hostile import seeds
+
+    with tempfile.TemporaryDirectory() as place:
+        files = [(f"m{k}{ending}", data) for k, (ending, data) in enumerate(seeds(Path(place)))]
+    files = [(name, data) for name, data in files if Path(name).suffix in endings]
+
+    def write(folder: Path) -> None:
+        for name, data in files:
+            (folder / name).write_bytes(data)
+
+    def read(folder: Path) -> None:
+        for name, _ in files:
+            bd.read_mesh(folder / name, upgrade=True, drop_unconnected=True, largest=1e3)
+
+    return Reader(write, read)
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """A part that has been reduced: what costs the time of a mutant is then its reading."""
+
+    layer: Any
+
+    def superelement(self) -> Any:
+        return _superelement(self.layer)
+
+
+@functools.cache
+def _superelement(layer: Any) -> Any:
+    return layer.superelement()
+
+
+def _kept_part() -> Reader:
+    """A reduced part kept in a folder: one that is damaged is reduced anew, or named."""
+    import bearingdyn as bd
+    from bearingdyn.cms import kept_superelement
+    from bearingdyn.kept_arrays import START, kept
+
+    rubber = bd.Maxwell(1e6, [1e6, 2e6], [1e-2, 1e-4], K=2e9, density=1150.0)
+    part = Reduced(bd.Layer(0.026, 0.030, 0.015, rubber))
+
+    def read(folder: Path) -> None:
+        kept_superelement(part, folder)
+
+    return Reader(read, read, lambda data, mutate: kept(_zip_changed(data[START:], mutate)))
+
+
 def _strain_sweep() -> Reader:
     import bearingdyn as bd
 
@@ -560,6 +676,7 @@ READERS: dict[str, Callable[[], Reader]] = {
     "op4": _op4,
     "nodes": _nodes,
     "netcdf": _netcdf,
+    "hdf5_of_old": _hdf5_of_old,
     "show": _show,
     "run": _run,
     "store": _store,
@@ -568,6 +685,15 @@ READERS: dict[str, Callable[[], Reader]] = {
     "dma_kinds": _dma_kinds,
     "abaqus_mesh": _abaqus_mesh,
     "gmsh": _gmsh,
+    "mesh_inp": functools.partial(_mesh, ".inp"),
+    "mesh_msh": functools.partial(_mesh, ".msh"),
+    "mesh_bdf": functools.partial(_mesh, ".bdf"),
+    "mesh_unv": functools.partial(_mesh, ".unv"),
+    "mesh_vtk": functools.partial(_mesh, ".vtk"),
+    "mesh_vtu": functools.partial(_mesh, ".vtu"),
+    "xlsx": _xlsx,
+    "xls": _xls,
+    "kept_part": _kept_part,
     "strain_sweep": _strain_sweep,
     "model": _model_file,
     "ross": _ross,
@@ -637,6 +763,13 @@ def _most_memory(anew: bool = True) -> int:
     return 1024 * int(status.split("VmHWM:")[1].split()[0])
 
 
+def _end_soon() -> None:
+    """Have the process ended after 4 SECONDS more of processor time: no alarm reaches what is not Python."""
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    resource.setrlimit(resource.RLIMIT_CPU, (int(used.ru_utime + used.ru_stime + 4 * SECONDS), hard))
+
+
 def child(name: str, first: int, last: int) -> None:
     """Trials of a reader; a line with the number of each, and JSON after one that breaks the rule."""
     warnings.simplefilter("ignore")
@@ -650,6 +783,7 @@ def child(name: str, first: int, last: int) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (used + LIMIT, resource.RLIM_INFINITY))
         for number in range(first, last):
             print(number, flush=True)
+            _end_soon()
             wrong = trial(reader, folder, files, number)
             if wrong:
                 print(json.dumps([number, wrong]), flush=True)

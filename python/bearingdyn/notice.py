@@ -22,10 +22,12 @@ class Notice(UserWarning):
 
 
 class CoarseStep(Notice):
-    """One of the notices: the time step does not follow something that drives the march.
+    """One of the notices: the time step does not follow something that drives the march, or its start.
 
     When: a wave of a bearing, the passage of its balls, a pit, an unbalance, a harmonic or a sampled load has
-    fewer than twenty steps a period, at the highest speed of the profile.
+    fewer than twenty steps a period, at the highest speed of the profile; or modes that have fewer carry a
+    tenth or more of the swing that a displacement by `initial=` lets go, in a recorded motion (after
+    `settle`).
 
     Remedy: march with the dt that the warning names, or leave out what is that fast; `check_step=True` says
     how far off the record is.

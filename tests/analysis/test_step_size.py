@@ -170,3 +170,58 @@ def test_the_examples_march_finely_enough(monkeypatch: pytest.MonkeyPatch) -> No
     ]:
         fastest = rhythms(bd.equilibrium(app).system, speed)[0]
         assert dt <= 0.05 * fastest.period, fastest
+
+
+def swinging(start: float, dt: float, record: str = "body.centre.y", **more: object) -> str:
+    """Warnings of 2 kg on a spring, 79.6 Hz, with 20 g on it that swing at 5058 Hz, let go a start apart."""
+    app = bd.Application()
+    for name, mass in (("body", 2.0), ("tip", 0.02)):
+        app.add(name, bd.RigidBody(mass, (1e-3 * mass,) * 3))
+    app.ground("body.centre", stiffness=(5e5,) * 3 + (1e3,) * 3, damping=(10.0,) * 3 + (1.0,) * 3)
+    app.spring(
+        "body.centre", "tip.centre", stiffness=(2e7,) * 3 + (1e3,) * 3, damping=(200.0,) * 3 + (1.0,) * 3
+    )
+    places = {"body.centre": [0, 1e-6, 0, 0, 0, 0], "tip.centre": [0, 1e-6 + start, 0, 0, 0, 0]}
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", CoarseStep)
+        bd.transient(app, speed=0.0, dt=dt, steps=3, record=[record], initial=places, progress=False, **more)
+    return "\n".join(str(w.message) for w in caught if w.category is CoarseStep)
+
+
+def test_a_displaced_start_that_swings_faster_than_the_step_follows_is_told() -> None:
+    slow, fast = 1 / 79.18, 1 / 5058.0  # periods, s
+    assert swinging(0.0, 0.049 * slow) == ""
+    assert re.search(
+        r"start that initial= gives: modes from 79.\d+ Hz .* carry of the swing of body.centre.y 100 %; "
+        r"march with dt=0.00063 or less",
+        swinging(0.0, 0.06 * slow),
+    )
+    # the tip's y is 1 cos 500t + 0.99 s cos 31781t, in µm, and the body's has a hundredth of the second
+    dt = 0.4 * fast
+    assert swinging(9e-8, dt, "tip.centre.y") == ""
+    assert re.search(
+        r"tip.centre.y 1\d %; march with dt=9.8e-06 or less", swinging(1.2e-7, dt, "tip.centre.y")
+    )
+    assert swinging(1.2e-7, dt) == ""
+    assert "body.centre.y.velocity" not in swinging(1.2e-8, dt, "body.centre.y.velocity")
+    assert "tip.centre.y.velocity 99 %" in swinging(1.2e-7, dt, "tip.centre.y.velocity")
+    # exact steps follow any linear swing, and a record that begins when the swing is over has none of it:
+    # c/2µ = 5050 1/s, so that 0.7 are left of it after one step and 1e-5 after thirty
+    assert swinging(1.2e-7, dt, "tip.centre.y.velocity", method="exact") == ""
+    assert swinging(1.2e-7, dt, "tip.centre.y.velocity", settle=1) != ""
+    assert swinging(1.2e-7, dt, "tip.centre.y.velocity", settle=30) == ""
+
+
+def test_a_start_too_coarse_is_as_wrong_as_it_is_told() -> None:
+    """At 2.5 steps a period the average acceleration's frequency is arctan's: 2/Δt·atan(ωΔt/2)."""
+    app = oscillator(2.0, 0.0, 5e5)
+    dt = 2 * math.pi / 500.0 / 2.5
+    with pytest.warns(CoarseStep, match="initial= gives"):
+        run = bd.transient(
+            app, speed=0.0, dt=dt, steps=200, record=["body.centre.y"], progress=False,
+            initial={"body.centre": [0, 1e-6, 0, 0, 0, 0]},
+        )  # fmt: skip
+    w = 2 / dt * math.atan(500.0 * dt / 2)
+    t = run["record"]["time"].values
+    np.testing.assert_allclose(run["record"].values[:, 0], 1e-6 * np.cos(w * t), atol=1e-9)
+    assert w < 0.72 * 500.0

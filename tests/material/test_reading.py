@@ -6,6 +6,7 @@ import builtins
 import contextlib
 import math
 import warnings
+import zipfile
 
 import numpy as np
 import pytest
@@ -254,6 +255,19 @@ def book(path, *sheets):
             sheet.append(row)
     found.save(path)
     return path
+
+
+@pytest.mark.parametrize("member", ["xl/worksheets/sheet1.xml", "xl/styles.xml", "xl/drawing.bin"])
+def test_a_spreadsheet_that_unpacks_without_end_is_refused_before_it_is(tmp_path, member):
+    """A kilobyte for a megabyte, in whatever member: 17 MB is four seconds of reading."""
+    path = book(tmp_path / "bomb.xlsx", [["f_Hz", "T_C", "G'_Pa", 'G"_Pa'], *map(list, ROWS)])
+    with zipfile.ZipFile(path) as packed:
+        held = {name: packed.read(name) for name in packed.namelist()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name, content in {member: b"", **held}.items():
+            packed.writestr(name, content + b" " * (17 << 20) if name == member else content)
+    with pytest.raises(ValueError, match=r"bomb.xlsx, line 1: .* unpacks to \d+ MB, more than 16 MB"):
+        read_dma(path)
 
 
 def test_a_sheet_without_a_header_is_passed_over_and_a_broken_table_is_not(tmp_path):

@@ -11,6 +11,7 @@ import xarray
 
 import bearingdyn as bd
 from bearingdyn.results import file_seal, groups
+from bearingdyn.results.global_heaps import check_global_heaps
 
 
 @pytest.fixture
@@ -100,3 +101,34 @@ def test_a_file_that_is_no_hdf5_leaves_no_traceback_behind(
             read()
     gc.collect()
     assert forgotten == []
+
+
+@pytest.mark.parametrize("length", [1 << 10, 1 << 12, 1 << 20, 2**64 - 16, 2**64 - 1])
+@pytest.mark.parametrize("sealed", [True, False])
+def test_a_length_in_a_heap_that_does_not_fit_is_refused_before_hdf5_follows_it(
+    saved: Path, length: int, sealed: bool
+) -> None:
+    """HDF5 2.0 goes round for ever in a heap whose objects do not fill it; no alarm reaches it there."""
+    content = bytearray(saved.read_bytes()[: -file_seal.LENGTH])
+    # the first object's length; the last heap, which the references of the dimensions are in
+    content[(at := content.rindex(b"GCOL") + 24) : at + 8] = length.to_bytes(8, "little")
+    saved.write_bytes(content + (file_seal.seal(content) if sealed else b""))
+    for read in (lambda: bd.open_result(saved, "a"), lambda: groups(saved)):
+        with pytest.raises(ValueError, match=r"r\.nc cannot be read as a result: the lengths in its heap"):
+            read()
+
+
+def test_heaps_of_sound_files_pass(tmp_path: Path) -> None:
+    """Texts of all lengths, some lost again, by another program too; a file of more than one part."""
+    import h5py
+
+    for version in ("earliest", "latest"):
+        with h5py.File(tmp_path / "a.h5", "w", libver=version) as file:
+            for k in range(20):
+                file[f"s{k}"] = [f"text {i} " * (i % 40) for i in range(500)]
+            file["much"] = np.arange(1_200_000.0)
+            file.attrs["texts"] = ["x" * 50_000, "", "y"]
+            for k in range(0, 20, 3):
+                del file[f"s{k}"]
+            file["more"] = ["z"] * 5000
+        check_global_heaps(tmp_path / "a.h5")

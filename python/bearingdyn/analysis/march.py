@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from bearingdyn import core, fingerprint, run_file
 from bearingdyn.analysis.abreast import GATHERING
 from bearingdyn.analysis.decimation import Decimator, half_length
+from bearingdyn.analysis.displaced_start import warn_if_start_is_coarse
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
 from bearingdyn.analysis.march_state import Beginning, check_state, moved, system_hash
@@ -214,6 +215,17 @@ class March:
         """
         x = moved(self.system, self.x, initial) if initial else self.x
         return self.begun(model, Beginning(x, np.zeros_like(x), None))
+
+    def warn_if_start_is_coarse(
+        self, source: Equilibrium | System, initial: Mapping[str, ArrayLike], record: Sequence[str]
+    ) -> None:
+        """Warn where Newmark's step does not follow what a displaced start lets go, in a recorded motion."""
+        if self.method != "newmark":
+            return
+        found = {name: channel_of(self.system, name)[0] for name in record}
+        rows = {name: row for name, (_, row, _, _) in found.items() if row is not None}
+        displaced = moved(self.system, self.x, initial) - self.x
+        warn_if_start_is_coarse(source, self.stepping.dt, displaced, rows, self.settle * self.stepping.dt)
 
     def begun(self, model: core.Model, beginning: Beginning) -> Array:
         """State that moves as the beginning says."""

@@ -28,10 +28,10 @@ def warn_if_coarse(system: System, speed: float, dt: float) -> None:
     coarse = [r for r in rhythms(system, speed) if not dt <= SHARE * r.period]
     if not coarse:
         return
-    enough = _rounded_down(SHARE * coarse[0].period)
+    enough = rounded_down(SHARE * coarse[0].period)
     lines = [
         f"  {r.what}: period {r.period:.3g} s, {r.period / dt:.3g} steps a period; "
-        f"dt={_rounded_down(SHARE * r.period):g} would do"
+        f"dt={rounded_down(SHARE * r.period):g} would do"
         for r in coarse[:NAMED]
     ]
     if len(coarse) > NAMED:
@@ -59,15 +59,7 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
     omega, shapes = np.sqrt(squares[moving]), shapes[:, moving]
     z = B @ shapes
     share = np.einsum("ij,ij->j", z, eq.bearing_K @ z) / omega**2
-    decay = 0.5 * np.einsum("ij,ij->j", shapes, system.viscous() @ shapes)
-    decay += 0.5 * np.einsum("ij,ij->j", z, eq.bearing_C @ z)
-    for layer in system.layers:
-        material = layer.material if layer.strain is None else layer.material.rest
-        # all modes of the model are looked at, those far above the march's band too
-        with untold(OutsideBand):
-            loss = np.imag(answer_of(material, omega))
-        loss -= omega * getattr(material, "eta0", 0.0)
-        decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)
+    decay = modal_decays(system, eq.bearing_C, omega, shapes)
     gain = np.maximum(share, 0.0) * (omega * dt) ** 4 / (48.0 * dt)
     grown = gain - decay
     worst = int(np.argmax(grown))
@@ -76,7 +68,7 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
     cubes = 48.0 * decay[gain > 0.0] / (share * omega**4)[gain > 0.0]
     enough = float(cubes.min()) ** (1 / 3)
     remedy = (
-        f"march with dt={_rounded_down(enough):g} or less, or with method='newmark'"
+        f"march with dt={rounded_down(enough):g} or less, or with method='newmark'"
         if enough > 0.0
         else "march with method='newmark', or give the contacts the damping that they have"
     )
@@ -88,7 +80,33 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
     )
 
 
-def _rounded_down(value: float) -> float:
+def modal_decays(system: System, contacts: Array | None, omega: Array, shapes: Array) -> Array:
+    """Rate at which each mode's swing decays (modes,), 1/s, by dampers, contacts and layers.
+
+    Parameters
+    ----------
+    system
+        The whole.
+    contacts
+        Damping of its contacts in the bearings' motions; None: none.
+    omega, shapes
+        Frequencies (modes,), rad/s, and mass-normalised shapes (n, modes).
+    """
+    decay = 0.5 * np.einsum("ij,ij->j", shapes, system.viscous() @ shapes)
+    if contacts is not None:
+        z = system.B @ shapes
+        decay += 0.5 * np.einsum("ij,ij->j", z, contacts @ z)
+    for layer in system.layers:
+        material = layer.material if layer.strain is None else layer.material.rest
+        # all modes of the model are looked at, those far above the march's band too
+        with untold(OutsideBand):
+            loss = np.imag(answer_of(material, omega))
+        loss -= omega * getattr(material, "eta0", 0.0)
+        decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)
+    return np.asarray(decay)
+
+
+def rounded_down(value: float) -> float:
     """Two digits, never more than the value."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return float(f"{math.floor(value / unit * (1 + 1e-12)) * unit:.2g}")

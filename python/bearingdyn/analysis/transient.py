@@ -172,6 +172,9 @@ def transient(
 
     Warns
     -----
+    CoarseStep
+        Where something that drives the march, or a swing that `initial` lets go, has fewer than twenty steps
+        a period.
     BearingWarning
         Where a contact pressure was above 4.2 GPa (ISO 76) at the end of a step.
     NothingPushes
@@ -250,6 +253,8 @@ def transient(
             begun = replace(begun, x=begun.x + (march.x - source.x))
         state = march.begun(model, begun)
     else:
+        if places:
+            march.warn_if_start_is_coarse(source, places, record)
         state = march.start(model, places)
     facts = march.facts(record, [unit for _, unit in found])
     with told(progress, "step") as tell:

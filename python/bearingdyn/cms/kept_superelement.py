@@ -14,6 +14,7 @@ import numpy as np
 
 from bearingdyn import notice
 from bearingdyn.bearing import RacewaySeries
+from bearingdyn.checks import require
 from bearingdyn.cms.raceway import Raceway
 from bearingdyn.cms.radiating_surface import Skin, Surface
 from bearingdyn.cms.round_face import RoundFace
@@ -86,10 +87,23 @@ def kept_superelement(part: Reducible, folder: str | Path) -> Superelement:
         else:
             write_arrays(path, {**arrays, "doubts": np.array(json.dumps(doubts))})
     else:
-        made, doubts = _unpacked(held, laws), json.loads(str(held["doubts"]))
+        try:
+            made, doubts = _unpacked(held, laws), _doubts(json.loads(str(held["doubts"])))
+        except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
+            raise ValueError(f"{path} holds no part of this kind ({error}); delete it") from error
     for category, text in doubts:  # of the reduction, whether made now or before
         notice.warn(text, getattr(notice, category, notice.Notice))
     return made
+
+
+def _doubts(told: Any) -> list[tuple[str, str]]:
+    """Names of classes of notices, and what each said; ValueError for anything else."""
+    doubts = [(str(category), str(text)) for category, text in told]
+    for category, _ in doubts:
+        known = getattr(notice, category, Warning)  # one of another program's is a Notice here
+        is_one = isinstance(known, type) and issubclass(known, Warning)
+        require(is_one, "doubts", category, "no warning is called so")
+    return doubts
 
 
 def _laws(value: Any, depth: int = 4) -> Iterator[Any]:

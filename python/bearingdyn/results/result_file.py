@@ -15,6 +15,7 @@ import numpy as np
 from bearingdyn import run_file
 from bearingdyn.checks import existing, meant
 from bearingdyn.results.file_seal import check_seal, seal
+from bearingdyn.results.global_heaps import check_global_heaps
 from bearingdyn.results.march_record import march_dataset
 from bearingdyn.results.provenance import stamp
 from bearingdyn.writing import check_target, write_whole
@@ -122,7 +123,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
         return _run_dataset(path)
     _check_content(path)
     try:
-        with xarray.open_dataset(path, group=group or None, engine="h5netcdf") as data:
+        with xarray.open_dataset(path, group=group or None, engine="h5netcdf", phony_dims="access") as data:
             found = _complex(data.load())
     except Exception as error:  # the layers under it raise whatever the damage of a file leads to
         known = groups(path) if group else []
@@ -172,6 +173,7 @@ def _check_content(path: str | os.PathLike[str]) -> None:
     import h5py
 
     check_seal(path)
+    check_global_heaps(path)
     size = os.stat(path).st_size
     try:
         # h5netcdf prints a traceback when it forgets a file that it could not open
