@@ -24,6 +24,7 @@ PANEL = 20  # columns SuperLU updates at once; 8, its default, is a quarter slow
 LARGE = 5_000
 # its name for real symmetric positive definite matrices, and the phases: analyse and factorise, solve
 POSITIVE_DEFINITE, FACTORISE, SOLVE = 2, 12, 33
+SAME_EACH_RUN = 2  # MKL_CBWR_AUTO: one order of summation on a machine, whichever thread is done first
 
 
 class Factor(Protocol):
@@ -156,10 +157,16 @@ def _has_pardiso() -> bool:
 
 @cache
 def _pardiso() -> Any:
-    """A solver of its own library handle, which each search of the disk would take half a second to find."""
+    """A solver of its own library handle, which each search of the disk would take half a second to find.
+
+    Its results are the same in every run: what is kept by the hash of a reduced part is found again. Where
+    something else in the process has used the library before, it is too late to ask for that.
+    """
     import pypardiso
 
-    return pypardiso.PyPardisoSolver(mtype=POSITIVE_DEFINITE)
+    solver = pypardiso.PyPardisoSolver(mtype=POSITIVE_DEFINITE)
+    solver.libmkl.MKL_CBWR_Set(SAME_EACH_RUN)
+    return solver
 
 
 def _by_minimum_degree(A: Any) -> Any:
