@@ -147,6 +147,7 @@ $(VENV)/tools: pyproject.toml
 
 $(VENV)/package: $(SOURCES) $(BUILD)/sources.list $(VENV)/tools
 	$(PIP) install --no-build-isolation --config-settings=build-dir=$(BUILD)/package .
+	@rm -rf out/kept # of the package before
 	@touch $@
 
 $(VENV)/test $(VENV)/lint $(VENV)/coverage $(VENV)/docs: $(VENV)/%: $(VENV)/tools

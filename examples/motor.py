@@ -140,9 +140,12 @@ def bore(design: Design) -> float:
     return 2 * (design.inside + design.thickness)
 
 
-def motor(design: Design, radial: float = 0.0) -> bd.Application:
-    """The application: shaft, rings, layers, housings, bearings and loads; built in bearingdyn.examples."""
-    return paper_motor(design.layer, radial, sleeve=design.bore and design.inside)
+def motor(design: Design, radial: float = 0.0, cache: Path | None = None) -> bd.Application:
+    """The application: shaft, rings, layers, housings, bearings and loads; built in bearingdyn.examples.
+
+    cache: a folder that keeps the reduced pedestals.
+    """
+    return paper_motor(design.layer, radial, sleeve=design.bore and design.inside, cache=cache)
 
 
 INPUT = "shaft.middle.y"

@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import motor
@@ -66,9 +67,9 @@ class State:
     loaded: bd.Equilibrium
 
     @classmethod
-    def of(cls, design: motor.Design) -> State:
-        """Both equilibria; the parts are reduced and assembled once."""
-        app = motor.motor(design)
+    def of(cls, design: motor.Design, cache: Path) -> State:
+        """Both equilibria; the parts are reduced and assembled once, the pedestals read from the cache."""
+        app = motor.motor(design, cache=cache)
         rest = bd.equilibrium(app)
         app.load("shaft.middle", (0.0, -motor.RADIAL, 0.0, 0.0, 0.0, 0.0))
         with warnings.catch_warnings():
@@ -351,9 +352,14 @@ def sweep_part(states: Mapping[str, State], clock: Stages) -> dict[str, np.ndarr
 
 
 def main() -> int:
-    """Run everything; returns the exit code."""
+    """Run everything; returns the exit code.
+
+    What costs most and depends on nothing else, the reduced pedestals and what they radiate, is kept in
+    out/kept for the next run; `make` empties that folder when it installs the package anew.
+    """
     out = motor.ROOT / "out"
-    out.mkdir(exist_ok=True)
+    kept = out / "kept"
+    kept.mkdir(parents=True, exist_ok=True)
     clock = Stages()
     with clock.stage("rubber: master curve and fit"):
         low, dma, master = motor.rubber()
@@ -361,15 +367,15 @@ def main() -> int:
     four, losses = motor.designs(low), motor.loss_designs(low)
     with clock.stage("housings reduced, one for each bore"):
         for design in four:
-            reduced_pedestal(motor.bore(design))
+            reduced_pedestal(motor.bore(design), str(kept))
     with clock.stage("other parts, assembly and equilibria"):
-        states = {design.label: State.of(design) for design in (*four, losses[-1])}
+        states = {design.label: State.of(design, kept) for design in (*four, losses[-1])}
     harmonics, bending = harmonic_part(states, clock)
     motions = steady_part(states, clock)
     sweeps = sweep_part(states, clock)
 
     with clock.stage("sound power of the pedestals"):
-        sounds = {label: motor_sound.heard(states[label].rest, out / "radiation") for label in IN_MOTION}
+        sounds = {label: motor_sound.heard(states[label].rest, kept) for label in IN_MOTION}
     motor_sound.table(sounds)
 
     stored = {f"response/{label}": found.response for label, found in harmonics.items()}

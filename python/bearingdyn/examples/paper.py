@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import functools
+import os
 from collections.abc import Sequence
-from functools import cache
+from pathlib import Path
 
 import numpy as np
 
 from bearingdyn.application import Application
 from bearingdyn.bearing import BallBearing, Pit, WavinessSpectrum, catalogue
 from bearingdyn.checks import instance, items, nonnegative, require
-from bearingdyn.cms import Superelement
+from bearingdyn.cms import Superelement, kept_superelement
 from bearingdyn.parts import Disc, Housing, Layer, RigidBody, Section, Shaft
 
 # groove radius taken off, outside radius, width of the outer ring, m; for the 6305 of the inner ring too
@@ -27,6 +29,7 @@ def paper_motor(
     *,
     bearings: Sequence[BallBearing] | None = None,
     sleeve: float = 0.0,
+    cache: str | os.PathLike[str] | None = None,
 ) -> Application:
     """The motor of the paper, section 4: a flexible shaft in two 6305 bearings, each in a flexible pedestal.
 
@@ -43,6 +46,8 @@ def paper_motor(
         Left and right, as with waviness; None: the 6305 of ISO/TS 16281, of seven balls, without.
     sleeve
         Outside radius, m, of a steel sleeve between each outer ring and its layer; 0: none.
+    cache
+        Folder in which the reduced pedestals are kept, as in `Application.add`; None: they are reduced here.
 
     Returns
     -------
@@ -71,7 +76,7 @@ def paper_motor(
         ring, house = f"{side}_ring", f"{side}_housing"
         app.add(f"{side}_inner", RigidBody.ring(*INNER_6305, rotating=True))
         app.add(ring, _outer_ring(sleeve))
-        app.add(house, reduced_pedestal(2 * bore))
+        app.add(house, reduced_pedestal(2 * bore, None if cache is None else os.fspath(cache)))
         app.connect(f"shaft.{side}", f"{side}_inner.centre")
         app.ground(f"{house}.feet")
         if layer is None:
@@ -102,7 +107,7 @@ def plain_6305() -> BallBearing:
     return catalogue.bearing("6305", balls=7, clearance=10e-6, damping=CONTACT_DAMPING)
 
 
-@cache
+@functools.cache
 def paper_shaft() -> Shaft:
     """The stepped shaft of the paper's motor: seats "left" and "right", "middle" for the load, a free end."""
     sections = [
@@ -138,10 +143,11 @@ def paper_pedestal(bore_diameter: float) -> Housing:
     )
 
 
-@cache
-def reduced_pedestal(bore_diameter: float) -> Superelement:
+@functools.cache
+def reduced_pedestal(bore_diameter: float, cache: str | None = None) -> Superelement:
     """Reduced once for each bore: designs of equal thickness share it, and so do both sides."""
-    return paper_pedestal(bore_diameter).superelement()
+    whole = paper_pedestal(bore_diameter)
+    return whole.superelement() if cache is None else kept_superelement(whole, Path(cache))
 
 
 def fault_bench(layer: Layer | None = None, defects: Sequence[Pit] = ()) -> Application:
@@ -191,7 +197,7 @@ def fault_bench(layer: Layer | None = None, defects: Sequence[Pit] = ()) -> Appl
     return app
 
 
-@cache
+@functools.cache
 def _bench_shaft() -> Superelement:
     rotor = Disc.cylinder(0.15, 0.12, 0.03, d_inner=0.03)
     seats = {"left": 0.02, "right": 0.28}
@@ -201,7 +207,7 @@ def _bench_shaft() -> Superelement:
     return whole.superelement()
 
 
-@cache
+@functools.cache
 def _bench_pedestal(outside: float) -> Superelement:
     block = Housing(0.12, 0.14, 0.025, bore_diameter=2 * outside, bore_height=0.08, damping=0.01, f_max=12e3)
     return block.superelement()

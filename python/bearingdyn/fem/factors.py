@@ -32,6 +32,7 @@ POSITIVE_DEFINITE, FACTORISE, SOLVE = 2, 12, 33
 # pivot. Its own default refines every solution twice, for three times the work, where the residual of a block
 # of 30 thousand coordinates is 3e-13 of the load without and 2e-13 with it.
 SETTINGS = {1: 1, 2: 2, 8: 0}
+SAME_EACH_RUN = 2  # MKL_CBWR_AUTO: one order of summation on a machine, whichever thread is done first
 
 
 class Factor(Protocol):
@@ -178,7 +179,11 @@ def _has_pardiso() -> bool:
 
 @cache
 def _pardiso() -> Any:
-    """A solver of its own library handle, sought once."""
+    """A solver of its own library handle, sought once.
+
+    Its results are the same in every run: what is kept by the hash of a reduced part is found again. Where
+    something else in the process has used the library before, it is too late to ask for that.
+    """
     # its own search, at its import, walks through the whole installation for half a second
     beside = sorted((Path(sys.prefix) / "lib").glob("libmkl_rt.so*"), key=lambda path: len(path.name))
     told = bool(beside) and LIBRARY not in os.environ
@@ -187,10 +192,12 @@ def _pardiso() -> Any:
     try:
         import pypardiso
 
-        return pypardiso.PyPardisoSolver(mtype=POSITIVE_DEFINITE)
+        solver = pypardiso.PyPardisoSolver(mtype=POSITIVE_DEFINITE)
     finally:
         if told:
             del os.environ[LIBRARY]
+    solver.libmkl.MKL_CBWR_Set(SAME_EACH_RUN)
+    return solver
 
 
 def _by_minimum_degree(A: Any) -> Any:
