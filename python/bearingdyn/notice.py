@@ -417,6 +417,17 @@ class OilAtOtherSpeed(Notice):
     """
 
 
+class FewOrders(Notice):
+    """One of the notices: a flexible ring moves by fewer orders than its bearing has balls.
+
+    When: a bearing is hung in a ring made without it (`FlexibleRing(..., arm=)`), whose order is below the
+    number Z of balls: equal loads on all of them bend it by cos Zψ, which it then lacks. At order 6 under
+    seven balls what a ring adds to Hertz is 43 % low.
+
+    Remedy: `FlexibleRing(..., bearing=)`, which takes Z + 1 orders and folds in those beyond; or that order.
+    """
+
+
 class StandingUnbalance(Notice):
     """One of the notices: an unbalance is on a part that stands.
 

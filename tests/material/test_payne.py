@@ -41,6 +41,17 @@ def test_at_one_tone_spring_and_branch_are_the_law():
     assert LAW.dynamic(omega, gamma) == pytest.approx(LAW.modulus(gamma), rel=1e-14)
 
 
+@pytest.mark.parametrize("gamma", [1e-5, 1e-3, 3.3e-3, 2e-2, 0.3])
+def test_the_slope_over_strain_is_that_of_the_law(gamma):
+    """d/d ln γ by central differences, of the order h² of what is smooth over a decade."""
+    h = 1e-4
+    sides = [LAW.change(700.0, gamma * np.exp(s * h)) for s in (1, -1)]
+    by_differences = (sides[0] - sides[1]) / (2 * h)
+    slope = complex(LAW.slope(gamma))
+    assert slope.real == pytest.approx(by_differences.real, rel=1e-6)
+    assert slope.imag == pytest.approx(by_differences.imag, rel=1e-6, abs=1e-6 * abs(slope))
+
+
 def test_static_strain_is_no_amplitude():
     """5 % of preload and 0.05 % at 20 Hz: the modulus of the small vibration, as given."""
     assert LAW.modulus(5e-4) / 1e6 == pytest.approx(2.0250 + 0.0041j, abs=5e-5)

@@ -107,9 +107,16 @@ def test_an_ovalised_bore_loads_the_balls_on_its_short_axis() -> None:
 
 
 def test_bad_shapes_are_named() -> None:
-    for waves, name in (({1: (1e-6, 0.0)}, "waves"), ({2: (math.nan, 0.0)}, r"waves\[2\]")):
+    for waves, name in (
+        ({1: (1e-6, 0.0)}, "waves"),
+        ({2: (math.nan, 0.0)}, r"waves\[2\]"),
+        ({2: 5e-6}, r"waves\[2\] is 5e-06"),
+        ({2: (5e-6,)}, r"waves\[2\] is \(5e-06,\)"),
+        ([2, 5e-6], "waves is"),
+        (None, "waves is None"),
+    ):
         with pytest.raises(ValueError, match=name):
-            BoreShape(waves)
+            BoreShape(waves)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="interference"):
         BoreShape({}, interference=-1e-6)
     with pytest.raises(ValueError, match="layer is given"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import bearingdyn as bd
 from bearingdyn.bearing import LooseFit
 from bearingdyn.bearing.raceway_series import RacewaySeries
+from bearingdyn.notice import FewOrders
 from bearingdyn.parts import FlexibleBearing, FlexibleRing, Layer, Revolved, RigidBody, RingBed
 from flexible_rings import (
     B6305,
@@ -220,6 +222,24 @@ def test_bad_input_is_named() -> None:
         RacewaySeries(((1, 0, 0), (0, 1, 0)))
     with pytest.raises(ValueError, match="grooves"):
         Revolved(RING.body.regions, {"raceway": RING.body.interfaces["outer"]}, grooves=RING.body.grooves)
+
+
+def test_a_ring_of_fewer_orders_than_balls_is_told() -> None:
+    assert B6305.Z == 7
+    with pytest.warns(FewOrders, match=r"has 7 balls.*ring\.raceway moves by orders to 6.*order=8"):
+        hung(replace(RING, bearing=None, arm=B6305.arm, order=6))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", FewOrders)
+        hung(replace(RING, bearing=None, arm=B6305.arm, order=7))
+
+
+@pytest.mark.parametrize(
+    "radii", [(20 * MM, 24 * MM), (40 * MM, 46 * MM), (17 * MM, 31 * MM), (55 * MM, 62 * MM)]
+)
+def test_a_ring_of_another_bearing_is_refused(radii: tuple[float, float]) -> None:
+    """Inside the pitch circle, far outside the balls, as diameters."""
+    with pytest.raises(ValueError, match=r"r_inner is .*run on a race from 0\.02"):
+        FlexibleRing(*radii, 17 * MM, bearing=B6305)
 
 
 def test_channels_of_a_raceway() -> None:

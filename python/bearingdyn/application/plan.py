@@ -14,6 +14,7 @@ from bearingdyn.application.loads import Load
 from bearingdyn.application.part import Part
 from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.cms import HasRoundFaces, Raceway, RoundFace, Superelement
+from bearingdyn.notice import FewOrders, warn
 from bearingdyn.types import Array
 
 
@@ -172,6 +173,11 @@ class Plan:
     def check_raceway(self, joint: BearingJoint) -> None:
         """Check a new bearing against the raceway it is hung in, if it is hung in one.
 
+        Warns
+        -----
+        FewOrders
+            If the raceway moves by fewer orders than the bearing has balls.
+
         Raises
         ------
         ValueError
@@ -194,6 +200,13 @@ class Plan:
             if place in taken:
                 raise ValueError(
                     f"bearing {name!r}: {place} carries a bearing already; give each its own raceway"
+                )
+            order, Z = max(n for _, n, _ in raceway.series.terms), joint.bearing.Z
+            if order < Z:
+                warn(
+                    f"bearing {name!r} has {Z} balls, whose loads bend the ring by cos {Z}ψ, and {place} "
+                    f"moves by orders to {order}: make the ring with bearing=, or with order={Z + 1}",
+                    FewOrders,
                 )
         if len({raceway.series for _, raceway in found}) > 1:
             raise ValueError(

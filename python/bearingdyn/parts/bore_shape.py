@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, number, real, require, whole
+from bearingdyn.checks import instance, nonnegative, number, real, require, whole
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
@@ -37,8 +37,10 @@ class BoreShape:
 
     def __post_init__(self) -> None:
         remedy = "orders of a bore's shape are whole numbers from 2: 0 is the fit, 1 where the bore is"
+        instance("waves", self.waves, Mapping, "it must be {order: (cosine, sine) in m}")
         for n, pair in self.waves.items():
             whole("waves", n, 2, remedy=remedy)
+            require(np.shape(pair) == (2,), f"waves[{n}]", pair, "it must be (cosine, sine) in m")
             for value in pair:
                 number(f"waves[{n}]", value, "it must be (cosine, sine) in m")
                 plausible("bore wave", f"waves[{n}]", value)

@@ -33,6 +33,7 @@ F_HEARD = 6e3  # Hz, up to which a ring's receptances are right unless f_max say
 # of the ball's diameter, the height of shoulders of deep groove bearings, and of angular contact ones
 SHOULDER = 0.16
 SHOULDER_ANGULAR = 0.3
+REACH = 0.6  # of it, from the pitch circle to the bottom of a groove at most: .5, and room for play
 NEGLIGIBLE = 1e-9  # of the largest folded compliance
 
 
@@ -220,10 +221,24 @@ class FlexibleRing:
                     f"order is {order}; the bearing has {Z} balls, whose loads bend the ring by cos {Z}ψ: "
                     f"give {Z + 1}, or leave it out"
                 )
+            self._check_race(self.bearing)
             if self.load is not None:
                 positive("load", self.load, "it must be the positive load of a ball in N")
         object.__setattr__(self, "arm", arm)
         object.__setattr__(self, "order", order)
+
+    def _check_race(self, bearing: BallBearing) -> None:
+        """Raise ValueError where the balls of a bearing cannot run on the race."""
+        pitch, depth = 0.5 * bearing.Dpw, REACH * bearing.Dw
+        name, radius = ("r_outer", self.r_outer) if self.inner else ("r_inner", self.r_inner)
+        low, high = (pitch - depth, pitch) if self.inner else (pitch, pitch + depth)
+        require(
+            low <= radius <= high,
+            name,
+            radius,
+            f"balls of {bearing.Dw:.4g} m on a pitch circle of {bearing.Dpw:.4g} m run on a race from "
+            f"{low:.4g} to {high:.4g} m: give a radius in m there",
+        )
 
     def _check_footprint(self) -> None:
         """Raise ValueError where the contact is as large as the ring."""
