@@ -20,6 +20,10 @@ from bearingdyn.types import Array
 SHARE = 0.05
 NAMED = 12  # lines of a warning; the fastest come first
 GROWN = 0.01  # growth of a mode over a march, as ln of its factor, that is no matter
+# What balls hold grows in a step by (ωΔt)^power / divisor, by the order of the polynomial that holds their
+# forces: the leading term of the recurrence's largest root. A line is symmetric in time, and nothing grows.
+GROWTH = {1: None, 2: (4, 48.0), 3: (6, 90.0)}
+ORDERS = {2: "second", 3: "third", 4: "fourth"}
 CHECKED = 2000  # steps of the stretch that is repeated at half the step
 
 
@@ -44,15 +48,17 @@ def warn_if_coarse(system: System, speed: float, dt: float) -> None:
     )
 
 
-def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
-    """Step size too long for the exact method: warn where a mode grows by what the bearings' parabola leaves.
+def warn_if_growing(eq: Equilibrium, dt: float, steps: int, hold: int) -> None:
+    """Step size too long for the exact method: warn where a mode grows by what its held forces leave.
 
-    A force held by a parabola through the last three steps lags by (ωΔt)³/24: what balls hold gains
-    (ωΔt)⁴/48 a step. Modes are those of the relaxed structure on the balls' tangents.
+    A force held by a parabola through the last three steps' ends lags by (ωΔt)³/24: what balls hold gains
+    (ωΔt)⁴/48 a step; by a cubic through four (ωΔt)⁶/90. Modes are those of the relaxed structure on the
+    balls' tangents.
     """
-    system = eq.system
-    if not system.bearings:
+    system, growth = eq.system, GROWTH[hold]
+    if not system.bearings or growth is None:
         return
+    power, divisor = growth
     B = system.B
     squares, shapes = natural(system.stiffness(system.marched_moduli()) + B.T @ eq.bearing_K @ B, system.M)
     moving = squares > 0.0
@@ -68,13 +74,13 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
             loss = np.imag(answer_of(material, omega))
         loss -= omega * getattr(material, "eta0", 0.0)
         decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)
-    gain = np.maximum(share, 0.0) * (omega * dt) ** 4 / (48.0 * dt)
+    gain = np.maximum(share, 0.0) * (omega * dt) ** power / (divisor * dt)
     grown = gain - decay
     worst = int(np.argmax(grown))
     if not grown[worst] * steps * dt > GROWN:
         return
-    cubes = 48.0 * decay[gain > 0.0] / (share * omega**4)[gain > 0.0]
-    enough = float(cubes.min()) ** (1 / 3)
+    powers = divisor * decay[gain > 0.0] / (share * omega**power)[gain > 0.0]
+    enough = float(powers.min()) ** (1 / (power - 1))
     remedy = (
         f"march with dt={_rounded_down(enough):g} or less, or with method='newmark'"
         if enough > 0.0
@@ -94,12 +100,13 @@ def _rounded_down(value: float) -> float:
     return float(f"{math.floor(value / unit * (1 + 1e-12)) * unit:.2g}")
 
 
-def step_error_made(method: str) -> str:
+def step_error_made(method: str, hold: int) -> str:
     """How `step_error` was made, in words."""
-    share, order = ("4/3", "second") if method == "newmark" else ("8/7", "third")
+    order = 2 if method == "newmark" else hold + 1
+    share = f"{2**order}/{2**order - 1}"
     return (
         f"{CHECKED} steps beyond the end, at dt and at dt/2 from one state: {share} of the rms difference "
-        f"over the rms of the channel about its mean (the scheme is of {order} order)"
+        f"over the rms of the channel about its mean (the scheme is of {ORDERS[order]} order)"
     )
 
 
@@ -114,7 +121,7 @@ def step_error(
     From the state at the end of a march CHECKED steps go on, once with the step and once with half of it. The
     scheme is of second order, so that 4/3 of the difference (rms) is the error of the coarser one
     (Richardson); it is put over the channel's own rms about its mean. With `modes`, of the step and its
-    half, steps are exact but for the bearing forces, of third order, and 8/7 of the difference is the error.
+    half, steps are exact but for the bearing forces, of the order after the one that these are held by.
     """
     whole, halved = modes or (None, None)
     plain = replace(stepping, audit=False)
@@ -125,5 +132,6 @@ def step_error(
     if len(coarse) != CHECKED or report.status != 0:
         return np.full(coarse.shape[1], np.nan)
     size = np.std(fine, axis=0)
-    error = (4 / 3 if modes is None else 8 / 7) * np.sqrt(np.mean((coarse - fine) ** 2, axis=0))
+    halvings = 2 ** (2 if modes is None else stepping.scheme.hold + 1)
+    error = halvings / (halvings - 1) * np.sqrt(np.mean((coarse - fine) ** 2, axis=0))
     return np.asarray(np.divide(error, size, out=np.full_like(size, np.nan), where=size > 0))
