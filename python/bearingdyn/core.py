@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import _core
-from bearingdyn.checks import whole
 from bearingdyn.progress import Progress as Progress
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -118,7 +117,8 @@ class Scheme:
     hold: int = 3
 
     def __post_init__(self) -> None:
-        whole("hold", self.hold, 1, 3, "it is the order of a polynomial: give 1, 2 or 3")
+        if self.hold not in (1, 2, 3):
+            raise ValueError(f"hold is {self.hold!r}; it is the order of a polynomial: give 1, 2 or 3")
         Stepping(1.0, scheme=self)
 
 

@@ -8,9 +8,7 @@ is a skew matrix and what dissipates. Its modes are well conditioned; in them a 
 What nothing holds (w = 0) has no ξ: its displacement is the integral of its velocity, kept beside the modes,
 so that no double root arises.
 
-The bearing forces g are a polynomial of order h through the new one, s = 1, and those at the last steps'
-ends, s = 0, −1 … 1 − h, on the first steps of the order that these allow; with
-φ_(k+1)(z) k! = ∫₀¹ exp(z(1 − s)) sᵏ ds they are integrated exactly.
+The bearing forces g are polynomials through the ends of the last steps: `held_forces`.
 """
 
 from __future__ import annotations
@@ -21,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
+from bearingdyn.analysis.held_forces import phi, rows_of, weights_of
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
@@ -29,21 +28,6 @@ WORST = 1e8  # condition of modes; so many digits of sixteen may cancel
 NODES = np.polynomial.legendre.leggauss(64)  # enough for 40 rad of a mode within a step
 SKEW = 1e-13  # of the largest entry: below it a matrix is skew but for round-off
 BY_NUMBER = ("Z", "X", "V", "A", "S")  # arrays with a row for each number of a state
-TERMS = 26  # of Taylor's series within the unit circle
-
-
-def phi(z: Complex, last: int) -> list[Complex]:
-    """φ functions of the exact step, φ_0 … φ_last of z: exp(z), and φ_(k+1) = (φ_k − 1/k!)/z."""
-    z = np.asarray(z, dtype=np.complex128)
-    small = np.abs(z) < 1
-    inner, outer = np.where(small, z, 0), np.where(small, 1, z)
-    found = [np.exp(z)]
-    far = np.exp(outer)
-    for k in range(last):
-        far = (far - 1 / math.factorial(k)) / outer
-        near = sum(inner**n / math.factorial(n + k + 1) for n in range(TERMS, -1, -1))
-        found.append(np.where(small, near, far))
-    return found
 
 
 def _padded(n: int) -> int:
@@ -166,10 +150,10 @@ class ExactModes:
         widths = [g.width for g in self.groups]
         total = sum(widths)
         starts = np.cumsum([0, *(t.L.shape[1] * len(t.material.G) for t in system.layers)])
-        rows_of = 1 + sum(order + 1 for order in range(1, hold + 1))
+        count = 1 + sum(order + 1 for order in range(1, hold + 1))
         out = {
             "roots": np.zeros((1, total)),
-            "weights": np.zeros((rows_of, total)),
+            "weights": np.zeros((count, total)),
             "P": np.zeros((m, total)),
             "Z": np.zeros((total, 2 * m)),
             "load": np.zeros((2 * len(system.loads), total)),
@@ -178,18 +162,18 @@ class ExactModes:
             "A": np.zeros((total, n)),
             "S": np.zeros((total, int(starts[-1]))),
         }
-        loose, joined, at = [np.zeros((rows_of, 0))], np.zeros((hold, 2, m, m)), 0
+        loose, joined, at = [np.zeros((count, 0))], np.zeros((hold, 2, m, m)), 0
         for group, width in zip(self.groups, widths, strict=True):
             here = slice(at, at + width)
             at += width
             parts = {k: v[here] if k in BY_NUMBER else v[:, here] for k, v in out.items()}
             parts["roots"][:] = group.split(group.roots)
-            parts["weights"][:] = group.split(_weights(group.roots, dt, hold, 0))
+            parts["weights"][:] = group.split(weights_of(group.roots, dt, hold, 0))
             _place_motion(system, group, self.squares, parts, starts)
             _place_loads(system, group, self.squares, parts["load"], self.speed, dt)
             rows = _loose_rows(group, self.squares, dt, hold)
             _join(group, parts, rows, joined)
-            loose.append(rows.reshape(rows_of, -1))
+            loose.append(rows.reshape(count, -1))
         return {
             **out,
             "roots": out["roots"][0],
@@ -266,26 +250,6 @@ def _damped_modes(A: Array) -> tuple[Complex, Complex, int]:
     return roots[order], shapes[:, order].astype(np.complex128), len(real)
 
 
-def _held(order: int) -> slice:
-    """Rows of weights of the forces at s = 1, 0 … on a polynomial of an order."""
-    first = order * (order + 1) // 2
-    return slice(first, first + order + 1)
-
-
-def _weights(roots: Complex, dt: float, hold: int, ahead: int) -> Complex:
-    """Factors (k, j) of q, then by order of the forces at s = 1, 0 …; integrated `ahead` times more."""
-    p = phi(roots * dt, hold + 1 + ahead)
-    # of sᵏ; k! from the φ function that is its integral
-    powers = np.array([math.factorial(k) * p[k + 1 + ahead] for k in range(hold + 1)])
-    rows = [p[ahead] * dt**ahead]
-    for order in range(1, hold + 1):
-        nodes = 1.0 - np.arange(order + 1)
-        # column k of the inverse holds the powers of the polynomial that is 1 at node k and 0 at the others
-        lagrange = np.linalg.inv(np.vander(nodes, increasing=True))
-        rows.extend(dt ** (1 + ahead) * (lagrange.T @ powers[: order + 1]))
-    return np.array(rows)
-
-
 def _forced(roots: Complex, omega: float, dt: float) -> tuple[Complex, Complex]:
     """∫₀ʰ exp(λ(h − s)) exp(iωs) ds of each root, and of that the integral over time, (j,) each."""
     one = np.exp(1j * omega * dt) * dt * phi((roots - 1j * omega) * dt, 1)[1]
@@ -341,7 +305,7 @@ def _loose_rows(group: _Group, squares: Array, dt: float, hold: int) -> Array:
     """Weights (k, modes, loose) of loose displacements: the modes' integrated over time once more."""
     r = np.flatnonzero(~(squares[group.block] > 0))
     v = _motions(group, squares)[1][r]
-    weights = _weights(group.roots, dt, hold, 1)
+    weights = weights_of(group.roots, dt, hold, 1)
     rows = np.zeros((len(weights), group.modes, group.sizes[2]))
     each = group.seen(weights[:, None, :] * v)[..., : group.modes]
     rows[:, :, : len(r)] = each.transpose(0, 2, 1)
@@ -353,7 +317,7 @@ def _place_loads(system: System, group: _Group, squares: Array, out: Array, spee
     r = np.flatnonzero(~(squares[group.block] > 0))
     _, v, into = _motions(group, squares)
     twice = np.where(np.arange(len(group.roots)) < group.reals, 1.0, 2.0)
-    first, second = (_weights(group.roots, dt, 1, ahead)[_held(1)] for ahead in (0, 1))
+    first, second = (weights_of(group.roots, dt, 1, ahead)[rows_of(1)] for ahead in (0, 1))
 
     def taken(factors: tuple[Complex, Complex], b: Complex) -> Array:
         """Of a load on the modes b (j,): by the modes, and by loose coordinates."""
@@ -387,7 +351,7 @@ def _join(group: _Group, out: dict[str, Array], rows: Array, joined: Array) -> N
     m = len(P)
     re, im = slice(real, real + pairs), slice(real + pairs, modes)
     for order in range(len(joined)):
-        row = _held(order + 1).start  # of the new force
+        row = rows_of(order + 1).start  # of the new force
         weight = out["weights"][row]
         moved = P * weight
         moved[:, re] = P[:, re] * weight[re] - P[:, im] * weight[im]

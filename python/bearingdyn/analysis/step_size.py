@@ -10,6 +10,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.driving_periods import rhythms
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.held_forces import held_growth
 from bearingdyn.material import answer_of
 from bearingdyn.notice import CoarseStep, GrowingStep, OutsideBand, untold, warn
 from bearingdyn.system import System, natural
@@ -20,10 +21,8 @@ from bearingdyn.types import Array
 SHARE = 0.05
 NAMED = 12  # lines of a warning; the fastest come first
 GROWN = 0.01  # growth of a mode over a march, as ln of its factor, that is no matter
-# What balls hold grows in a step by (ωΔt)^power / divisor, by the order of the polynomial that holds their
-# forces: the leading term of the recurrence's largest root. A line is symmetric in time, and nothing grows.
-GROWTH = {1: None, 2: (4, 48.0), 3: (6, 90.0)}
 ORDERS = {2: "second", 3: "third", 4: "fourth"}
+HALVINGS = 12  # of the interval in which the largest step is that makes nothing grow
 CHECKED = 2000  # steps of the stretch that is repeated at half the step
 
 
@@ -51,14 +50,12 @@ def warn_if_coarse(system: System, speed: float, dt: float) -> None:
 def warn_if_growing(eq: Equilibrium, dt: float, steps: int, hold: int) -> None:
     """Step size too long for the exact method: warn where a mode grows by what its held forces leave.
 
-    A force held by a parabola through the last three steps' ends lags by (ωΔt)³/24: what balls hold gains
-    (ωΔt)⁴/48 a step; by a cubic through four (ωΔt)⁶/90. Modes are those of the relaxed structure on the
-    balls' tangents.
+    Modes are those of the relaxed structure on the balls' tangents; each gains what the step's recurrence
+    says of one that balls hold by its share (`held_growth`).
     """
-    system, growth = eq.system, GROWTH[hold]
-    if not system.bearings or growth is None:
+    system = eq.system
+    if not system.bearings:
         return
-    power, divisor = growth
     B = system.B
     squares, shapes = natural(system.stiffness(system.marched_moduli()) + B.T @ eq.bearing_K @ B, system.M)
     moving = squares > 0.0
@@ -74,13 +71,23 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int, hold: int) -> None:
             loss = np.imag(answer_of(material, omega))
         loss -= omega * getattr(material, "eta0", 0.0)
         decay += loss / omega * ((layer.L.T @ shapes) ** 2).sum(axis=0)
-    gain = np.maximum(share, 0.0) * (omega * dt) ** power / (divisor * dt)
-    grown = gain - decay
-    worst = int(np.argmax(grown))
-    if not grown[worst] * steps * dt > GROWN:
+    share = np.clip(share, 0.0, 1.0)
+
+    def grown(dt: float) -> tuple[Array, Array]:
+        """What modes gain, and what is left of it by their damping, 1/s."""
+        gain = held_growth(omega * dt, share, hold) / dt
+        return gain, gain - decay
+
+    gain, left = grown(dt)
+    worst = int(np.argmax(left))
+    if not left[worst] * steps * dt > GROWN:
         return
-    powers = divisor * decay[gain > 0.0] / (share * omega**power)[gain > 0.0]
-    enough = float(powers.min()) ** (1 / (power - 1))
+    # to two digits
+    within, beyond = 0.0, dt
+    for _ in range(HALVINGS):
+        middle = 0.5 * (within + beyond)
+        within, beyond = (middle, beyond) if (grown(middle)[1] <= 0.0).all() else (within, middle)
+    enough = within
     remedy = (
         f"march with dt={_rounded_down(enough):g} or less, or with method='newmark'"
         if enough > 0.0
@@ -88,7 +95,7 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int, hold: int) -> None:
     )
     warn(
         f"dt = {dt:g} s with method 'exact' makes a mode at {omega[worst] / (2 * np.pi):.5g} Hz grow by "
-        f"{grown[worst]:.3g} 1/s: balls hold {100 * share[worst]:.0f} % of it, which gains "
+        f"{left[worst]:.3g} 1/s: balls hold {100 * share[worst]:.0f} % of it, which gains "
         f"{gain[worst]:.3g} 1/s, and its damping takes {decay[worst]:.3g} 1/s; {remedy}",
         GrowingStep,
     )

@@ -129,11 +129,12 @@ def transient(
         "newmark", the paper's, or "exact": at a constant speed structure, gyroscopic forces and layers move
         in modes of their own, without an error of the step; what is left is that the bearing forces are held
         as a cubic through four steps' ends (`Scheme.hold`), contacts that close or open within two steps by
-        what the sum over steps should see. Of the same error it takes some six times fewer steps. A constant,
+        what the sum over steps should see. Of the same error it takes some ten times fewer steps. A constant,
         harmonic or rotating load is exact, a table is linear from step to step. It does not take a speed that
         varies, nor layers with a law of softening; `scheme`'s β and γ do not count. Unlike Newmark's it is
-        stable for small steps alone: a motion at ω that balls alone hold grows by (ωΔt)⁶/90 a step, against
-        its damping, and by 1 % at ωΔt = 1; `GrowingStep` warns of it.
+        stable for small steps alone: what balls alone hold at ω does not grow while ωΔt < 2.3, what they hold
+        in part while ωΔt < 1.3, and some 1e-4 a step there and beyond, against its damping; `GrowingStep`
+        warns of it.
     contacts
         How lubricated contacts answer (`BallBearing(lubrication=…)`): "viscous", by the damping that holds at
         low frequency, or "film": the oil carries what was pressed at the inlet through the contact, so that
