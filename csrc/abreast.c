@@ -61,7 +61,8 @@ bool bd_abreast_shares(const bd_abreast_case *p, const bd_abreast_case *q)
             return false;
     return same(v->diagonal, w->diagonal, blocks * sizeof *v->diagonal) &&
            same(a->bands, b->bands, bands * sizeof *a->bands) &&
-           same(a->seen, b->seen, (size_t)a->n_bearings * bands * sizeof *a->seen) &&
+           same(a->sight, b->sight, ((size_t)a->n_bearings + 1) * sizeof *a->sight) &&
+           same(a->sights, b->sights, (size_t)a->sight[a->n_bearings] * sizeof *a->sights) &&
            same(v->weights, w->weights, (size_t)a->branches * sizeof *v->weights) &&
            same_doubles(v->step, w->step, v->step_at[a->n_blocks]);
 }

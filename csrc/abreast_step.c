@@ -201,17 +201,13 @@ BD_INLINE void observe(const bd_abreast *of)
     clear(model->coefs, of->z);
     clear(model->coefs, of->z_rate);
     for (int b = 0; b < model->n_bearings; b++) {
-        const bd_span *seen = model->seen + b * model->n_bands;
-        for (int c = 0; c < model->n_blocks; c++) {
-            const bd_block *block = &model->blocks[c];
-            for (int i = block->band; i < block->band + block->n_bands; i++) {
-                const int from = block->offset + model->bands[i].first, n = model->bands[i].n;
-                const int at = model->bearing_slot[b] + seen[i].first;
-                coefficients_add(of, from, n, at, seen[i].n, WIDE(of->x_new, from),
-                                 WIDE(of->z, at));
-                coefficients_add(of, from, n, at, seen[i].n, WIDE(of->v_new, from),
-                                 WIDE(of->z_rate, at));
-            }
+        const bd_sight *end = model->sights + model->sight[b + 1];
+        for (const bd_sight *sight = model->sights + model->sight[b]; sight < end; sight++) {
+            const bd_span from = sight->coordinates, to = sight->coefficients;
+            coefficients_add(of, from.first, from.n, to.first, to.n, WIDE(of->x_new, from.first),
+                             WIDE(of->z, to.first));
+            coefficients_add(of, from.first, from.n, to.first, to.n, WIDE(of->v_new, from.first),
+                             WIDE(of->z_rate, to.first));
         }
     }
 }
@@ -290,26 +286,21 @@ unsigned BD_NAMED(bd_abreast_complete)(bd_abreast *of)
         LANES_AT(of->minus_g + k) = -LANES(of->guess + k);
     for (int b = 0; b < model->n_bearings; b++) {
         const int slot = model->bearing_slot[b], n_coefs = model->bearings[b].data.n_coefs;
-        const bd_span *seen = model->seen + b * model->n_bands;
+        const bd_sight *end = model->sights + model->sight[b + 1];
         bool any_own = false;
         for (int k = 0; k < n_coefs; k++)
             any_own = any_own || of->own[slot + k];
-        for (int c = 0; c < model->n_blocks; c++) {
-            const bd_block *block = &model->blocks[c];
-            for (int i = block->band; i < block->band + block->n_bands; i++) {
-                const int at = slot + seen[i].first, to = block->offset + model->bands[i].first;
-                const double *columns =
-                    work->SB + (size_t)at * (size_t)model->n_padded + (size_t)to;
-                const double *minus_g = WIDE(of->minus_g, at);
-                double *a = WIDE(of->a_new, to);
-                if (seen[i].n > 0 && any_own)
-                    mixed_columns_add(model->bands[i].n, seen[i].n, columns,
-                                      WIDE(of->SB, at * model->n_padded + to), model->n_padded,
-                                      of->own + at, minus_g, a);
-                else if (seen[i].n > 0)
-                    columns_add_wide(model->bands[i].n, seen[i].n, columns, model->n_padded,
-                                     minus_g, a);
-            }
+        for (const bd_sight *sight = model->sights + model->sight[b]; sight < end; sight++) {
+            const int at = sight->coefficients.first, n_seen = sight->coefficients.n;
+            const int to = sight->coordinates.first, n = sight->coordinates.n;
+            const double *columns = work->SB + (size_t)at * (size_t)model->n_padded + (size_t)to;
+            const double *minus_g = WIDE(of->minus_g, at);
+            double *a = WIDE(of->a_new, to);
+            if (any_own)
+                mixed_columns_add(n, n_seen, columns, WIDE(of->SB, at * model->n_padded + to),
+                                  model->n_padded, of->own + at, minus_g, a);
+            else
+                columns_add_wide(n, n_seen, columns, model->n_padded, minus_g, a);
         }
     }
     lanes poison[SETS] = {{0}};

@@ -7,8 +7,9 @@
 
 #include "lanes.h"
 
-/* One tile of rows, SETS registers wide; what is outside `inside` is not added, where that is not NULL. Even and odd columns are summed apart to hide the latency of an
- * addition; the order is part of the result and the same on every machine. */
+/* One tile of rows, SETS registers wide; what is outside `inside` is not added, where that is not NULL. Even and odd
+ * columns are summed apart to hide the latency of an addition; the order is part of the result and the same on every
+ * machine. */
 #define DEFINE_TILE(NAME, SETS)                                                                    \
     BD_INLINE void NAME(int n_columns, const double *restrict A, int stride,                       \
                         const double *restrict u, const long long *inside, double *restrict y)     \
@@ -37,8 +38,8 @@ DEFINE_TILE(tile_1, 1)
 DEFINE_TILE(tile_2, 2)
 DEFINE_TILE(tile_4, 4)
 
-/* y += sum_c u[c] A[c * stride + (0 ... rows)], only where all bits of `inside` (rows) are set, unless it is NULL; rows a
- * multiple of BD_LANES. */
+/* y += sum_c u[c] A[c * stride + (0 ... rows)] where all bits of `inside` (rows) are set, or everywhere where that is
+ * NULL; rows a multiple of BD_LANES. */
 BD_INLINE void columns_add_inside(int rows, int n_columns, const double *A, int stride,
                                   const double *u, const long long *inside, double *y)
 {
@@ -53,7 +54,7 @@ BD_INLINE void columns_add_inside(int rows, int n_columns, const double *A, int 
         tile_1(n_columns, A + r, stride, u, inside ? inside + r : inside, y + r);
 }
 
-/* y += sum_c u[c] A[c * stride + (0 ... rows)]; rows a multiple of BD_LANES. */
+/* The same everywhere; what is inlined knows no mask. */
 BD_INLINE void columns_add(int rows, int n_columns, const double *A, int stride, const double *u,
                            double *y)
 {

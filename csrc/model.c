@@ -71,14 +71,13 @@ static double *copy_matrix(arena *a, const bd_model *model, const bd_partition *
     return matrix;
 }
 
-/* The columns from the first to the last in which any of a band's rows of a matrix has an entry. */
-static bd_span span_of_entries(const double *rows, size_t stride, const bd_span *band, int n,
-                               int padded)
+/* The columns from the first to the last in which any of a band's rows (padded) of a matrix has an entry. */
+static bd_span span_of_entries(const double *rows, const bd_span *band, int n, int padded)
 {
     int first = n, end = 0;
     for (int j = band->first; j < band->first + band->n; j++)
         for (int k = 0; k < n; k++)
-            if (rows[(size_t)j * stride + (size_t)k] != 0.0) {
+            if (rows[(size_t)j * (size_t)padded + (size_t)k] != 0.0) {
                 first = k < first ? k : first;
                 end = k + 1 > end ? k + 1 : end;
             }
@@ -111,9 +110,8 @@ static const bd_span *find_felt(arena *a, const bd_partition *parts, const bd_bl
                                 const double *L, int rank)
 {
     bd_span *felt = carve(a, (size_t)block->n_bands, sizeof *felt);
-    const size_t padded = (size_t)BD_PADDED(rank);
     for (int i = 0; felt && i < block->n_bands; i++)
-        felt[i] = span_of_entries(L, padded, &parts->bands[block->band + i], rank, (int)padded);
+        felt[i] = span_of_entries(L, &parts->bands[block->band + i], rank, BD_PADDED(rank));
     return felt;
 }
 
@@ -224,6 +222,55 @@ static void fill_coefs(const bd_model *model, const double *rows, int slot, int 
     }
 }
 
+static bd_span moved_by(bd_span span, int offset)
+{
+    return (bd_span){span.first + offset, span.n, span.row + offset, span.rows};
+}
+
+/* Which coefficients of a bearing the motion of a band enters, from the caller's B (n_coefs x n). */
+static bd_span span_of_coefficients(const bd_model_data *data, int bearing, const int *order, int n)
+{
+    const int n_coefs = data->bearings[bearing].n_coefs;
+    int first = n_coefs, end = 0;
+    for (int k = 0; k < n_coefs; k++)
+        for (int j = 0; j < n; j++)
+            if (data->B[bearing][(size_t)k * (size_t)data->n + (size_t)order[j]] != 0.0) {
+                first = k < first ? k : first;
+                end = k + 1;
+            }
+    return end > first ? bd_span_of(first, end - first, BD_PADDED(n_coefs)) : (bd_span){0};
+}
+
+/* Of each bearing the bands that it sees; the piece is counted to the last one. */
+static void layout_sights(arena *a, bd_model *model, const bd_model_data *data,
+                          const bd_partition *parts)
+{
+    int *sight = carve(a, (size_t)data->n_bearings + 1, sizeof *sight);
+    bd_sight *sights = carve(a, 0, sizeof *sights);
+    int n = 0, slot = 0;
+    for (int b = 0; b < data->n_bearings; b++) {
+        if (sight)
+            sight[b] = n;
+        for (int c = 0; c < parts->n_blocks; c++) {
+            const bd_block *block = &parts->blocks[c];
+            for (int i = block->band; i < block->band + block->n_bands; i++) {
+                const bd_span band = parts->bands[i];
+                const bd_span seen =
+                    span_of_coefficients(data, b, parts->order + block->first + band.first, band.n);
+                if (seen.n > 0 && sights)
+                    sights[n] = (bd_sight){i, moved_by(band, block->offset), moved_by(seen, slot)};
+                n += seen.n > 0;
+            }
+        }
+        slot += BD_PADDED(data->bearings[b].n_coefs);
+    }
+    carve(a, (size_t)n, sizeof *sights);
+    if (sight)
+        sight[data->n_bearings] = n;
+    model->sights = sights;
+    model->sight = sight;
+}
+
 static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data)
 {
     const size_t n_bearings = (size_t)data->n_bearings;
@@ -234,13 +281,11 @@ static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data
     bd_bearing *bearings = carve(a, n_bearings, sizeof *bearings);
     int *bearing_slot = carve(a, n_bearings, sizeof *bearing_slot);
     int *coef_slot = carve(a, (size_t)model->n_coefs, sizeof *coef_slot);
-    bd_span *seen = carve(a, n_bearings * (size_t)model->n_bands, sizeof *seen);
     double *B = carve(a, (size_t)model->n_padded * (size_t)model->coefs, sizeof *B);
     model->n_bearings = data->n_bearings;
     model->bearings = bearings;
     model->bearing_slot = bearing_slot;
     model->coef_slot = coef_slot;
-    model->seen = seen;
     model->B = B;
 
     int place = 0,
@@ -254,15 +299,6 @@ static void layout_bearings(arena *a, bd_model *model, const bd_model_data *data
             bearings[b].weight = model->n_echoes;
             bearing_slot[b] = slot;
             fill_coefs(model, data->B[b], slot, own.n_coefs, coef_slot + place, B);
-            const double *columns = B + slot;
-            for (int c = 0; c < model->n_blocks; c++) {
-                const bd_block *block = &model->blocks[c];
-                const double *rows = columns + (size_t)block->offset * (size_t)model->coefs;
-                for (int i = block->band; i < block->band + block->n_bands; i++)
-                    seen[b * model->n_bands + i] =
-                        span_of_entries(rows, (size_t)model->coefs, &model->bands[i], own.n_coefs,
-                                        BD_PADDED(own.n_coefs));
-            }
         }
         model->n_echoes += own.contact.n_echoes;
         model->n_echo_doubles += bd_echoes_size(&own);
@@ -341,6 +377,7 @@ static bd_model *layout(arena *a, const bd_model_data *data, const bd_partition 
     layout_bands(a, &model, parts);
     layout_layers(a, &model, data, parts);
     layout_bearings(a, &model, data);
+    layout_sights(a, &model, data, parts);
     layout_loads(a, &model, data);
     layout_channels(a, &model, data);
     model.matrices = (bd_matrices){

@@ -33,6 +33,12 @@ typedef struct bd_channel {
     const double *row; /* (n_padded) or NULL */
 } bd_channel;
 
+/* A bearing and a band of coordinates whose motion enters its coefficients; both spans in padded vectors. */
+typedef struct bd_sight {
+    int band; /* of bd_model.bands */
+    bd_span coordinates, coefficients;
+} bd_sight;
+
 /* The matrices of (1), blocks one after another; or those of one block, n x n row-major. */
 typedef struct bd_matrices {
     const double *M, *C, *G, *K, *N;
@@ -63,8 +69,9 @@ struct bd_model {
     const bd_load *loads;
     const bd_channel *channels;
     bd_matrices matrices;
-    const bd_span *seen; /* (n_bearings x n_bands) coefficients that a band's motion enters */
-    const double *B;     /* (n_padded x coefs): row j holds coordinate j's part in each */
+    const bd_sight *sights; /* bearing by bearing, in the order of the bands */
+    const int *sight;       /* (n_bearings + 1) a bearing's first one, and the end of all */
+    const double *B;        /* (n_padded x coefs): row j holds coordinate j's part in each */
 };
 
 /* Numbers that a state keeps of a layer that softens, behind its deviation (softening.c). */

@@ -9,15 +9,26 @@
 #include "receptance.h"
 #include "work.h"
 
+/* y += A u at a band's own rows. Apart, so that the loops of a step hold what nearly every block is: one band. */
+static __attribute__((noinline)) void masked_add(int rows, int n_columns, const double *A,
+                                                 int stride, const double *u,
+                                                 const long long *inside, double *y)
+{
+    columns_add_inside(rows, n_columns, A, stride, u, inside, y);
+}
+
 /* a += A u of one block, whose bands do not couple; A in columns of the block's padding. */
 BD_INLINE void square_add(const bd_model *model, const bd_block *block, const double *A,
                           const double *u, double *a)
 {
+    if (block->n_bands == 1) {
+        columns_add(block->padded, block->n, A, block->padded, u, a);
+        return;
+    }
     for (int i = block->band; i < block->band + block->n_bands; i++) {
         const bd_span *band = &model->bands[i];
-        columns_add_inside(band->rows, band->n,
-                           A + (size_t)band->first * (size_t)block->padded + band->row,
-                           block->padded, u + band->first, model->inside[i], a + band->row);
+        masked_add(band->rows, band->n, A + (size_t)band->first * (size_t)block->padded + band->row,
+                   block->padded, u + band->first, model->inside[i], a + band->row);
     }
 }
 
@@ -25,11 +36,16 @@ BD_INLINE void square_add(const bd_model *model, const bd_block *block, const do
 BD_INLINE void layer_add(const bd_model *model, const bd_block *block, const bd_layer *layer,
                          const double *A, const double *u, double *a)
 {
-    for (int i = 0; i < block->n_bands; i++) {
-        const bd_span *band = &model->bands[block->band + i], *felt = &layer->felt[i];
-        columns_add_inside(
-            band->rows, felt->n, A + (size_t)felt->first * (size_t)block->padded + band->row,
-            block->padded, u + felt->first, model->inside[block->band + i], a + band->row);
+    const bd_span *felt = layer->felt;
+    if (block->n_bands == 1) {
+        columns_add(block->padded, felt->n, A + (size_t)felt->first * (size_t)block->padded,
+                    block->padded, u + felt->first, a);
+        return;
+    }
+    for (int i = block->band; i < block->band + block->n_bands; i++, felt++) {
+        const bd_span *band = &model->bands[i];
+        masked_add(band->rows, felt->n, A + (size_t)felt->first * (size_t)block->padded + band->row,
+                   block->padded, u + felt->first, model->inside[i], a + band->row);
     }
 }
 
@@ -44,7 +60,6 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
         lanes a = LANES(state->a + i), v = LANES(state->v + i);
         LANES_AT(work->x + i) = LANES(state->x + i) + dt * v + in_x * a;
         LANES_AT(work->v + i) = v + in_v * a;
-        LANES_AT(work->a + i) = (lanes){0};
     }
     for (int i = 0; i < model->ranks; i += BD_WIDTH)
         LANES_AT(work->history + i) = (lanes){0};
@@ -68,6 +83,8 @@ static void predict(const bd_model *model, bd_work *work, const bd_state *state)
             }
             square_add(model, block, columns + square, corrected, a);
         } else {
+            for (int i = 0; i < block->padded; i += BD_WIDTH)
+                LANES_AT(a + i) = (lanes){0};
             square_add(model, block, columns, work->x + block->offset, a);
             square_add(model, block, columns + square, work->v + block->offset, a);
         }
@@ -105,18 +122,13 @@ static void observe(const bd_model *model, bd_work *work)
     for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->z_linear + k) = LANES_AT(work->z_rate_linear + k) = (lanes){0};
     for (int b = 0; b < model->n_bearings; b++) {
-        const bd_span *seen = model->seen + b * model->n_bands;
-        for (int c = 0; c < model->n_blocks; c++) {
-            const bd_block *block = &model->blocks[c];
-            for (int i = block->band; i < block->band + block->n_bands; i++) {
-                const int from = block->offset + model->bands[i].first;
-                const int to = model->bearing_slot[b] + seen[i].row;
-                if (seen[i].n > 0)
-                    columns_add_two(seen[i].rows, model->bands[i].n,
-                                    model->B + (size_t)from * (size_t)model->coefs + to,
-                                    model->coefs, work->x_new + from, work->v_new + from,
-                                    work->z_linear + to, work->z_rate_linear + to);
-            }
+        const bd_sight *end = model->sights + model->sight[b + 1];
+        for (const bd_sight *sight = model->sights + model->sight[b]; sight < end; sight++) {
+            const int from = sight->coordinates.first, to = sight->coefficients.row;
+            columns_add_two(sight->coefficients.rows, sight->coordinates.n,
+                            model->B + (size_t)from * (size_t)model->coefs + to, model->coefs,
+                            work->x_new + from, work->v_new + from, work->z_linear + to,
+                            work->z_rate_linear + to);
         }
     }
 }
@@ -127,18 +139,13 @@ BD_INLINE void add_bearings(const bd_model *model, bd_work *work)
     for (int k = 0; k < model->coefs; k += BD_WIDTH)
         LANES_AT(work->change + k) = -LANES(work->guess + k);
     for (int b = 0; b < model->n_bearings; b++) {
-        const bd_span *seen = model->seen + b * model->n_bands;
-        for (int c = 0; c < model->n_blocks; c++) {
-            const bd_block *block = &model->blocks[c];
-            for (int i = block->band; i < block->band + block->n_bands; i++) {
-                const int at = model->bearing_slot[b] + seen[i].first;
-                const int to = block->offset + model->bands[i].row;
-                if (seen[i].n > 0)
-                    columns_add_inside(model->bands[i].rows, seen[i].n,
-                                       work->SB + (size_t)at * (size_t)model->n_padded + to,
-                                       model->n_padded, work->change + at, model->inside[i],
-                                       work->a + to);
-            }
+        const bd_sight *end = model->sights + model->sight[b + 1];
+        for (const bd_sight *sight = model->sights + model->sight[b]; sight < end; sight++) {
+            const int at = sight->coefficients.first, to = sight->coordinates.row;
+            columns_add_inside(sight->coordinates.rows, sight->coefficients.n,
+                               work->SB + (size_t)at * (size_t)model->n_padded + to,
+                               model->n_padded, work->change + at, model->inside[sight->band],
+                               work->a + to);
         }
     }
 }
