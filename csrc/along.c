@@ -41,7 +41,7 @@ bd_status bd_bearing_along(const bd_bearing_data *data, const bd_along_data *mot
             bd_bearing_imperfect(&bearing, &work, &motion->angle[i], &motion->speed);
         kernels->force(&bearing, &work, z, z_rate, motion->speed.cage, g);
         if (motion->window > 0.0)
-            bd_soften_closing(data, motion->window, &work, coefs, g);
+            bd_soften_edges(data, motion->window, &work, coefs, g);
 
         memcpy(found->g + i * n, g, n * sizeof *g);
         memcpy(found->loads + i * balls, work.force, balls * sizeof *work.force);

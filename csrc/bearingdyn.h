@@ -504,16 +504,18 @@ bd_status bd_start(const bd_model *model, const bd_scheme *scheme, const bd_lapa
 typedef struct bd_exact_data {
     int n_groups;
     long long n, n_loose, n_stresses; /* numbers of all groups; of loose rows; stresses, unpadded */
-    const double *table;              /* (n_groups x 3) sizes of the sections: real, pairs, loose */
-    const double
-        *weights; /* (6 x n) of the modes; forces at -1, 0, 1 on a parabola, 0, 1 on a line */
-    const double *loose; /* (6 x n_loose) the same of loose displacements, per mode a row of them */
+    int hold;            /* 1 ... 3, largest order of the polynomial that the forces are held by */
+    const double *table; /* (n_groups x 3) sizes of the sections: real, pairs, loose */
+    const double *roots; /* (n) of the modes, 1/s */
+    /* ((hold + 1)(hold + 2)/2 x n) of the modes; then by the order 1 ... hold, of the forces at 1, 0, -1 ... 1 - order */
+    const double *weights;
+    const double *loose; /* (as many x n_loose) of loose displacements, per mode a row of them */
     const double *P, *Z; /* (n_coefs x n), (n x 2 n_coefs): bearing forces in, z and z_rate out */
     const double *
         load; /* (2 n_loads x n): over a step, per factor at its start; of a table, start and end */
     const double *X, *V, *A, *S; /* (n x n coordinates) x, v, a without forces; (n x n_stresses) */
     const double
-        *W; /* (4 x n_coefs^2) minus z and z_rate per force at the end: on a line, on a parabola */
+        *W; /* (2 hold x n_coefs^2) minus z and z_rate per force at the end, order by order */
 } bd_exact_data;
 
 typedef struct bd_exact bd_exact;

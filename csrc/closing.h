@@ -1,13 +1,13 @@
-/* closing.h - inside the core: balls whose damper is about to close or has just closed. */
+/* closing.h - inside the core: balls that are about to come into contact or to leave it, or have just done so. */
 #ifndef BD_CLOSING_H
 #define BD_CLOSING_H
 
 #include "bearing.h"
 
-/* Where a film closes its damper makes the force jump from 0 to c times the rate. Every ball within two windows of it,
- * as s = delta + h0 runs through zero at its present rate, gets its share of the jump instead: forces are then
- * continuous in z. */
-void bd_soften_closing(const bd_bearing_data *data, double window, bd_bearing_work *work,
-                       size_t coefs, double *g);
+/* Where a contact opens or closes its force has a kink or a jump, which samples meet at random. Every ball within some
+ * windows of it, s = delta + h0 running through at its present rate, gets what the samples' sum should see instead:
+ * forces are then smooth in z. */
+void bd_soften_edges(const bd_bearing_data *data, double window, bd_bearing_work *work,
+                     size_t coefs, double *g);
 
 #endif

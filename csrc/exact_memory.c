@@ -9,7 +9,6 @@ void bd_exact_free(bd_exact *exact)
         return;
     free(exact->memory);
     free(exact->groups);
-    free(exact->touched);
     free(exact->seen);
     free(exact->varying);
     free(exact);

@@ -8,11 +8,34 @@
 #include "kernels.h"
 #include "loads.h"
 
+/* Arrays of a march, beside those of the polynomials. */
+enum { SHARED_PIECES = 19 };
+
+/* Coefficients that a group's motion enters or whose forces move it. */
+static void take_seen(const bd_model *model, const bd_exact_data *data, bd_exact_group *group,
+                      int *seen)
+{
+    const size_t m = (size_t)model->n_coefs, end = group->first + (size_t)group->real +
+                                                   2 * (size_t)group->pairs + (size_t)group->loose;
+    group->seen = seen;
+    for (size_t k = 0; k < m; k++) {
+        bool any = false;
+        for (size_t j = group->first; j < end && !any; j++)
+            any = data->P[k * (size_t)data->n + j] != 0.0 || data->Z[j * 2 * m + k] != 0.0 ||
+                  data->Z[j * 2 * m + m + k] != 0.0;
+        if (any)
+            seen[group->n_seen++] = model->coef_slot[k];
+    }
+    /* two products with half the rows read half as much, where the rows are not one register anyway */
+    const int once = BD_PADDED(2 * group->n_seen);
+    group->twice = group->loose == 0 && BD_PADDED(group->n_seen) < once;
+    group->z_rows = group->twice ? BD_PADDED(group->n_seen) : once;
+}
+
 /* The groups' sections; false where they do not fit the arrays given. */
 static bool take_groups(const bd_model *model, const bd_exact_data *data, bd_exact *exact)
 {
-    const size_t n_bearings = (size_t)model->n_bearings;
-    size_t at = 0, rows = 0, held = 0, seen = 0;
+    size_t at = 0, rows = 0, held = 0, P = 0, Z = 0;
     for (int k = 0; k < exact->n_groups; k++) {
         int size[3];
         for (int i = 0; i < 3; i++) {
@@ -21,24 +44,26 @@ static bool take_groups(const bd_model *model, const bd_exact_data *data, bd_exa
                 return false;
             size[i] = (int)given;
         }
-        exact->groups[k] = (bd_exact_group){
+        const size_t modes = (size_t)size[0] + 2 * (size_t)size[1], loose = (size_t)size[2];
+        if (at + modes + loose > (size_t)data->n)
+            return false;
+        bd_exact_group *group = &exact->groups[k];
+        *group = (bd_exact_group){
             .first = at,
             .real = size[0],
             .pairs = size[1],
             .loose = size[2],
             .rows = rows,
             .held = held,
-            .touched = exact->touched + (size_t)k * n_bearings,
-            .seen = exact->seen + (size_t)k * n_bearings,
+            .P = P,
+            .Z = Z,
         };
-        for (size_t b = 0; b < n_bearings; b++) {
-            exact->seen[(size_t)k * n_bearings + b] = seen;
-            seen +=
-                (size_t)(size[0] + 2 * size[1] + size[2]) * 2 * (size_t)model->bearings[b].coefs;
-        }
-        held += (size_t)size[2] * (size_t)model->coefs;
-        at += (size_t)(size[0] + 2 * size[1] + size[2]);
-        rows += (size_t)(size[0] + 2 * size[1]) * (size_t)size[2];
+        take_seen(model, data, group, exact->seen + (size_t)k * (size_t)model->coefs);
+        held += loose * (size_t)group->n_seen;
+        P += modes * (size_t)group->n_seen;
+        Z += (modes + loose) * (size_t)group->z_rows;
+        at += modes + loose;
+        rows += modes * loose;
     }
     return at == (size_t)data->n && rows == (size_t)data->n_loose;
 }
@@ -63,51 +88,48 @@ static void place_stresses(const bd_model *model, const double *from, const size
     }
 }
 
-static int bearing_of(const bd_model *model, int coef)
+/* What one group makes of coefficient k of the caller's, which is the one numbered `place` that it sees. */
+static void place_seen(const bd_model *model, const bd_exact_data *data, bd_exact *exact,
+                       const bd_exact_group *group, size_t k, size_t place)
 {
-    int b = model->n_bearings - 1;
-    while (b > 0 && model->coef_slot[coef] < model->bearing_slot[b])
-        b--;
-    return b;
+    const size_t n = exact->n, m = (size_t)model->n_coefs;
+    const size_t modes = (size_t)group->real + 2 * (size_t)group->pairs;
+    const size_t loose = (size_t)group->loose, z_rows = (size_t)group->z_rows;
+    const double *P = data->P + k * n + group->first;
+    memcpy(exact->P + group->P + place * modes, P, modes * sizeof *P);
+    for (size_t i = 0; i < modes + loose; i++) {
+        const double *from = data->Z + (group->first + i) * 2 * m;
+        double *column = exact->Z + group->Z + i * z_rows;
+        column[place] = from[k];
+        if (!group->twice)
+            column[(size_t)group->n_seen + place] = from[m + k];
+    }
+    for (int w = 0; w < bd_exact_held(exact->hold + 1, 0); w++)
+        for (size_t i = 0; i < modes; i++)
+            for (size_t r = 0; r < loose; r++)
+                exact->held[w][group->held + place * loose + r] +=
+                    P[i] *
+                    data->loose[(size_t)w * (size_t)data->n_loose + group->rows + i * loose + r];
 }
 
 /* Bearings, by the caller's coefficients. */
 static void place_bearings(const bd_model *model, const bd_exact_data *data, bd_exact *exact)
 {
-    const size_t n = exact->n, m = (size_t)model->n_coefs, coefs = (size_t)model->coefs;
+    const size_t m = (size_t)model->n_coefs, coefs = (size_t)model->coefs;
     for (size_t k = 0; k < m; k++) {
-        const int b = bearing_of(model, (int)k);
-        const size_t slot = (size_t)model->coef_slot[k], own = (size_t)model->bearings[b].coefs;
-        const size_t place = slot - (size_t)model->bearing_slot[b];
-        memcpy(exact->P + slot * n, data->P + k * n, n * sizeof *exact->P);
-        for (int g = 0; g < exact->n_groups; g++) {
-            const bd_exact_group *group = &exact->groups[g];
-            bool *touched = exact->touched + (size_t)g * (size_t)model->n_bearings + b;
-            const size_t modes = (size_t)(group->real + 2 * group->pairs);
-            const size_t loose = (size_t)group->loose;
-            double *Z = exact->Z + group->seen[b];
-            for (size_t i = 0; i < modes + loose; i++) {
-                const size_t j = group->first + i;
-                const double z = data->Z[j * 2 * m + k], rate = data->Z[j * 2 * m + m + k];
-                Z[i * 2 * own + place] = z;
-                Z[i * 2 * own + own + place] = rate;
-                *touched = *touched || data->P[k * n + j] != 0.0 || z != 0.0 || rate != 0.0;
-            }
-            for (int w = 0; w < BD_WEIGHTS; w++)
-                for (size_t i = 0; i < modes; i++)
-                    for (size_t r = 0; r < loose; r++)
-                        exact->held[w][group->held + slot * loose + r] +=
-                            data->P[k * n + group->first + i] *
-                            data->loose[(size_t)w * (size_t)data->n_loose + group->rows +
-                                        i * loose + r];
-        }
-        for (int order = 0; order < 2; order++)
+        const int slot = model->coef_slot[k];
+        const size_t own = (size_t)slot;
+        for (int g = 0; g < exact->n_groups; g++)
+            for (int i = 0; i < exact->groups[g].n_seen; i++)
+                if (exact->groups[g].seen[i] == slot)
+                    place_seen(model, data, exact, &exact->groups[g], k, (size_t)i);
+        for (int order = 0; order < exact->hold; order++)
             for (int i = 0; i < 2; i++)
                 for (size_t l = 0; l < m; l++)
-                    exact->W[order][i][slot * coefs + (size_t)model->coef_slot[l]] =
+                    exact->W[order][i][own * coefs + (size_t)model->coef_slot[l]] =
                         data->W[(size_t)(2 * order + i) * m * m + k * m + l];
         for (size_t i = 0; i < (size_t)model->n_padded; i++)
-            exact->push[slot * (size_t)model->n_padded + i] = -model->B[i * coefs + slot];
+            exact->push[own * (size_t)model->n_padded + i] = -model->B[i * coefs + own];
     }
 }
 
@@ -170,9 +192,8 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
     exact->n = n;
     exact->n_groups = data->n_groups;
     exact->groups = calloc((size_t)data->n_groups + 1, sizeof *exact->groups);
-    const size_t pairs = (size_t)data->n_groups * (size_t)model->n_bearings + 1;
-    exact->touched = calloc(pairs, sizeof *exact->touched);
-    exact->seen = calloc(pairs, sizeof *exact->seen);
+    exact->hold = data->hold;
+    exact->seen = calloc((size_t)data->n_groups * m + 1, sizeof *exact->seen);
     exact->varying = calloc(loads + 1, sizeof *exact->varying);
     size_t all_loose = 0;
     for (int k = 0; k < data->n_groups; k++)
@@ -180,53 +201,43 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
     struct {
         double **place;
         size_t count;
-    } pieces[] = {
-        {&exact->weights[0], n},
-        {&exact->weights[1], n},
-        {&exact->weights[2], n},
-        {&exact->weights[3], n},
-        {&exact->weights[4], n},
-        {&exact->weights[5], n},
-        {&exact->nothing, n},
+    } pieces[SHARED_PIECES + 2 * BD_WEIGHTS + 3 * BD_HOLDS + 1] = {
+        {&exact->roots, n},
         {&exact->constant, n},
         {&exact->loose, (size_t)data->n_loose},
-        {&exact->held[0], all_loose * m},
-        {&exact->held[1], all_loose * m},
-        {&exact->held[2], all_loose * m},
-        {&exact->held[3], all_loose * m},
-        {&exact->held[4], all_loose * m},
-        {&exact->held[5], all_loose * m},
         {&exact->P, m * n},
-        {&exact->Z, 2 * m * n},
+        {&exact->Z, (2 * m + BD_LANES) * n},
         {&exact->load, 2 * loads * n},
         {&exact->X, n * padded},
         {&exact->V, n * padded},
         {&exact->A, n * padded},
         {&exact->push, m * padded},
         {&exact->S, n * model->n_stress},
-        {&exact->W[0][0], m * m},
-        {&exact->W[0][1], m * m},
-        {&exact->W[1][0], m * m},
-        {&exact->W[1][1], m * m},
         {&exact->rows, channels * n},
         {&exact->rows_g, channels * m},
         {&exact->rows_load, 2 * channels * loads},
         {&exact->trial, n},
-        {&exact->new, n},
-        {&exact->now, n},
-        {&exact->before, n},
-        {&exact->zz, 2 * m},
+        {&exact->rate, n},
+        {&exact->packed, m},
+        {&exact->zz, 4 * m + BD_LANES},
         {&exact->factor, 2 * loads},
     };
-    const size_t n_pieces = sizeof pieces / sizeof pieces[0];
-    size_t total = BD_LANES;
+    size_t n_pieces = SHARED_PIECES, total = BD_LANES;
+    for (int w = 0; w < bd_exact_held(data->hold + 1, 0); w++) {
+        pieces[n_pieces].place = &exact->weights[w], pieces[n_pieces++].count = n;
+        pieces[n_pieces].place = &exact->held[w], pieces[n_pieces++].count = all_loose * m;
+    }
+    for (int order = 0; order < data->hold; order++)
+        for (int i = 0; i < 2; i++)
+            pieces[n_pieces].place = &exact->W[order][i], pieces[n_pieces++].count = m * m;
+    for (int k = 0; k <= BD_HOLDS; k++)
+        pieces[n_pieces].place = &exact->shares[k], pieces[n_pieces++].count = n;
     for (size_t i = 0; i < n_pieces; i++)
         total += BD_PADDED(pieces[i].count);
     const size_t bytes = total * sizeof(double);
     exact->memory = aligned_alloc(64, (bytes + 63) / 64 * 64);
     size_t *starts = calloc((size_t)model->n_layers + 1, sizeof *starts);
-    if (!exact->memory || !exact->groups || !exact->touched || !exact->seen || !exact->varying ||
-        !starts) {
+    if (!exact->memory || !exact->groups || !exact->seen || !exact->varying || !starts) {
         free(starts);
         return BD_NO_MEMORY;
     }
@@ -248,7 +259,8 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
         free(starts);
         return BD_BAD_SHAPE;
     }
-    for (int w = 0; w < BD_WEIGHTS; w++)
+    memcpy(exact->roots, data->roots, n * sizeof(double));
+    for (int w = 0; w < bd_exact_held(data->hold + 1, 0); w++)
         memcpy(exact->weights[w], data->weights + (size_t)w * n, n * sizeof(double));
     memcpy(exact->loose, data->loose, (size_t)data->n_loose * sizeof(double));
     for (int k = 0; k < model->n_loads; k++) {
@@ -275,16 +287,18 @@ bd_status bd_exact_prepare(const bd_model *model, const bd_scheme *scheme,
 
 void bd_exact_recall(const bd_model *model, bd_work *work, const bd_state *state)
 {
-    work->kernels->exact_shares(model, work->exact, state->g, work->exact->now);
-    work->kernels->exact_shares(model, work->exact, state->g_before, work->exact->before);
+    bd_exact *exact = work->exact;
+    work->kernels->exact_shares(exact, state->g, exact->shares[1]);
+    work->kernels->exact_shares(exact, state->g_before, exact->shares[2]);
+    work->kernels->exact_shares(exact, state->g_before + model->coefs, exact->shares[3]);
 }
 
 void bd_exact_choose(const bd_model *model, bd_work *work, const bd_state *state, double from)
 {
     bd_exact *exact = work->exact;
-    exact->line = state->clock.steps == 0;
-    work->W = exact->W[!exact->line][0];
-    work->W_rate = exact->W[!exact->line][1];
+    exact->order = (int)(state->clock.steps < exact->hold ? state->clock.steps + 1 : exact->hold);
+    work->W = exact->W[exact->order - 1][0];
+    work->W_rate = exact->W[exact->order - 1][1];
 
     if (exact->n_varying == 0)
         return;

@@ -57,8 +57,7 @@ typedef struct bd_kernels {
     /* exact.c: as predict and observe, as commit, and what bearing forces are to the modes, of an exact step */
     void (*exact_predict)(const bd_model *model, bd_work *work, const bd_state *state);
     int (*exact_commit)(const bd_model *model, bd_work *work, bd_state *state);
-    void (*exact_shares)(const bd_model *model, const bd_exact *exact, const double *g,
-                         double *shares);
+    void (*exact_shares)(const bd_exact *exact, const double *g, double *shares);
     /* abreast_step.c: predict and observe of marches side by side; then, as the halves of commit, what becomes of them
      * (returned: a bit for each case that would not be finite), and that as the states */
     void (*abreast_predict)(bd_abreast *abreast);

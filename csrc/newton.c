@@ -44,10 +44,10 @@ void bd_force_bearings(const bd_model *model, bd_work *work)
         work->kernels->force(
             &model->bearings[b], &work->bearings[b], work->z + at, work->z_rate + at,
             model->bearings[b].data.cage_ratio * work->turn.speed, work->force + at);
-        /* exact steps hold forces as parabolas, which a jump would put out by its share of a step */
+        /* exact steps hold forces as polynomials, which kinks and jumps would put out */
         if (work->exact && !work->bearings[b].holds)
-            bd_soften_closing(&model->bearings[b].data, work->scheme.dt, &work->bearings[b],
-                              (size_t)model->bearings[b].coefs, work->force + at);
+            bd_soften_edges(&model->bearings[b].data, work->scheme.dt, &work->bearings[b],
+                            (size_t)model->bearings[b].coefs, work->force + at);
     }
 }
 

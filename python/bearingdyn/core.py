@@ -95,6 +95,9 @@ class Scheme:
         iteration on corrections are halved: after 1000 the halves are below the smallest double.
     isa
         Instruction set of the kernels, one of ISAS: "best", or one that this machine has.
+    hold
+        Order 1, 2 or 3 of the polynomial that an exact step holds the bearing forces by, through as many
+        steps' ends before its own: the step is of one order more. Newmark's step has none.
 
     Raises
     ------
@@ -111,8 +114,11 @@ class Scheme:
     tolerance: float = 1e-9
     max_iterations: int = 40
     isa: str = "best"
+    hold: int = 3
 
     def __post_init__(self) -> None:
+        if self.hold not in (1, 2, 3):
+            raise ValueError(f"hold is {self.hold!r}; it is the order of a polynomial: give 1, 2 or 3")
         Stepping(1.0, scheme=self)
 
 
@@ -162,7 +168,9 @@ class Stepping:
         """The fields by name, as the core parses them."""
         times, speeds = self.profile
         own = {"dt": self.dt, "audit": self.audit, "times": times, "speeds": speeds}
-        return {**own, **asdict(self.scheme)}
+        scheme = asdict(self.scheme)
+        del scheme["hold"]  # the modes of an exact step hold it
+        return {**own, **scheme}
 
 
 @dataclass(frozen=True)

@@ -37,8 +37,8 @@ class CoarseStep(Notice):
 class GrowingStep(Notice):
     """One of the notices: exact steps of this size make a motion grow that balls hold.
 
-    When: at `method="exact"`, about an equilibrium, a mode at ω of which balls hold the share s gains
-    s (ωΔt)⁴/48 a step, and its damping takes less, so that it is 1 % larger at the end.
+    When: at `method="exact"`, about an equilibrium, a mode of which balls hold a share gains more by a step
+    than its damping takes, so that it is 1 % larger at the end.
 
     Remedy: march with the dt that the warning names, or with method="newmark"; or give the contacts the
     damping that they have.

@@ -148,7 +148,7 @@ def test_an_interrupted_dissipation_keeps_its_sums(state: bd.Equilibrium) -> Non
 
 # ------------------------------------------------------------------- the fingerprint
 
-SCHEMES = {"beta": 0.3, "gamma": 0.6, "tolerance": 1e-8, "max_iterations": 39, "isa": "base"}
+SCHEMES = {"beta": 0.3, "gamma": 0.6, "tolerance": 1e-8, "max_iterations": 39, "isa": "base", "hold": 2}
 STEPPINGS = {"dt": 2e-5, "speed": 301.0, "audit": True, "scheme": bd.Scheme(gamma=0.6)}
 
 

@@ -8,8 +8,7 @@ is a skew matrix and what dissipates. Its modes are well conditioned; in them a 
 What nothing holds (w = 0) has no ξ: its displacement is the integral of its velocity, kept beside the modes,
 so that no double root arises.
 
-The bearing forces g are the parabola through those at the last two steps' ends and the new one, s = −1, 0,
-1, and on the first step a line; with φ_(k+1)(z) k! = ∫₀¹ exp(z(1 − s)) sᵏ ds they are integrated exactly.
+The bearing forces g are polynomials through the ends of the last steps: `held_forces`.
 """
 
 from __future__ import annotations
@@ -20,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
+from bearingdyn.analysis.held_forces import phi, rows_of, weights_of
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
@@ -28,21 +28,6 @@ WORST = 1e8  # condition of modes; so many digits of sixteen may cancel
 NODES = np.polynomial.legendre.leggauss(64)  # enough for 40 rad of a mode within a step
 SKEW = 1e-13  # of the largest entry: below it a matrix is skew but for round-off
 BY_NUMBER = ("Z", "X", "V", "A", "S")  # arrays with a row for each number of a state
-TERMS = 26  # of Taylor's series within the unit circle
-
-
-def phi(z: Complex, last: int) -> list[Complex]:
-    """φ functions of the exact step, φ_0 … φ_last of z: exp(z), and φ_(k+1) = (φ_k − 1/k!)/z."""
-    z = np.asarray(z, dtype=np.complex128)
-    small = np.abs(z) < 1
-    inner, outer = np.where(small, z, 0), np.where(small, 1, z)
-    found = [np.exp(z)]
-    far = np.exp(outer)
-    for k in range(last):
-        far = (far - 1 / math.factorial(k)) / outer
-        near = sum(inner**n / math.factorial(n + k + 1) for n in range(TERMS, -1, -1))
-        found.append(np.where(small, near, far))
-    return found
 
 
 def _padded(n: int) -> int:
@@ -159,14 +144,16 @@ class ExactModes:
         )
         return np.concatenate([np.zeros(0), *starts])
 
-    def step(self, dt: float) -> dict[str, Array]:
-        """What the core needs for steps of size dt, s: arrays by name, of bd_exact_data."""
+    def step(self, dt: float, hold: int) -> dict[str, Array]:
+        """What the core needs for steps of size dt, s, with forces of an order: arrays of bd_exact_data."""
         system, n, m = self.system, self.system.n, len(self.system.B)
         widths = [g.width for g in self.groups]
         total = sum(widths)
         starts = np.cumsum([0, *(t.L.shape[1] * len(t.material.G) for t in system.layers)])
+        count = 1 + sum(order + 1 for order in range(1, hold + 1))
         out = {
-            "weights": np.zeros((6, total)),
+            "roots": np.zeros((1, total)),
+            "weights": np.zeros((count, total)),
             "P": np.zeros((m, total)),
             "Z": np.zeros((total, 2 * m)),
             "load": np.zeros((2 * len(system.loads), total)),
@@ -175,22 +162,24 @@ class ExactModes:
             "A": np.zeros((total, n)),
             "S": np.zeros((total, int(starts[-1]))),
         }
-        loose, joined, at = [np.zeros((6, 0))], np.zeros((2, 2, m, m)), 0
+        loose, joined, at = [np.zeros((count, 0))], np.zeros((hold, 2, m, m)), 0
         for group, width in zip(self.groups, widths, strict=True):
             here = slice(at, at + width)
             at += width
             parts = {k: v[here] if k in BY_NUMBER else v[:, here] for k, v in out.items()}
-            parts["weights"][:] = group.split(_weights(group.roots, dt, 0))
+            parts["roots"][:] = group.split(group.roots)
+            parts["weights"][:] = group.split(weights_of(group.roots, dt, hold, 0))
             _place_motion(system, group, self.squares, parts, starts)
             _place_loads(system, group, self.squares, parts["load"], self.speed, dt)
-            rows = _loose_rows(group, self.squares, dt)
+            rows = _loose_rows(group, self.squares, dt, hold)
             _join(group, parts, rows, joined)
-            loose.append(rows.reshape(6, -1))
+            loose.append(rows.reshape(count, -1))
         return {
             **out,
+            "roots": out["roots"][0],
             "table": np.array([g.sizes for g in self.groups], dtype=np.float64),
             "loose": np.concatenate(loose, axis=1),
-            "W": -joined.reshape(4, m * m),
+            "W": -joined.reshape(2 * hold, m * m),
         }
 
 
@@ -261,23 +250,6 @@ def _damped_modes(A: Array) -> tuple[Complex, Complex, int]:
     return roots[order], shapes[:, order].astype(np.complex128), len(real)
 
 
-def _weights(roots: Complex, dt: float, ahead: int) -> Complex:
-    """Factors (6, j) of q, g(−1), g(0), g(1), and on a line g(0), g(1); integrated `ahead` times more."""
-    p = phi(roots * dt, 3 + ahead)
-    one, two, three = p[1 + ahead], p[2 + ahead], p[3 + ahead]
-    h = dt ** (1 + ahead)
-    return np.array(
-        [
-            p[ahead] * dt**ahead,
-            h * (three - 0.5 * two),
-            h * (one - 2 * three),
-            h * (three + 0.5 * two),
-            h * (one - two),
-            h * two,
-        ]
-    )
-
-
 def _forced(roots: Complex, omega: float, dt: float) -> tuple[Complex, Complex]:
     """∫₀ʰ exp(λ(h − s)) exp(iωs) ds of each root, and of that the integral over time, (j,) each."""
     one = np.exp(1j * omega * dt) * dt * phi((roots - 1j * omega) * dt, 1)[1]
@@ -329,12 +301,13 @@ def _place_motion(
                 place += rank
 
 
-def _loose_rows(group: _Group, squares: Array, dt: float) -> Array:
-    """Weights (6, modes, loose) of loose displacements: the modes' integrated over time once more."""
+def _loose_rows(group: _Group, squares: Array, dt: float, hold: int) -> Array:
+    """Weights (k, modes, loose) of loose displacements: the modes' integrated over time once more."""
     r = np.flatnonzero(~(squares[group.block] > 0))
     v = _motions(group, squares)[1][r]
-    rows = np.zeros((6, group.modes, group.sizes[2]))
-    each = group.seen(_weights(group.roots, dt, 1)[:, None, :] * v)[..., : group.modes]
+    weights = weights_of(group.roots, dt, hold, 1)
+    rows = np.zeros((len(weights), group.modes, group.sizes[2]))
+    each = group.seen(weights[:, None, :] * v)[..., : group.modes]
     rows[:, :, : len(r)] = each.transpose(0, 2, 1)
     return rows
 
@@ -344,7 +317,7 @@ def _place_loads(system: System, group: _Group, squares: Array, out: Array, spee
     r = np.flatnonzero(~(squares[group.block] > 0))
     _, v, into = _motions(group, squares)
     twice = np.where(np.arange(len(group.roots)) < group.reals, 1.0, 2.0)
-    first, second = _weights(group.roots, dt, 0), _weights(group.roots, dt, 1)
+    first, second = (weights_of(group.roots, dt, 1, ahead)[rows_of(1)] for ahead in (0, 1))
 
     def taken(factors: tuple[Complex, Complex], b: Complex) -> Array:
         """Of a load on the modes b (j,): by the modes, and by loose coordinates."""
@@ -355,10 +328,10 @@ def _place_loads(system: System, group: _Group, squares: Array, out: Array, spee
     for k, load in enumerate(system.loads):
         b = into @ load.p_cos[group.block]
         if load.kind == "constant":
-            out[2 * k] = taken((first[4] + first[5], second[4] + second[5]), b)
+            out[2 * k] = taken((first[0] + first[1], second[0] + second[1]), b)
         elif load.kind == "sampled":
-            out[2 * k] = taken((first[4], second[4]), b)
-            out[2 * k + 1] = taken((first[5], second[5]), b)
+            out[2 * k] = taken((first[1], second[1]), b)
+            out[2 * k + 1] = taken((first[0], second[0]), b)
         else:
             turns = load.kind == "rotating"
             omega = speed if turns else load.omega
@@ -377,7 +350,8 @@ def _join(group: _Group, out: dict[str, Array], rows: Array, joined: Array) -> N
     real, pairs, loose = group.sizes
     m = len(P)
     re, im = slice(real, real + pairs), slice(real + pairs, modes)
-    for order, row in enumerate((5, 3)):  # of the new force on a line, on a parabola
+    for order in range(len(joined)):
+        row = rows_of(order + 1).start  # of the new force
         weight = out["weights"][row]
         moved = P * weight
         moved[:, re] = P[:, re] * weight[re] - P[:, im] * weight[im]

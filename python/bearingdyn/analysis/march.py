@@ -162,7 +162,8 @@ class March:
             drive = _exact_speed(system, drive)
         warn_if_coarse(system, fastest, dt)
         if method == "exact" and isinstance(source, Equilibrium):
-            warn_if_growing(source, dt, counts["settle"] + counts["steps"])
+            hold = (scheme or core.Scheme()).hold
+            warn_if_growing(source, dt, counts["settle"] + counts["steps"], hold)
         modal, T = system.modal()
         stepping = core.Stepping(dt, speed=drive, audit=bool(audit), scheme=scheme or core.Scheme())
         return cls(
@@ -249,7 +250,7 @@ class March:
     @cached_property
     def _step(self) -> dict[str, Array]:
         """What the core needs of them for the step."""
-        return self._modes.step(self.stepping.dt)
+        return self._modes.step(self.stepping.dt, self.stepping.scheme.hold)
 
     def _core_march(self, model: core.Model, state: Array, steps: int, every: int, **how: Any) -> CoreMarch:
         """The core's march by this method, side by side with others where a gathering says so."""
@@ -281,7 +282,7 @@ class March:
         """Error of each channel that the step size leaves behind a state, (channels,): `step_error`."""
         if self.method == "newmark":
             return step_error(model, state, self.stepping)
-        half = self._modes.step(self.stepping.dt / 2)
+        half = self._modes.step(self.stepping.dt / 2, self.stepping.scheme.hold)
         return step_error(model, state, self.stepping, (self._step, half))
 
     def resumed(self, model: core.Model, result: xarray.Dataset) -> Array:

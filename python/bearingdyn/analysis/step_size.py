@@ -10,6 +10,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.driving_periods import rhythms
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.held_forces import held_growth
 from bearingdyn.material import answer_of
 from bearingdyn.notice import CoarseStep, GrowingStep, OutsideBand, untold, warn
 from bearingdyn.system import System, natural
@@ -20,6 +21,8 @@ from bearingdyn.types import Array
 SHARE = 0.05
 NAMED = 12  # lines of a warning; the fastest come first
 GROWN = 0.01  # growth of a mode over a march, as ln of its factor, that is no matter
+ORDERS = {2: "second", 3: "third", 4: "fourth"}
+HALVINGS = 12  # of the interval in which the largest step is that makes nothing grow
 CHECKED = 2000  # steps of the stretch that is repeated at half the step
 
 
@@ -44,11 +47,11 @@ def warn_if_coarse(system: System, speed: float, dt: float) -> None:
     )
 
 
-def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
-    """Step size too long for the exact method: warn where a mode grows by what the bearings' parabola leaves.
+def warn_if_growing(eq: Equilibrium, dt: float, steps: int, hold: int) -> None:
+    """Step size too long for the exact method: warn where a mode grows by what its held forces leave.
 
-    A force held by a parabola through the last three steps lags by (ωΔt)³/24: what balls hold gains
-    (ωΔt)⁴/48 a step. Modes are those of the relaxed structure on the balls' tangents.
+    Modes are those of the relaxed structure on the balls' tangents; each gains what the step's recurrence
+    says of one that balls hold by its share (`held_growth`).
     """
     system = eq.system
     if not system.bearings:
@@ -60,13 +63,23 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
     z = B @ shapes
     share = np.einsum("ij,ij->j", z, eq.bearing_K @ z) / omega**2
     decay = modal_decays(system, eq.bearing_C, omega, shapes)
-    gain = np.maximum(share, 0.0) * (omega * dt) ** 4 / (48.0 * dt)
-    grown = gain - decay
-    worst = int(np.argmax(grown))
-    if not grown[worst] * steps * dt > GROWN:
+    share = np.clip(share, 0.0, 1.0)
+
+    def grown(dt: float) -> tuple[Array, Array]:
+        """What modes gain, and what is left of it by their damping, 1/s."""
+        gain = held_growth(omega * dt, share, hold) / dt
+        return gain, gain - decay
+
+    gain, left = grown(dt)
+    worst = int(np.argmax(left))
+    if not left[worst] * steps * dt > GROWN:
         return
-    cubes = 48.0 * decay[gain > 0.0] / (share * omega**4)[gain > 0.0]
-    enough = float(cubes.min()) ** (1 / 3)
+    # to two digits
+    within, beyond = 0.0, dt
+    for _ in range(HALVINGS):
+        middle = 0.5 * (within + beyond)
+        within, beyond = (middle, beyond) if (grown(middle)[1] <= 0.0).all() else (within, middle)
+    enough = within
     remedy = (
         f"march with dt={rounded_down(enough):g} or less, or with method='newmark'"
         if enough > 0.0
@@ -74,7 +87,7 @@ def warn_if_growing(eq: Equilibrium, dt: float, steps: int) -> None:
     )
     warn(
         f"dt = {dt:g} s with method 'exact' makes a mode at {omega[worst] / (2 * np.pi):.5g} Hz grow by "
-        f"{grown[worst]:.3g} 1/s: balls hold {100 * share[worst]:.0f} % of it, which gains "
+        f"{left[worst]:.3g} 1/s: balls hold {100 * share[worst]:.0f} % of it, which gains "
         f"{gain[worst]:.3g} 1/s, and its damping takes {decay[worst]:.3g} 1/s; {remedy}",
         GrowingStep,
     )
@@ -112,12 +125,13 @@ def rounded_down(value: float) -> float:
     return float(f"{math.floor(value / unit * (1 + 1e-12)) * unit:.2g}")
 
 
-def step_error_made(method: str) -> str:
+def step_error_made(method: str, hold: int) -> str:
     """How `step_error` was made, in words."""
-    share, order = ("4/3", "second") if method == "newmark" else ("8/7", "third")
+    order = 2 if method == "newmark" else hold + 1
+    share = f"{2**order}/{2**order - 1}"
     return (
         f"{CHECKED} steps beyond the end, at dt and at dt/2 from one state: {share} of the rms difference "
-        f"over the rms of the channel about its mean (the scheme is of {order} order)"
+        f"over the rms of the channel about its mean (the scheme is of {ORDERS[order]} order)"
     )
 
 
@@ -132,7 +146,7 @@ def step_error(
     From the state at the end of a march CHECKED steps go on, once with the step and once with half of it. The
     scheme is of second order, so that 4/3 of the difference (rms) is the error of the coarser one
     (Richardson); it is put over the channel's own rms about its mean. With `modes`, of the step and its
-    half, steps are exact but for the bearing forces, of third order, and 8/7 of the difference is the error.
+    half, steps are exact but for the bearing forces, of the order after the one that these are held by.
     """
     whole, halved = modes or (None, None)
     plain = replace(stepping, audit=False)
@@ -143,5 +157,6 @@ def step_error(
     if len(coarse) != CHECKED or report.status != 0:
         return np.full(coarse.shape[1], np.nan)
     size = np.std(fine, axis=0)
-    error = (4 / 3 if modes is None else 8 / 7) * np.sqrt(np.mean((coarse - fine) ** 2, axis=0))
+    halvings = 2 ** (2 if modes is None else stepping.scheme.hold + 1)
+    error = halvings / (halvings - 1) * np.sqrt(np.mean((coarse - fine) ** 2, axis=0))
     return np.asarray(np.divide(error, size, out=np.full_like(size, np.nan), where=size > 0))
