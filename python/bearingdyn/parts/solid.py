@@ -46,6 +46,7 @@ from bearingdyn.parts.flexible_bore import FlexibleBore
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.quasi_static_modulus import quasi_static
 from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -165,6 +166,7 @@ class Solid:
     bores: Mapping[str, FlexibleBore] = field(default_factory=dict)
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         check_f_max(self.f_max)
