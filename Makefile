@@ -126,11 +126,13 @@ wheel: $(VENV)/tools
 	cd $(DIST)/empty && CC=/nonexistent PATH=$(CURDIR)/$(DIST)/venv/bin $(CURDIR)/$(DIST)/venv/bin/python \
 	  $(CURDIR)/tests/wheel_trial.py
 
-# A wheel for each Python of WHEEL_PYTHONS that runs on any Linux since 2014, tried in an empty environment.
+# A wheel for each Python of WHEEL_PYTHONS that runs on any Linux since 2014, tried in an empty environment; with
+# WHEEL_MACHINE=aarch64 it is built for that processor, and its platform and symbols are checked.
 .PHONY: wheels
 WHEEL_PYTHONS ?= $(PYTHON)
+WHEEL_MACHINE ?=
 wheels: $(VENV)/tools
-	$(PY) tests/make_wheels.py $(BUILD)/wheels $(WHEEL_PYTHONS)
+	$(PY) tests/make_wheels.py $(BUILD)/wheels $(WHEEL_PYTHONS) $(if $(WHEEL_MACHINE),--machine $(WHEEL_MACHINE))
 
 clean:
 	rm -rf $(VENV) $(BUILD) out docs/_static .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -102,7 +102,7 @@ def theirs(points: np.ndarray, faces: np.ndarray) -> dict[str, Any] | None:
             0.5 * identity(p0, p1, p1) + op.adjoint_double_layer(p0, p1, p1, ka)
         )
         A, B = (bempp.as_matrix(each.weak_form()) for each in (left, right))
-        pressure = np.linalg.solve(A, -B @ (1j * ka * DENSITY * SPEED * v))
+        pressure = np.asarray(np.linalg.solve(A, -B @ (1j * ka * DENSITY * SPEED * v)))
         seconds.append(time.process_time() - began)
         work = surface.areas[:, None] * v * pressure[faces].mean(axis=1).real
         errors[f"{ka:.3g}"] = [decibels(0.5 * work[:, j].sum(), power(j, ka)) for j in range(3)]

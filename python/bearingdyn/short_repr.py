@@ -15,25 +15,31 @@ LINE = 160  # letters of a mapping or a list of names that is written out
 
 def short(self: Any) -> str:
     """The `__repr__` of a dataclass in one line: arrays by shape and range, no field at its default."""
-    told = []
-    for field in fields(self):
-        value = getattr(self, field.name)
-        if field.repr and not (field.default is not MISSING and _same(value, field.default)):
-            told.append(f"{field.name}={_told(value)}")
-    return f"{type(self).__name__}({', '.join(told)})"
+    return f"{type(self).__name__}({', '.join(f'{name}={told(value)}' for name, value in stated(self))})"
+
+
+def stated(self: Any) -> list[tuple[str, Any]]:
+    """Fields of a dataclass that a short description names, with their values: none at its default."""
+    both = [(field, getattr(self, field.name)) for field in fields(self) if field.repr]
+    return [
+        (field.name, value)
+        for field, value in both
+        if field.default is MISSING or not _same(value, field.default)
+    ]
 
 
 def _same(value: Any, default: Any) -> bool:
     return value is default or (isinstance(value, int | float | str | tuple) and value == default)
 
 
-def _told(value: Any) -> str:
+def told(value: Any) -> str:
+    """A value of a short description in a few words."""
     if isinstance(value, np.ndarray):
         return _array(value)
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, Mapping):
-        whole = "{" + ", ".join(f"{key}: {_told(one)}" for key, one in value.items()) + "}"
+        whole = "{" + ", ".join(f"{key}: {told(one)}" for key, one in value.items()) + "}"
         return whole if len(whole) <= LINE else f"<{len(value)}: {_cut(', '.join(map(str, value)))}>"
     if type(value) in (tuple, list):  # a tuple with names tells itself
         return _row(value)
@@ -45,7 +51,7 @@ def _row(values: tuple[Any, ...] | list[Any]) -> str:
     ends = ("(", ",)" if len(values) == 1 else ")") if isinstance(values, tuple) else ("[", "]")
     named = all(isinstance(one, str) for one in values)
     if len(values) <= FEW or named:
-        whole = ends[0] + ", ".join(map(_told, values)) + ends[1]
+        whole = ends[0] + ", ".join(map(told, values)) + ends[1]
         if len(whole) <= LINE:
             return whole
     return f"<{len(values)} of {type(values[0]).__name__}>"

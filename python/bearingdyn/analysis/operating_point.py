@@ -36,6 +36,7 @@ from bearingdyn.bearing import (
 )
 from bearingdyn.checks import instance, meant, named, one_speed, positive, require, vector, whole
 from bearingdyn.parts import Layer
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.system import System, system_of
 from bearingdyn.units import takes
@@ -79,6 +80,8 @@ class OperatingPoint:
     viscosity: Mapping[str, float]
     clearance: Mapping[str, float]
     iterations: int
+
+    _repr_html_ = page
 
     def __repr__(self) -> str:
         """One line: heat, the hottest node, and how many rounds it took."""

@@ -22,6 +22,7 @@ from bearingdyn.analysis.linearised import linear
 from bearingdyn.application import QUANTITIES, Application
 from bearingdyn.checks import name_list, one_of, one_speed, require
 from bearingdyn.material import Maxwell
+from bearingdyn.pictures import page
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
@@ -45,6 +46,8 @@ class StateSpace:
     D: Array
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+
+    _repr_html_ = page
 
     def __repr__(self) -> str:
         """One line: how many states, inputs and outputs."""

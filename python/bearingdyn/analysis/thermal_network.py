@@ -12,6 +12,7 @@ from bearingdyn.application import Application, Place
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import instance, meant, number, positive, require, whole
 from bearingdyn.parts import Layer
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
@@ -50,6 +51,8 @@ class ThermalNetwork:
     _links: list[tuple[str, str, float]] = field(default_factory=list)
     _bodies: dict[str, _Body] = field(default_factory=dict)
     _nodes: dict[str, int] = field(default_factory=dict)
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         plausible("temperature", "ambient", self.ambient, "it must be one finite number, in °C")

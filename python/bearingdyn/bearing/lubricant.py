@@ -8,6 +8,7 @@ from typing import Literal
 
 from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent
 from bearingdyn.checks import nonnegative, number, positive, require
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 
 _ZERO_CELSIUS = 273.15
@@ -135,6 +136,8 @@ class Lubricant:
     kinematic: Walther
     density: float = 870.0
     alpha: float = 2.0e-8
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         require(isinstance(self.kinematic, Walther), "kinematic", self.kinematic, "give a Walther")

@@ -15,6 +15,7 @@ from bearingdyn.bearing.geometry import CLAMPED
 from bearingdyn.checks import nonnegative, positive, require
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.notice import ClampedBalls, warn
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 
 _STEEL_EXPANSION = 11.5e-6
@@ -97,6 +98,8 @@ class Mounting:
     balls: float = 0.0
     expansion: float = _STEEL_EXPANSION
     ball_expansion: float = _STEEL_EXPANSION
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         positive("bore", self.bore, "it must be positive and finite, in m")

@@ -17,6 +17,7 @@ from bearingdyn.bearing.energy_minimum import minimum
 from bearingdyn.bearing.load_and_motion_checks import check_load
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, shoulder
 from bearingdyn.checks import nonnegative, positive, require, vector
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
@@ -99,6 +100,8 @@ class RowSet(ABC):
     distance: float
     preload: float | None = None
     preload_force: float | None = None
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         require(isinstance(self.row, BallBearing), "row", self.row, "give a BallBearing")

@@ -11,6 +11,7 @@ import numpy as np
 from bearingdyn.cms.frozen_matrices import check_symmetry, frozen, frozen_sparse
 from bearingdyn.cms.superelement import Superelement
 from bearingdyn.cms.viscoelastic import Viscoelastic
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
@@ -96,6 +97,7 @@ class FullModel:
     grounded: bool = False
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) or hasattr(self.M, "tocsr") else 0

@@ -17,6 +17,7 @@ from bearingdyn.cms.full_model import FullModel
 from bearingdyn.cms.reduction import project
 from bearingdyn.fem import rigid_transfer
 from bearingdyn.material import answer_of
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
@@ -46,6 +47,7 @@ class ReductionError:
     solved: Array
 
     __repr__ = short
+    _repr_html_ = page
 
     @property
     def error(self) -> Array:

@@ -13,6 +13,7 @@ from bearingdyn.cms.radiating_surface import Skin, Surface
 from bearingdyn.cms.round_face import RoundFace
 from bearingdyn.cms.viscoelastic import Viscoelastic
 from bearingdyn.material import answer_of
+from bearingdyn.pictures import page
 from bearingdyn.types import Array, Complex, Index
 
 
@@ -69,6 +70,8 @@ class Superelement:
     surfaces: Mapping[str, Surface] = field(default_factory=dict)
     faces: Mapping[str, tuple[RoundFace, ...]] = field(default_factory=dict)
     skin: Skin | None = None
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         n = np.shape(self.M)[0] if np.ndim(self.M) else 0

@@ -10,6 +10,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, positive, real, require, two
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
@@ -55,6 +56,8 @@ class BulkRelaxation:
 
     share: tuple[float, ...]
     tau: tuple[float, ...]
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         for name in ("share", "tau"):

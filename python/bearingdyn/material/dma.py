@@ -13,6 +13,7 @@ from bearingdyn.checks import require
 from bearingdyn.material.isotherms import first_unsorted, group_isotherms
 from bearingdyn.material.shear_from_tension import shear_modulus
 from bearingdyn.notice import UnlikelyModulus, warn
+from bearingdyn.pictures import page
 from bearingdyn.types import Array
 
 Mode = Literal["shear", "tension"]
@@ -74,6 +75,8 @@ class DMAData:
     runs_chosen: bool = False
 
     PER_POINT: ClassVar[tuple[str, ...]] = ("frequency", "temperature", "storage", "loss", "isotherm", "run")
+
+    _repr_html_ = page
 
     def __repr__(self) -> str:
         """One line: points, isotherms, and ranges."""

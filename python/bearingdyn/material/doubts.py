@@ -17,6 +17,7 @@ from bearingdyn.material.log_parameters import moved
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.random_numbers import uniforms
 from bearingdyn.material.superposition import MasterCurve
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import check_bulk
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -42,6 +43,7 @@ class Doubts:
     sources: tuple[Doubt, ...]
 
     __repr__ = short
+    _repr_html_ = page
 
     def __iter__(self) -> Iterator[str]:
         return iter(d.name for d in self.sources)

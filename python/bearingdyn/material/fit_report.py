@@ -8,6 +8,7 @@ import numpy as np
 
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.notice import OutsideBand as OutsideBand
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
@@ -61,6 +62,7 @@ class FitReport:
     low_end: LowEnd | None = None
 
     __repr__ = short
+    _repr_html_ = page
 
     @property
     def standard_errors(self) -> dict[str, float]:

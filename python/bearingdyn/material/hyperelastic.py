@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import number, require
+from bearingdyn.pictures import page
 from bearingdyn.types import Array
 
 Derivatives = tuple[Array, Array, Array, Array]
@@ -35,6 +36,8 @@ def _checked(law: str, leading: float, names: str) -> None:
 @dataclass(frozen=True)
 class NeoHooke:
     """Hyperelastic, neo-Hookean rubber, W = ½G(Ī1 − 3): right to some 30 % of strain if little filled."""
+
+    _repr_html_ = page
 
     def derivatives(self, I1: ArrayLike, I2: ArrayLike) -> Derivatives:
         """W, ∂W/∂Ī1, ∂W/∂Ī2 and ∂²W/∂Ī1² for a shear modulus of one."""
@@ -60,6 +63,8 @@ class MooneyRivlin:
 
     C10: float
     C01: float
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         for name in ("C10", "C01"):
@@ -93,6 +98,8 @@ class Yeoh:
     C10: float
     C20: float
     C30: float = 0.0
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         for name in ("C10", "C20", "C30"):

@@ -13,6 +13,7 @@ from bearingdyn.material.dma import DMAData, Mode
 from bearingdyn.material.isotherms import group_isotherms
 from bearingdyn.material.relaxation_spectrum import dense_times, solve_strengths
 from bearingdyn.notice import UnlikelyModulus, warn
+from bearingdyn.pictures import page
 from bearingdyn.types import Array
 
 _CONVERTED = (
@@ -48,6 +49,8 @@ class RelaxationData(DMAData):
     relaxation: Array = field(default_factory=_none)
 
     PER_POINT: ClassVar[tuple[str, ...]] = (*DMAData.PER_POINT, "time", "relaxation")
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         super().__post_init__()

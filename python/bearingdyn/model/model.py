@@ -12,6 +12,7 @@ from bearingdyn import analysis
 from bearingdyn.analysis import Equilibrium, equilibrium
 from bearingdyn.application import Application
 from bearingdyn.checks import instance, items, meant
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ class Analysis:
     arguments: Mapping[str, Any] = field(default_factory=dict)
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         known = analyses()

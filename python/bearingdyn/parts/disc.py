@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from bearingdyn.checks import instance, nonnegative, number, positive
 from bearingdyn.fem import Section
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import check_gyration, plausible
 from bearingdyn.units import takes
 
@@ -35,6 +36,8 @@ class Disc:
     mass: float
     Id: float
     Ip: float
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         if abs(number("Disc z", self.z, "it must be a position in m")) > 1.0:

@@ -17,6 +17,7 @@ from bearingdyn.cms import Superelement
 from bearingdyn.material import warn_beyond
 from bearingdyn.parts.flexible_ring import FlexibleRing
 from bearingdyn.parts.ring_support import waves
+from bearingdyn.pictures import page
 from bearingdyn.types import Array, Index
 
 
@@ -46,6 +47,8 @@ class FlexibleBearing:
 
     bearing: BallBearing
     ring: FlexibleRing
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         instance("bearing", self.bearing, BallBearing, "it must be a bd.BallBearing")

@@ -26,6 +26,7 @@ from bearingdyn.parts.ring_compliance import RingCompliance, ring_compliance
 from bearingdyn.parts.ring_element import gyroscopic, upon_supports, with_folded
 from bearingdyn.parts.ring_section import ring_section
 from bearingdyn.parts.ring_support import RingBed, RingPoints
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.units import takes
 
@@ -121,6 +122,8 @@ class FlexibleRing:
     load: float | None = None
     outputs: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     race: Literal["outer", "inner"] = "outer"
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         one_of("race", self.race, ("outer", "inner"))

@@ -16,6 +16,7 @@ from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.profile import Profile, rectangle
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.units import takes
@@ -113,6 +114,7 @@ class Housing:
     element_size: float | None = None
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "length", "bore_diameter"):

@@ -23,6 +23,7 @@ from bearingdyn.cms import (
 )
 from bearingdyn.fem import FEMatrices
 from bearingdyn.parts.node_set import NodeSet
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
@@ -62,6 +63,7 @@ class Imported:
     f_max: float = F_MAX
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         if self.matrices.points is None:

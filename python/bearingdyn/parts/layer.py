@@ -27,6 +27,7 @@ from bearingdyn.parts.rubber_zones import RubberZone
 from bearingdyn.parts.shape_moduli import shape_moduli
 from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
 from bearingdyn.parts.strain import Strain
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
@@ -89,6 +90,8 @@ class Layer:
     refinement: float = 1.0
     recess: float = 0.0
     meshed_as: tuple[float, float, float] | None = None
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")

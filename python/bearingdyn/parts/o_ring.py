@@ -20,6 +20,7 @@ from bearingdyn.parts.regions import Patch, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import MeshNodes
 from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.units import takes
 
@@ -66,6 +67,8 @@ class ORing:
     material: Elastic | ViscoelasticSolid
     moduli: tuple[float, ...] | None = None
     refinement: float = 1.0
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         positive("radius", self.radius, "it must be a positive radius in m")

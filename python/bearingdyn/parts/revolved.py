@@ -56,6 +56,7 @@ from bearingdyn.parts.rubber_zones import RubberZone, rubber_zones
 from bearingdyn.parts.shape_moduli import moduli_at, shape_moduli
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.parts.strain import Strain
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -123,6 +124,7 @@ class Revolved:
     prestress: Prestress | None = field(default=None, repr=False)
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "regions", tuple(self.regions))

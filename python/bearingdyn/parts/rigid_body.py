@@ -13,6 +13,7 @@ from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.outline import Outline, box, carried, cylinder
 from bearingdyn.parts.profile import Profile, mirrored, rectangle
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import check_gyration, plausible
 from bearingdyn.types import Array
 from bearingdyn.units import takes
@@ -52,6 +53,8 @@ class RigidBody:
     inertia: tuple[float, float, float]
     rotating: bool = False
     measures: tuple[float, float, float] | None = None
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         plausible("mass", "mass", positive("mass", self.mass, "it must be a positive mass in kg"))

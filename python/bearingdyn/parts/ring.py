@@ -15,6 +15,7 @@ from bearingdyn.parts.regions import Region
 from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.revolved_modes import RevolvedModes
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.units import takes
 
@@ -51,6 +52,8 @@ class Ring:
     damping: float = 0.0
     f_max: float = 0.0
     refinement: float = 1.0
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         positive("r_inner", self.r_inner, "it must be a positive radius in m")

@@ -29,6 +29,7 @@ from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.disc import Disc
 from bearingdyn.parts.outline import Outline, carried, cylinder, revolved
 from bearingdyn.parts.profile import Profile, rectangle
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
@@ -95,6 +96,7 @@ class Shaft:
     element_length: float | None = None
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         instance(

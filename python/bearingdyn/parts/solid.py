@@ -50,6 +50,7 @@ from bearingdyn.parts.regions import ViscoelasticSolid, is_rubber
 from bearingdyn.parts.solid_outline import solid_outline
 from bearingdyn.parts.solid_prestress import Move, SolidPrestress, deform
 from bearingdyn.parts.squeezed import Squeezed
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -173,6 +174,7 @@ class Solid:
     prestress: SolidPrestress | None = field(default=None, repr=False)
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         check_f_max(self.f_max)

@@ -13,6 +13,7 @@ from bearingdyn.fem import NoBalance
 from bearingdyn.notice import MeshDependent, warn
 from bearingdyn.parts.outline import Outline
 from bearingdyn.parts.profile import HasProfile, Profile
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 from bearingdyn.types import Complex
 
@@ -84,6 +85,7 @@ class Squeezed:
     stability: float
 
     __repr__ = short
+    _repr_html_ = page
 
     @property
     def pressure(self) -> float:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import io
 import math
 import warnings
-from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
-from bearingdyn.analysis import Equilibrium, static_summary
+from bearingdyn.analysis import Equilibrium, OperatingPoint, static_summary
 from bearingdyn.application import GRAVITY, GROUND, Application, loose_motions
 from bearingdyn.bearing import BallBearing
 from bearingdyn.checks import instance
+from bearingdyn.cms import Superelement
 from bearingdyn.material import (
+    DMAData,
     Elastic,
     FractionalZener,
     MasterCurve,
@@ -28,60 +28,27 @@ from bearingdyn.plot.drawing.loads import course, value
 from bearingdyn.plot.drawing.machine_drawing import draw
 from bearingdyn.plot.drawing.words import bearing_words, parts_list
 from bearingdyn.plot.frame import finish, style
+from bearingdyn.plot.html_blocks import box, canvas, rows, svg
+from bearingdyn.plot.object_tables import (
+    dma_html,
+    fields_html,
+    operating_point_html,
+    shows_fields,
+    superelement_html,
+    system_html,
+)
+from bearingdyn.system import System
 from bearingdyn.units import mm
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-Material: TypeAlias = Elastic | FractionalZener | MasterCurve | Maxwell | PowerLaw | TabulatedModulus
-CELL = "padding:2px 10px 2px 0;text-align:left;vertical-align:top;border:none"
-HEAD = f"{CELL};opacity:.65;font-weight:normal"
-
-
-def svg(figure: Figure, told: str) -> str:
-    """For an object's HTML in a notebook: a figure as SVG with a text for those who do not see it."""
-    import matplotlib
-    import matplotlib.pyplot as plt
-
-    held = io.StringIO()
-    settings: Any = matplotlib.rcParams
-    # the same drawing gives the same text; letters are paths, for a reader without the font
-    before = {key: settings[key] for key in ("svg.hashsalt", "svg.fonttype")}
-    settings.update({"svg.hashsalt": "bearingdyn", "svg.fonttype": "path"})
-    try:
-        figure.savefig(held, format="svg", facecolor="white", metadata={"Date": None})
-    finally:
-        settings.update(before)
-        plt.close(figure)
-    text = held.getvalue()
-    text = text[text.index("<svg") :]
-    said = f'<svg role="img" aria-label="{escape(told, True)}" style="max-width:100%;height:auto"'
-    return text.replace("<svg", said, 1)
-
-
-def rows(heads: Sequence[str], cells: Iterable[Sequence[str]]) -> str:
-    """A table on the page of an object; "" where it has no rows."""
-    body = "".join(
-        "<tr>" + "".join(f'<td style="{CELL}">{escape(c)}</td>' for c in row) + "</tr>" for row in cells
-    )
-    if not body:
-        return ""
-    top = "".join(f'<th style="{HEAD}">{escape(h)}</th>' for h in heads)
-    return f'<table style="border-collapse:collapse;margin:.3em 0"><tr>{top}</tr>{body}</table>'
-
-
-def box(title: str, *blocks: str) -> str:
-    """A box in a notebook: a title and blocks below it."""
-    return f'<div class="bearingdyn"><div><strong>{escape(title)}</strong></div>{"".join(blocks)}</div>'
-
-
-def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
+def as_html(thing: object) -> str:
     """Any object in a notebook, as HTML.
 
     Parameters
     ----------
     thing
-        An application, a bearing, an equilibrium, a material or a master curve.
+        An application, bearing, equilibrium, material or measurement, a part, reduced or not, a system, and
+        whatever else shows itself in a notebook.
 
     Raises
     ------
@@ -91,16 +58,24 @@ def as_html(thing: Application | BallBearing | Equilibrium | Material) -> str:
     makers: dict[type, Any] = {
         Application: application_html,
         BallBearing: bearing_html,
-        Equilibrium: equilibrium_html,
+        DMAData: dma_html,
         Elastic: elastic_html,
+        Equilibrium: equilibrium_html,
         FractionalZener: zener_html,
         MasterCurve: master_html,
         Maxwell: maxwell_html,
+        OperatingPoint: operating_point_html,
         PowerLaw: power_law_html,
+        Superelement: superelement_html,
+        System: system_html,
         TabulatedModulus: tabulated_html,
     }
-    instance("thing", thing, tuple(makers), "give an application, a bearing, an equilibrium or a material")
-    page: str = next(make for kind, make in makers.items() if isinstance(thing, kind))(thing)
+    make = next((make for kind, make in makers.items() if isinstance(thing, kind)), None)
+    if make is None and shows_fields(thing):
+        make = fields_html
+    if make is None:
+        instance("thing", thing, tuple(makers), "give an application, part, bearing, material or state")
+    page: str = make(thing)  # type: ignore[misc]
     return page
 
 
@@ -176,7 +151,7 @@ def _warned(app: Application, told: list[str]) -> str:
 
 def bearing_html(bearing: BallBearing) -> str:
     """A bearing in a notebook: its section, and what follows from its geometry."""
-    figure, ax = _figure(2.6, 2.6)
+    figure, ax = canvas(2.6, 2.6)
     ax.set_aspect("equal")
     ax.axis("off")
     bore, outside, width = draw_bearing(ax, bearing, np.zeros(2))
@@ -239,7 +214,7 @@ def _modulus(material: Any, low: float, high: float, band: tuple[float, float] |
         warnings.simplefilter("ignore")  # the picture shows the band itself
         G = np.asarray(material.complex_modulus(2 * np.pi * f))
     with style():
-        figure, ax = _figure(5.6, 2.8)
+        figure, ax = canvas(5.6, 2.8)
         ax.loglog(f, G.real / 1e6, label="storage G′")
         ax.loglog(f, np.maximum(G.imag, 1e-12) / 1e6, "--", label="loss G″")
         if band is not None:
@@ -303,7 +278,7 @@ def elastic_html(material: Elastic) -> str:
 def master_html(curve: MasterCurve) -> str:
     """A master curve in a notebook: its points, the law of its shifts, and what is doubted of it."""
     with style():
-        figure, ax = _figure(5.6, 2.8)
+        figure, ax = canvas(5.6, 2.8)
         ax.loglog(curve.frequency, curve.storage / 1e6, ".", markersize=3, label="storage")
         ax.loglog(curve.frequency, curve.loss / 1e6, ".", markersize=3, label="loss")
         ax.set_xlabel(f"frequency at {curve.T_ref:g} °C, Hz")
@@ -363,9 +338,3 @@ def equilibrium_html(eq: Equilibrium) -> str:
         rows(("place", "x, µm", "y, µm", "z, µm"), moved),
         rows(("layer", "deflection, µm", "by its data", "strain", "modulus, MPa"), layers),
     )
-
-
-def _figure(width: float, height: float) -> Any:
-    import matplotlib.pyplot as plt
-
-    return plt.subplots(figsize=(width, height), layout="constrained")

@@ -37,6 +37,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.checks import instance, positive
 from bearingdyn.core import helmholtz
 from bearingdyn.notice import CoarsePanels, warn
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 from bearingdyn.sound.triangle_surface import TriangleSurface
 from bearingdyn.types import Array, Complex
@@ -76,6 +77,7 @@ class Radiation:
     impedance: Complex
 
     __repr__ = short
+    _repr_html_ = page
 
     @property
     def wave_number(self) -> float:

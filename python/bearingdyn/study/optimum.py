@@ -13,6 +13,7 @@ import scipy.optimize
 
 from bearingdyn.checks import meant, name_list, named, number, positive, require, whole
 from bearingdyn.notice import UnprovenOptimum, warn
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 from bearingdyn.study.cases import sobol
 from bearingdyn.types import Array
@@ -69,6 +70,7 @@ class Optimum:
     failed: tuple[str, ...] = ()
 
     __repr__ = short
+    _repr_html_ = page
 
     @property
     def text(self) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import named, nonnegative, number, one_of, require
+from bearingdyn.pictures import page
 from bearingdyn.study.distributions import IMPOSSIBLE, draw, said_of
 from bearingdyn.study.sweep import Study
 
@@ -50,6 +51,8 @@ class Robust:
     quantile: float | None = None
     worst: Mapping[str, str] = field(default_factory=dict)
     seed: int = 0
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         remedy = f"with quantile={self.quantile!r}; give exactly one of the two"

@@ -19,6 +19,7 @@ from bearingdyn.bearing import BallBearing, FilmDamping
 from bearingdyn.checks import meant
 from bearingdyn.cms import coupled_blocks
 from bearingdyn.notice import OilAtOtherSpeed, warn
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import check_speed_value, plausible
 from bearingdyn.system.layer_static_modulus import Modulus, static_modulus
 from bearingdyn.system.natural_modes import natural
@@ -70,6 +71,8 @@ class System:
     """Where interfaces and outputs stand, (3,) m, from the first interface of the first part."""
     inputs: str = ""
     """What the system was assembled from, as `bearingdyn.fingerprint` writes it."""
+
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         """Check the matrices."""

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import number, positive, require
 from bearingdyn.material.amplitude.report import PayneFit
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
@@ -88,6 +89,7 @@ class Payne:
     fit: PayneFit | None = field(default=None, compare=False, repr=False)
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         for name in ("D", "gamma_c", "m", "gamma_l", "p", "gamma_r"):

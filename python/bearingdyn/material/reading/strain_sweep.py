@@ -19,6 +19,7 @@ from bearingdyn.material.reading.request import Request
 from bearingdyn.material.reading.source import Row, read_source, source_of
 from bearingdyn.material.reading.table import TableReader
 from bearingdyn.notice import AssumedMeaning, warn
+from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -75,6 +76,7 @@ class StrainSweep:
     notes: tuple[str, ...] = field(default=(), repr=False)
 
     __repr__ = short
+    _repr_html_ = page
 
     def __post_init__(self) -> None:
         n = np.size(self.strain)
