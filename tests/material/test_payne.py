@@ -206,6 +206,19 @@ def test_a_law_of_a_harder_rubber_is_refused():
 ROWS = "0.1,4e6,6e5,10\n1,3e6,7e5,10\n10,2e6,5e5,10\n"
 
 
+def test_a_sweep_whose_header_says_tension_is_not_taken_for_shear(tmp_path):
+    path = tmp_path / "s.csv"
+    path.write_text(f"strain (%),E' (Pa),E'' (Pa),frequency (Hz)\n{ROWS}")
+    assert bd.read_strain_sweep(path, temperature=20.0).mode == "tension"
+    with pytest.raises(ValueError, match=r"s\.csv, line 1: the header says tension, mode is 'shear'"):
+        bd.read_strain_sweep(path, temperature=20.0, mode="shear")
+
+
+def test_a_strain_of_the_isotherms_in_percent_is_named():
+    with pytest.raises(ValueError, match=r"ends at .* below the isotherms' 15 %; .* a fraction"):
+        bd.fit_payne(made_sweep(), strain_of_isotherms=0.15)
+
+
 @pytest.mark.parametrize("title", ["strain p-p (%)", "peak-to-peak strain (%)", "strain pk-pk [%]"])
 def test_a_strain_from_peak_to_peak_is_halved(title, tmp_path):
     path = tmp_path / "s.csv"

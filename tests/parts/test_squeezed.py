@@ -176,6 +176,7 @@ def test_squeezes_that_cannot_be_are_named() -> None:
         ({"squeeze": 0.1, "inside": "glued"}, "inside is 'glued'"),
         ({"squeeze": 0.1, "branches": "both"}, "branches is 'both'"),
         ({"squeeze": 0.1, "law": "rubber"}, "law is 'rubber'"),
+        ({"squeeze": 0.1, "law": bd.NeoHooke}, "law is <class"),
     ):
         with pytest.raises(ValueError, match=text):
             flat.assembled(**bad)
@@ -183,6 +184,8 @@ def test_squeezes_that_cannot_be_are_named() -> None:
         layer(6 * MM)
     with pytest.raises(ValueError, match=r"press is 'middle'"):
         flat.body.assembled({"middle": 1e-4})
+    with pytest.raises(ValueError, match=r"slip is 'outer'; give a list of interfaces"):
+        flat.body.assembled({"outer": 1e-4}, slip="outer")
     with pytest.raises(ValueError, match="no stiffness"):
         layer(0.0, Maxwell(0.0, [1e6], [1e-3], K=K, density=1100.0)).assembled(squeeze=0.1)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.checks import meant, number, one_of, require
+from bearingdyn.checks import meant, name_list, number, one_of, require
 from bearingdyn.fem import (
     CURRENT,
     SAME,
@@ -48,7 +48,7 @@ def check_law(law: object) -> Hyperelastic:
     if law is None:
         return NEO_HOOKE
     require(
-        isinstance(law, Hyperelastic),
+        isinstance(law, Hyperelastic) and not isinstance(law, type),
         "law",
         law,
         "it must be NeoHooke(), MooneyRivlin(C10, C01) or Yeoh(C10, C20, C30)",
@@ -287,7 +287,7 @@ def squeeze(
     NoBalance
         Where no balance is found: it has the share of the squeeze that was reached, and what stopped it.
     """
-    slip = list(slip)
+    slip = name_list("slip", slip, "interfaces")
     for field, names in (("press", press), ("slip", slip)):
         for name in names:
             require(name in faces, field, name, meant(str(name), list(faces)))

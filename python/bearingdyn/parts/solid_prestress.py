@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from bearingdyn.checks import meant, require, vector
+from bearingdyn.checks import meant, name_list, require, vector
 from bearingdyn.cms import RigidInterface
 from bearingdyn.fem import SAME, NoBalance, SolidElements, SolidMesh, SolidState, Wall, balance, rigid_motion
 from bearingdyn.parts.prestress import FOLD, FOLDED, blame_the_law, unstable
@@ -22,6 +22,7 @@ Move = float | Sequence[float]
 """A depth along the inward normal, m; (x, y, z), m; or (x, y, z, θx, θy, θz) of the reference, m and rad."""
 MOVE = "it must be a depth into the body, m, or its motion (x, y, z) or (x, y, z, θx, θy, θz), m and rad"
 BALANCED = 1e-8  # resultant on a face, over the sum of its nodal forces, that counts as none
+FARTHEST = 10.0  # motion of a plate, over the size of the body, beyond which a length is taken to be in mm
 PUSHED = 1e-6  # reaction, over the largest nodal force, with which nothing may be pushed aside
 ROUND_EDGE = "round off or recess the free surface there, or let the plate slip (slip=...)"
 
@@ -234,13 +235,16 @@ class _Travel:
 
 def _travel(name: str, given: Any, mesh: SolidMesh, plate: Plate) -> _Travel:
     """A plate's motion as it is given."""
-    points = mesh.points[plate.nodes]
+    points, field = mesh.points[plate.nodes], f"press[{name!r}]"
+    size = float(np.ptp(mesh.points, axis=0).max())
+    far = f"the body is {size:.3g} m large; is it in mm? It must be in m"
     if np.ndim(given) == 0:
-        depth = float(vector(f"press[{name!r}]", [given], (1,), MOVE)[0])
+        depth = float(vector(field, [given], (1,), MOVE)[0])
+        require(abs(depth) <= FARTHEST * size, field, given, far)
         normal = node_normals(mesh, _faces_of(mesh, plate.nodes))[plate.nodes]
         require(
             bool(np.all(np.linalg.norm(normal, axis=1) > 0.5)),
-            f"press[{name!r}]",
+            field,
             given,
             "its interface holds nodes beside its faces, without a normal: give its motion (x, y, z), m",
         )
@@ -248,9 +252,12 @@ def _travel(name: str, given: Any, mesh: SolidMesh, plate: Plate) -> _Travel:
         if flat:
             return _Travel(plate, points, np.concatenate([-depth * normal[0], np.zeros(3)]), None)
         return _Travel(plate, points, None, -depth * normal)
-    size = 6 if np.size(given) == 6 else 3
-    move = vector(f"press[{name!r}]", given, (size,), MOVE)
-    return _Travel(plate, points, np.concatenate([move, np.zeros(6 - size)]), None)
+    count = 6 if np.size(given) == 6 else 3
+    move = vector(field, given, (count,), MOVE)
+    require(float(np.linalg.norm(move[:3])) <= FARTHEST * size, field, given, far)
+    turn = float(np.linalg.norm(move[3:]))
+    require(turn <= np.pi, field, given, f"it turns by {turn:.3g} rad; is it in degrees? At most π, in rad")
+    return _Travel(plate, points, np.concatenate([move, np.zeros(6 - count)]), None)
 
 
 def _normal_axis(name: str, mesh: SolidMesh, plate: Plate) -> tuple[int, float]:
@@ -290,7 +297,7 @@ def deform(
     NoBalance
         Where no balance is found, with the share of the motion that was reached.
     """
-    mesh, slip = body.mesh, list(slip)
+    mesh, slip = body.mesh, name_list("slip", slip, "interfaces")
     for field, names in (("press", press), ("slip", slip)):
         for name in names:
             require(name in faces, field, name, meant(str(name), list(faces)))

@@ -68,8 +68,8 @@ def fit_payne(
     Raises
     ------
     ValueError
-        For a sweep in which G′ rises with strain, that starts above the isotherms' strain, with fewer than
-        six trusted points, or whose force does not fit modulus and area.
+        For a sweep in which G′ rises with strain, that starts above the isotherms' strain or ends below it,
+        with fewer than six trusted points, or whose force does not fit modulus and area.
 
     Warns
     -----
@@ -94,6 +94,11 @@ def fit_payne(
             f"{sweep.source}: the sweep starts at {100 * gamma[0]:.4g} % strain, above the isotherms' "
             f"{100 * gamma_r:.4g} %; what happens between them is unknown: measure from "
             f"{100 * gamma_r:.3g} % on, or correct strain_of_isotherms (a fraction, shear)"
+        )
+    if not gamma[-1] * _SLACK >= gamma_r:
+        raise ValueError(
+            f"{sweep.source}: the sweep ends at {100 * gamma[-1]:.4g} % strain, below the isotherms' "
+            f"{100 * gamma_r:.4g} %; strain_of_isotherms is a fraction, .0015 for .15 %"
         )
     before = np.minimum.accumulate(G.real)
     rise = G.real / before - 1

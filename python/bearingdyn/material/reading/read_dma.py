@@ -249,15 +249,8 @@ def _read_one(data: Any, request: Request, sort: bool) -> DMAData:
 
 def _mode(table: Table, mode: Mode | None) -> Mode:
     """Shear or tension: as asked for, as the header says, or as the file's words suggest."""
-    if mode is not None:
-        if table.mode not in (None, mode):
-            raise ReadingError(
-                f"{table.header}: the header says {table.mode}, mode is {mode!r}; give the right mode, or "
-                "name the right columns"
-            )
-        return mode
-    if table.mode is not None:
-        return table.mode
+    if (known := table.asked_mode(mode)) is not None:
+        return known
     if not table.speaks_of_shear:
         raise ReadingError(f"{table.header}: {NO_LETTER}", "mode")
     warn(

@@ -213,7 +213,7 @@ def read_strain_sweep(
     reader = _SweepReader(source, request)
     table = reader.read()
     name = str(data) if isinstance(data, str | Path) else "arrays"
-    found_mode = mode or table.mode
+    found_mode = table.asked_mode(mode)
     if found_mode is None:
         raise ReadingError(
             f"{table.header}: the header does not tell G from E: give mode='shear' or 'tension'"

@@ -86,6 +86,15 @@ class Table:
     speaks_of_shear: bool
     notes: tuple[str, ...]
 
+    def asked_mode(self, mode: Mode | None) -> Mode | None:
+        """Shear or tension as asked for, or as the header says; ReadingError where these differ."""
+        if mode is not None and self.mode not in (None, mode):
+            raise ReadingError(
+                f"{self.header}: the header says {self.mode}, mode is {mode!r}; give the right mode, or "
+                "name the right columns"
+            )
+        return mode or self.mode
+
     def at(self, point: int) -> str:
         """File and line of a point, for a message."""
         return self.source.at(self.lines[point])
