@@ -36,6 +36,8 @@ enum { SETS = BD_ABREAST / BD_WIDTH, ROWS = BD_WIDTH / 2 };
     }
 
 DEFINE_TILE(tile, ROWS)
+DEFINE_TILE(tile_3, 3)
+DEFINE_TILE(tile_2, 2)
 DEFINE_TILE(tile_1, 1)
 
 /* y += A u */
@@ -45,7 +47,12 @@ BD_INLINE void columns_add_wide(int rows, int n_columns, const double *A, int st
     int r = 0;
     for (; r + ROWS <= rows; r += ROWS)
         tile(n_columns, A + r, stride, u, WIDE(y, r));
-    for (; r < rows; r++)
+    /* what is left together: a row by itself waits for its own sums */
+    if (rows - r == 3)
+        tile_3(n_columns, A + r, stride, u, WIDE(y, r));
+    else if (rows - r == 2)
+        tile_2(n_columns, A + r, stride, u, WIDE(y, r));
+    else if (rows - r == 1)
         tile_1(n_columns, A + r, stride, u, WIDE(y, r));
 }
 
