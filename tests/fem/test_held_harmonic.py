@@ -13,7 +13,7 @@ COMPONENTS = {0: (0, 2), 1: (0, 1, 2), 3: (0, 1, 2)}
 
 
 def held(order: int, shape: tuple[float, float]):
-    """A rubber ring held at its inner face: harmonic, stiffness, and the coordinates that remain."""
+    """A rubber ring held at its inner face: the harmonic, its stiffness and what remains."""
     layer = bd.Layer(0.03, 0.03 + shape[0], shape[1], bd.Maxwell(1e6, [1e6], [1e-3], K=2e9, density=1100.0))
     mesh = layer.body.mesh
     h = assemble_harmonic(mesh, order, COMPONENTS[order])

@@ -8,6 +8,7 @@ import json
 import math
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import threading
@@ -15,6 +16,7 @@ import time
 import types
 import warnings
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +25,24 @@ import pytest
 import bearingdyn as bd
 from bearingdyn import core, results, study
 from bearingdyn.notice import ChangedFunction
-from bearingdyn.study import store
+from bearingdyn.study import chunks, store
+
+
+def kept_rows(folder: Path) -> list[dict[str, object]]:
+    """Rows of a store, as they stand in its file."""
+    with closing(sqlite3.connect(folder / store.FILE, timeout=60)) as file:
+        file.row_factory = sqlite3.Row
+        try:
+            return [dict(row) for row in file.execute("SELECT * FROM cases")]
+        except sqlite3.OperationalError:  # just made, and still without tables
+            return []
+
+
+def damage(folder: Path, **columns: object) -> None:
+    """Write other content into all rows of a store."""
+    with closing(sqlite3.connect(folder / store.FILE)) as file, file:
+        for name, value in columns.items():
+            file.execute(f'UPDATE cases SET "{name}" = ?', (value,))
 
 
 def natural_frequency(case):
@@ -156,7 +175,7 @@ def test_cancelled_study_is_no_result(tmp_path):
 
     with pytest.raises(CancelledError):
         study.sweep(Counter(), study.grid(x=[1.0, 2.0]), Cancels(), store=tmp_path)
-    assert len(list(tmp_path.iterdir())) == 1  # what was finished is kept
+    assert len(kept_rows(tmp_path)) == 1  # what was finished is kept
 
 
 def test_interrupted_study_computes_only_what_is_missing(tmp_path):
@@ -184,20 +203,21 @@ def test_interrupted_study_computes_only_what_is_missing(tmp_path):
     assert third.calls == 0
 
 
-def test_store_holds_one_readable_file_per_case_and_nothing_else(tmp_path):
+def test_store_holds_one_readable_row_per_case_in_one_file(tmp_path):
     with one_thread() as pool:
         study.sweep(Counter(), study.grid(x=[1.0, 2.0]), pool, store=tmp_path)
-    kept = [json.loads(p.read_text()) for p in tmp_path.iterdir()]
-    assert sorted(k["parameters"]["x"] for k in kept) == [1.0, 2.0]
-    assert {k["function"] for k in kept} == {f"{__name__}.Counter"}
-    assert {k["version"] for k in kept} == {results.versions()["bearingdyn"]}
+    assert [path.name for path in tmp_path.iterdir()] == [store.FILE]  # no journal is left
+    kept = kept_rows(tmp_path)
+    assert sorted(json.loads(k["parameters"])["x"] for k in kept) == [1.0, 2.0]
+    assert sorted(json.loads(k["values"])["y"] for k in kept) == [1.0, 4.0]
+    (told,) = study.status(tmp_path)
+    assert (told.function, told.version) == (f"{__name__}.Counter", results.versions()["bearingdyn"])
 
 
-def test_half_written_file_of_a_store_is_computed_again(tmp_path, caplog):
+def test_damaged_row_of_a_store_is_computed_again(tmp_path, caplog):
     with one_thread() as pool:
         study.sweep(Counter(), [{"x": 3.0}], pool, store=tmp_path)
-    (path,) = tmp_path.iterdir()
-    path.write_text(path.read_text()[:20])
+    damage(tmp_path, values='{"y": 9')
     again = Counter()
     with one_thread() as pool:
         (case,) = study.sweep(again, [{"x": 3.0}], pool, store=tmp_path)
@@ -226,16 +246,17 @@ def test_study_killed_outright_goes_on_where_it_stopped(tmp_path):
     script.write_text(SCRIPT)
     command = [sys.executable, str(script), str(folder)]
     with subprocess.Popen(command, start_new_session=True) as process:
-        while len(list(folder.glob("*.json"))) < 5:
+        while not (folder / store.FILE).exists() or len(kept_rows(folder)) < 5:
             assert process.poll() is None
             time.sleep(0.01)
         os.killpg(process.pid, signal.SIGKILL)  # its workers with it
-    before = {path: path.read_text() for path in folder.glob("*.json")}
+    before = kept_rows(folder)
     assert 5 <= len(before) < 30
     run = subprocess.run(command, capture_output=True, text=True, check=True)
     assert float(run.stdout) == sum(x**2 for x in range(30))
-    assert len(list(folder.glob("*.json"))) == 30
-    assert {path: path.read_text() for path in before} == before
+    after = {row["id"]: row for row in kept_rows(folder)}
+    assert len(after) == 30
+    assert all(after[row["id"]] == row for row in before)  # the times too: not computed again
 
 
 def test_infinite_and_missing_numbers_survive_the_store(tmp_path):
@@ -277,7 +298,7 @@ def test_store_tells_functions_and_what_is_bound_into_them_apart(tmp_path):
             found = [study.sweep(f, [{"x": 2.0}], pool, store=tmp_path)[0].values["y"] for f in functions]
         assert found == [4.0, 8.0, 10.0, 14.0, 4.0]
     assert functions[-1].calls == 1
-    assert len(list(tmp_path.iterdir())) == 5
+    assert len(kept_rows(tmp_path)) == 5
 
 
 def test_store_of_another_version_is_computed_again(tmp_path, monkeypatch):
@@ -285,7 +306,8 @@ def test_store_of_another_version_is_computed_again(tmp_path, monkeypatch):
         monkeypatch.setattr(store, "versions", lambda version=version: {"bearingdyn": version})
         with one_thread() as pool:
             study.sweep(Counter(), [{"x": 2.0}], pool, store=tmp_path)
-    assert len(list(tmp_path.iterdir())) == 2
+    assert len(kept_rows(tmp_path)) == 2
+    assert sorted(told.version for told in study.status(tmp_path)) == ["1", "2"]
 
 
 def radial(case):
@@ -299,7 +321,7 @@ def test_parts_and_arrays_are_parameters_told_by_their_content(tmp_path):
 
     with one_thread() as pool:
         first = study.sweep(radial, cases(), pool, store=tmp_path)
-        assert len(list(tmp_path.iterdir())) == 4
+        assert len(kept_rows(tmp_path)) == 4
         again = study.sweep(Counter(), cases(), pool)  # fails: what comes from the store does not call it
         kept = study.sweep(radial, cases(), pool, store=tmp_path)
     assert [c.values for c in kept] == [c.values for c in first]
@@ -505,7 +527,7 @@ def test_a_store_tells_apart_what_a_function_carries(tmp_path, make):
     """ω = √(k/m) of two stiffnesses, asked for twice."""
     for _ in range(2):
         assert [stored(make(k), tmp_path) for k in (100.0, 500.0)] == [10.0, math.sqrt(500.0)]
-    assert len(list(tmp_path.iterdir())) == 2
+    assert len(kept_rows(tmp_path)) == 2
 
 
 @pytest.mark.parametrize("function", [with_global, through_another])
@@ -529,18 +551,89 @@ def test_what_cannot_be_told_is_refused_with_the_remedy(tmp_path):
 
 def test_a_stored_key_is_compared(tmp_path, caplog):
     assert stored(Rig(100.0), tmp_path) == 10.0
-    (path,) = tmp_path.iterdir()
-    kept = json.loads(path.read_text())
+    wrong = json.dumps({"f": -1.0})
     for change in (
-        {"parameters": {"m": 2.0}}, {"told": "0" * 32}, {"function": "other"}, {"version": "0"},
-        {"values": {"f": 10**400}}, {"values": 5},
+        {"parameters": "{}", "values": wrong}, {"values": json.dumps({"f": 10**400})}, {"values": "5"},
+        {"values": "[" * 100_000}, {"values": None},
     ):  # fmt: skip
-        path.write_text(json.dumps({**kept, "values": {"f": -1.0}, **change}))
+        damage(tmp_path, **change)
         caplog.clear()
         assert stored(Rig(100.0), tmp_path) == 10.0
         assert "computed again" in caplog.text
-    path.write_text("[" * 100_000)
+    damage(tmp_path, study="0" * 32, values=wrong)  # of another function or version
     assert stored(Rig(100.0), tmp_path) == 10.0
+
+
+def test_what_is_no_store_is_named(tmp_path):
+    (tmp_path / store.FILE).write_bytes(b"no database at all, but a text " * 50)
+    with pytest.raises(ValueError, match=r"cases\.sqlite cannot be used .*give another folder"):
+        stored(Rig(100.0), tmp_path)
+    with pytest.raises(ValueError, match="cannot be used"):
+        study.status(tmp_path)
+    with pytest.raises(ValueError, match=r"holds no cases\.sqlite"):
+        study.status(tmp_path / "none")
+    with pytest.raises(ValueError, match="store is 5"):
+        study.status(5)
+
+
+def test_status_tells_how_far_a_study_is_and_how_long_it_will_take(tmp_path):
+    cases, seen = study.grid(x=[float(x) for x in range(1, 9)]), []
+
+    def look(done, total):
+        time.sleep(0.02)
+        seen.append(study.status(tmp_path)[0])
+
+    with one_thread() as pool:
+        study.sweep(Counter(), cases[:2], pool, store=tmp_path)
+        study.sweep(Counter(fail_at=4), cases, pool, store=tmp_path, progress=look)
+    assert [told.ahead for told in seen[1:]] == [5, 4, 3, 2, 1, 0]  # the first two lay there
+    assert {told.asked for told in seen[1:]} == {8}
+    assert [told.done + told.failed for told in seen[1:]] == [3, 4, 5, 6, 7, 8]
+    assert seen[-1].failed == 3
+    assert math.isnan(seen[1].seconds_left)
+    paces = [told.seconds_left / told.ahead for told in seen[2:-1]]
+    assert all(pace >= 0.02 for pace in paces)  # what a case waits for `look`
+    assert str(seen[3]).endswith(f"about {seen[3].seconds_left:.0f} s")
+    assert str(seen[-1]) == f"{__name__}.Counter: 8 of 8 cases, 3 failed, complete"
+
+
+def test_quick_cases_travel_in_chunks_and_come_back_in_order(tmp_path):
+    """Ten thousand: far fewer submissions, each case once."""
+    submitted = []
+
+    class Counted(ThreadPoolExecutor):
+        def submit(self, function, /, *args, **kwargs):
+            submitted.append(len(args[1]))
+            return super().submit(function, *args, **kwargs)
+
+    counter = Counter()
+    with Counted(1) as pool:
+        found = study.sweep(counter, study.grid(x=[float(x) for x in range(10_000)]), pool, store=tmp_path)
+    assert [case.values["y"] for case in found] == [float(x) ** 2 for x in range(10_000)]
+    assert counter.calls == sum(submitted) == len(kept_rows(tmp_path)) == 10_000
+    assert len(submitted) < 3000  # the first window goes case by case
+
+
+def test_a_worker_of_another_version_is_refused(tmp_path):
+    """A process whose package says another version."""
+    with pytest.raises(RuntimeError, match=r"has bearingdyn other where the study was begun with"):
+        study.sweep(natural_frequency, [{"k": 1.0, "m": 1.0}], OtherVersion(), store=tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+class OtherVersion(Executor):
+    """Computes as another process would, with another version of the package."""
+
+    def submit(self, function, /, *args, **kwargs):
+        future = Future()
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(os, "getpid", lambda: -1)
+            patch.setattr(chunks, "versions", lambda: {"bearingdyn": "other"})
+            try:
+                future.set_result(function(*args, **kwargs))
+            except Exception as error:
+                future.set_exception(error)
+        return future
 
 
 def leaves(case):
@@ -564,7 +657,8 @@ def test_studies_in_threads_share_a_store(tmp_path):
     with ThreadPoolExecutor(6) as pool:
         first, *others = pool.map(whole, range(6))
     assert all(other == first for other in others)
-    assert len(list(tmp_path.iterdir())) == 39  # no scratch file is left
+    assert len(kept_rows(tmp_path)) == 39
+    assert [path.name for path in tmp_path.iterdir()] == [store.FILE]  # no scratch file is left
 
 
 UNGUARDED = SCRIPT.replace('if __name__ == "__main__":', "if True:")
@@ -625,7 +719,7 @@ def test_an_unchanged_function_is_sent_without_a_word(tmp_path):
         warnings.simplefilter("error")
         found = study.sweep(times_the_global, [{"x": 1.0}], store=tmp_path, progress=False)
     assert found[0].values["y"] == 1.0
-    assert len(list(tmp_path.iterdir())) == 1
+    assert len(kept_rows(tmp_path)) == 1
 
 
 SEEN: dict[tuple[float, str], float] = {}
@@ -649,7 +743,7 @@ def test_what_a_function_has_kept_of_its_own_calls_is_no_change_of_it(tmp_path, 
         warnings.simplefilter("error")
         found = study.sweep(remembered, [{"x": 2.0}, {"x": 3.0}], store=tmp_path, progress=False)
     assert [case.values["y"] for case in found] == [4.0, 9.0]
-    assert len(list(tmp_path.iterdir())) == 2
+    assert len(kept_rows(tmp_path)) == 2
     # what it only reads counts as before, and so does what it writes where it was not empty at the import
     monkeypatch.setitem(remembered.__globals__, "FACTOR", 5.0)
     with pytest.warns(ChangedFunction):
@@ -726,4 +820,4 @@ def test_a_script_that_calls_its_own_functions_is_the_same_in_its_workers(tmp_pa
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert len(list((tmp_path / "kept").glob("*.json"))) == 2
+    assert len(kept_rows(tmp_path / "kept")) == 2

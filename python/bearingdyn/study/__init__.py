@@ -9,6 +9,7 @@ from bearingdyn.study.indices import sobol_indices
 from bearingdyn.study.optimum import Optimum, front, optimise
 from bearingdyn.study.pareto import pareto
 from bearingdyn.study.robust import Robust
+from bearingdyn.study.store import StudyStatus, status
 from bearingdyn.study.study_table import table
 from bearingdyn.study.sweep import sweep
 
@@ -19,6 +20,7 @@ __all__ = [
     "Normal",
     "Optimum",
     "Robust",
+    "StudyStatus",
     "Uniform",
     "band",
     "doubt_effects",
@@ -29,6 +31,7 @@ __all__ = [
     "pareto",
     "sobol",
     "sobol_indices",
+    "status",
     "sweep",
     "table",
 ]

@@ -13,8 +13,9 @@ from bearingdyn.checks import require, whole
 from bearingdyn.material import uniforms
 from bearingdyn.progress import Progress
 from bearingdyn.study.cases import Case, label
+from bearingdyn.study.chunks import Study
 from bearingdyn.study.distributions import Box
-from bearingdyn.study.sweep import Study, sweep
+from bearingdyn.study.sweep import sweep
 
 if TYPE_CHECKING:
     import xarray

@@ -10,8 +10,8 @@ import numpy as np
 
 from bearingdyn.checks import named, nonnegative, number, one_of, require
 from bearingdyn.pictures import page
+from bearingdyn.study.chunks import Study
 from bearingdyn.study.distributions import IMPOSSIBLE, draw, said_of
-from bearingdyn.study.sweep import Study
 
 
 @dataclass(frozen=True)

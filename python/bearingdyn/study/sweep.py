@@ -3,38 +3,23 @@
 from __future__ import annotations
 
 import ast
-import functools
 import logging
 import multiprocessing
 import os
 import pickle
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import (
-    BrokenExecutor,
-    CancelledError,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    as_completed,
-)
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
-from numbers import Real
 from pathlib import Path
 from types import FrameType
-from typing import Any, NamedTuple, TypeAlias
 
-import numpy as np
-
-from bearingdyn import fingerprint
 from bearingdyn.notice import ChangedFunction, warn
 from bearingdyn.progress import Progress, told
 from bearingdyn.study.cases import Case, Parameters, checked
+from bearingdyn.study.chunks import Study, run
 from bearingdyn.study.store import Store, name_of
 
-Study: TypeAlias = Callable[[dict[str, Any]], Mapping[str, float]]
-# each worker is one process on one core: a BLAS with threads of its own would only get in the others' way
-WORKER_ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 # Windows waits for no more handles than this
 MOST_WORKERS = 61
 log = logging.getLogger(__name__)
@@ -66,12 +51,13 @@ def sweep(
         level of a module or script, and a script must call `sweep` below ``if __name__ == "__main__":``.
         Ctrl-C ends the study when the cases being computed are done.
     store
-        Folder, made where missing: each finished case, a failed one too, is written there at once, as JSON
-        under the hash of the function, this package's version and the parameters, and taken from there when
-        the study is run again. Of the function counts all that it is: its code and name, bound arguments, the
-        object it is a method of, defaults, enclosed variables and the global values and functions it uses;
-        of installed packages and modules it uses, their names alone: when these change, take another folder.
-        Several studies may share a folder, at the same time too.
+        Folder, made where missing, on a disk of this machine: workers elsewhere need not see it. Each
+        finished case, a failed one too, is written there at once, as a row of an SQLite file under the hash
+        of the function, this package's version and the parameters, and taken from there when the study is run
+        again; `status` tells how far it is. Of the function counts all that it is: its code and name, bound
+        arguments, the object it is a method of, defaults, enclosed variables and the global values and
+        functions it uses; of installed packages and modules it uses, their names alone: when these change,
+        take another folder. Several studies may share a folder, at the same time too.
     progress
         Called with (cases done, cases in all) after each; True for a bar on standard error, False for none,
         None for a bar where standard error is a terminal.
@@ -89,9 +75,14 @@ def sweep(
         Before any work: no cases, unequal names, a parameter that cannot be told by its content, nor, with
         a store, the function; a function that other processes cannot import; a script that calls `sweep`
         outside ``if __name__ == "__main__":``.
+    RuntimeError
+        Where a process that computes has another version of this package: its cases are refused.
     concurrent.futures.BrokenExecutor
         Where a worker of a pool of processes died. What was finished is in the store. A dask cluster computes
         the cases of a worker that died anew, and gives up a case that killed several.
+    concurrent.futures.CancelledError
+        Where the executor cancelled cases, as a cluster does whose scheduler is gone. What was finished is in
+        the store, and the same call on another cluster goes on from there.
 
     Warns
     -----
@@ -99,91 +90,33 @@ def sweep(
         Where the processes that compute have another function by that name.
     """
     todo = checked(cases)
-    folder = Store(Path(store), function) if store is not None else None
-    done: dict[int, Case] = {}
-    for index, parameters in enumerate(todo):
-        kept = folder.read(parameters) if folder else None
-        if kept is not None and not (retry and kept.error is not None):
-            done[index] = kept
-    ahead = [index for index in range(len(todo)) if index not in done]
-    with told(progress, "case") as tell:
-        advance = tell or (lambda done, total: None)
-        if done:
-            advance(len(done), len(todo))
-        if ahead:
-            with _pool(executor, function, len(ahead)) as pool:
-                warned = False
-                for index, case, meant in _run(pool, function, todo, ahead):
-                    done[index] = case
-                    if not meant and not warned:
-                        _warn_of_another(function)
-                        warned = True
-                    if case.error is not None:
-                        log.warning("case %d, %s, failed: %s", index, dict(case.parameters), case.error)
-                    if folder and meant:
-                        folder.write(case)
-                    advance(len(done), len(todo))
-    return [done[index] for index in range(len(todo))]
-
-
-class _Meant(NamedTuple):
-    """The function that was meant, by its fingerprint, by that before its first call, and the process of it.
-
-    A function is sent to other processes by its name, and these import its module afresh: what it takes from
-    around it may have been changed since.
-    """
-
-    told: str
-    unused: str
-    process: int
-
-    def is_this(self, function: Study) -> bool:
-        """Whether a function is the one, where another process computes."""
-        if os.getpid() == self.process:
-            return True
-        try:
-            told = _told_at_first(function)
-        except TypeError:  # no hash
-            told = fingerprint.loose(function)
-        return told in (self.told, self.unused)
-
-
-@functools.lru_cache(maxsize=64)
-def _told_at_first(function: Study) -> str:
-    """Before the first case: a function may keep things in a global of its module as it goes."""
-    return fingerprint.loose(function)
-
-
-class _Result(NamedTuple):
-    """Numbers, or the error in words: not every exception survives the way to another process."""
-
-    values: dict[str, float]
-    error: str | None
-    meant: bool = True
-
-
-def _attempt(function: Study, parameters: dict[str, Any], meant: _Meant) -> _Result:
-    """One case, in whatever process."""
-    same = meant.is_this(function)
+    kept = Store(Path(store), function) if store is not None else None
     try:
-        returned = function(dict(parameters))
-        if not isinstance(returned, Mapping):
-            raise TypeError(
-                f"returned {type(returned).__name__}; the function must return a mapping of numbers"
-            )
-        return _Result({str(name): _real(str(name), value) for name, value in returned.items()}, None, same)
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt from None
-    except BaseException as error:  # sys.exit too ends the case, not the study
-        return _Result({}, f"{type(error).__name__}: {error}", same)
-
-
-def _real(name: str, value: Any) -> float:
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value.item()
-    if not isinstance(value, Real | np.bool_):
-        raise TypeError(f"value {name!r} is {value!r}; it must be one real number")
-    return float(value)
+        done = kept.read(todo) if kept else {}
+        if retry:
+            done = {index: case for index, case in done.items() if case.error is None}
+        ahead = [index for index in range(len(todo)) if index not in done]
+        with told(progress, "case") as tell:
+            advance = tell or (lambda done, total: None)
+            if done:
+                advance(len(done), len(todo))
+            if ahead:
+                with _pool(executor, function, len(ahead)) as pool:
+                    warned = False
+                    for index, case, meant in run(pool, function, todo, ahead):
+                        done[index] = case
+                        if not meant and not warned:
+                            _warn_of_another(function)
+                            warned = True
+                        if case.error is not None:
+                            log.warning("case %d, %s, failed: %s", index, dict(case.parameters), case.error)
+                        if kept and meant:
+                            kept.write(case, asked=len(todo), ahead=len(ahead))
+                        advance(len(done), len(todo))
+    finally:
+        if kept:
+            kept.close()
+    return [done[index] for index in range(len(todo))]
 
 
 def _warn_of_another(function: Study) -> None:
@@ -197,44 +130,6 @@ def _warn_of_another(function: Study) -> None:
 
 
 # ---------------------------------------------------------------- processes
-
-
-def _run(
-    pool: Executor, function: Study, todo: list[dict[str, Any]], ahead: list[int]
-) -> Iterator[tuple[int, Case, bool]]:
-    """Cases as they are finished, and whether of the function meant; what ended the study is raised last."""
-    futures: dict[Future[_Result], int] = {}
-    ended: BrokenExecutor | CancelledError | None = None
-    try:
-        try:
-            with _worker_environment():  # a worker may be started with every submission
-                meant = _Meant(
-                    fingerprint.loose(function), fingerprint.loose(function, forgetful=True), os.getpid()
-                )
-                for index in ahead:
-                    futures[pool.submit(_attempt, function, todo[index], meant)] = index
-        except BrokenExecutor as broken:
-            ended = broken
-        for future in as_completed(futures):
-            index = futures[future]
-            try:
-                result = future.result()
-            except (BrokenExecutor, CancelledError) as broken:
-                ended = ended or broken
-                continue
-            except Exception as lost:  # the executor's own, as dask's KilledWorker
-                result = _Result({}, f"{type(lost).__name__}: {lost}")
-            yield index, Case(todo[index], result.values, result.error), result.meant
-        if isinstance(ended, BrokenExecutor):
-            ended.add_note(
-                "A worker process died: the function crashed it or used up the memory, or the script "
-                'calls sweep outside `if __name__ == "__main__":`.'
-            )
-        if ended is not None:
-            raise ended
-    finally:
-        for future in futures:
-            future.cancel()
 
 
 @contextmanager
@@ -251,25 +146,6 @@ def _pool(executor: Executor | None, function: Study, cases: int) -> Iterator[Ex
         yield pool
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
-
-
-@contextmanager
-def _worker_environment() -> Iterator[None]:
-    """The environment that new processes inherit.
-
-    It cannot be set in the worker: BLAS reads it when NumPy is loaded, and a spawned worker loads NumPy with
-    the caller's script, before any initializer of the pool. The BLAS of this process has read it long since.
-    """
-    before = {name: os.environ.get(name) for name in WORKER_ENVIRONMENT}
-    os.environ.update(WORKER_ENVIRONMENT)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
 
 
 def _processors() -> int:
