@@ -15,7 +15,7 @@ from bearingdyn.analysis.modes import modes
 from bearingdyn.application import Application
 from bearingdyn.checks import numbers, one_speed, truth, whole
 from bearingdyn.system import System, system_of
-from bearingdyn.types import Array, Complex
+from bearingdyn.types import Array, Complex, Index
 from bearingdyn.units import takes
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 MARGIN = 12
 # what an octave between two frequencies costs of the modes' assurance: it decides where shapes do not
 OCTAVE = 0.1
+DOUBLE = 1e-6  # relative distance of two frequencies that are one but for round-off, 1e-16 of the highest λ²
 
 
 @takes(speeds="rad/s")
@@ -103,7 +104,7 @@ def campbell(
                     values[j], shapes[j], assurance[j] = values[j][row], shapes[j][row], assurance[j][row]
         above = i
     slowest = order[-1]
-    keep = np.argsort(np.abs(values[slowest]), kind="stable")[:count]
+    keep = _lowest(np.abs(values[slowest]), np.abs(values[order[0]]))[:count]
     eigenvalue = np.array([v[keep] for v in values])
     size = np.abs(eigenvalue)
 
@@ -148,6 +149,18 @@ def campbell(
         },
         {"speed": (given, "rad/s")},
     )
+
+
+def _lowest(slowest: Array, fastest: Array) -> Index:
+    """The order of modes, by their frequencies at the lowest speed; double ones by those at the highest.
+
+    Which of two is lower by round-off would depend on the machine, and with it the one that `count` cuts off.
+    """
+    order = np.argsort(slowest, kind="stable")
+    rising = slowest[order]
+    rank = np.empty(order.size, dtype=np.intp)
+    rank[order] = np.cumsum(np.diff(rising, prepend=rising[:1]) > DOUBLE * rising)
+    return np.lexsort((fastest, rank))
 
 
 def _assurance(M: Array, a: Complex, b: Complex) -> Array:

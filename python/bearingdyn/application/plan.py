@@ -173,15 +173,15 @@ class Plan:
     def check_raceway(self, joint: BearingJoint) -> None:
         """Check a new bearing against the raceway it is hung in, if it is hung in one.
 
-        Warns
-        -----
-        FewOrders
-            If the raceway moves by fewer orders than the bearing has balls.
-
         Raises
         ------
         ValueError
             If the raceway was made for another arm, or carries a bearing already.
+
+        Warns
+        -----
+        FewOrders
+            If the raceway moves by fewer orders than the bearing has balls.
         """
         name, arm = joint.name, joint.bearing.arm
         found = [(place, race) for place in (joint.inner, joint.outer) if (race := self.raceway(place))]

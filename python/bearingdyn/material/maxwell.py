@@ -329,9 +329,13 @@ class Maxwell(Retunable, Softening, Drawable):
         self._warn_outside(omega)
         if doubt and np.any(omega == 0.0):
             self._warn_of_times(np.array([math.inf]), "the modulus at rest, at 0 Hz,")
+        # in real numbers: products of complex ones have other bits alone than among others on some machines
         x = omega[..., None] * self.tau
-        branch = x / (1 + x * x) * (x + 1j)
-        return np.asarray(self.G0 + 1j * omega * self.eta0 + branch @ self.G)
+        loss = self.G * x / (1 + x * x)
+        found = np.empty(omega.shape, dtype=np.complex128)
+        found.real = self.G0 + (loss * x).sum(axis=-1)
+        found.imag = omega * self.eta0 + loss.sum(axis=-1)
+        return found
 
     def _warn_outside(self, omega: Array) -> None:
         if self.band is None or omega.size == 0:
