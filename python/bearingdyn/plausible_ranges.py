@@ -389,6 +389,13 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
             "speed times pitch diameter; ball bearings reach 0.5e6 in grease, 1e6 in oil, and the fastest "
             "spindles 3e6 mm/min, with ceramic balls",
         ),
+        "speed value n·dm of a deep groove bearing": Magnitude(
+            "mm/min",
+            (0.0, 2e7),
+            (0.0, 8e5),
+            "speed times pitch diameter; makers limit open bearings with steel balls to 0.5e6 to 0.65e6 in "
+            "grease and 0.6e6 to 0.75e6 mm/min in oil",
+        ),
         "frequency": Magnitude("Hz", (1e-12, 1e12), (1e-9, 1e9), "machines sound from 1e-3 to 1e5 Hz"),
         "band of a part": Magnitude(
             "Hz",
@@ -487,15 +494,19 @@ def check_waves(field: str, modulus: float, density: float) -> None:
         )
 
 
-def check_speed_value(field: str, speed: float, pitch: float) -> None:
-    """Check the magnitude of a shaft's speed, rad/s, with the pitch diameter, m, of a bearing on it: n·dm."""
+def check_speed_value(field: str, speed: float, pitch: float, groove: bool = False) -> None:
+    """Check the magnitude of a shaft's speed, rad/s, with the pitch diameter, m, of a bearing on it: n·dm.
+
+    groove: whether it is a deep groove bearing with steel balls, which runs less fast than a spindle's.
+    """
+    kind = f"speed value n·dm{' of a deep groove bearing' if groove else ''}"
     turns = speed * 30 / math.pi
-    value, row = abs(turns) * pitch * 1e3, MAGNITUDES["speed value n·dm"]
+    value, row = abs(turns) * pitch * 1e3, MAGNITUDES[kind]
     meant = row.within(value * math.pi / 30, row.usual)
     hint = (
         f"; is the speed in rpm? give {speed * math.pi / 30:.6g} rad/s, or rpm={speed:.6g}" if meant else ""
     )
-    plausible("speed value n·dm", f"{field} is {speed:.6g} rad/s, {turns:.6g} rpm; n·dm", value, hint=hint)
+    plausible(kind, f"{field} is {speed:.6g} rad/s, {turns:.6g} rpm; n·dm", value, hint=hint)
 
 
 def check_gyration(field: str, inertia: float, mass: float) -> None:

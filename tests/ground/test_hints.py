@@ -44,6 +44,33 @@ def test_speeds_that_bearings_run_at_are_silent(
     assert not recwarn.list
 
 
+@pytest.mark.parametrize(
+    ("rpm", "pitch"), [(26000.0, 0.0285), (16000.0, 0.0445), (36000.0, 0.018), (8500.0, 0.070)]
+)
+def test_deep_groove_bearings_at_their_makers_limits_in_oil_are_silent(
+    rpm: float, pitch: float, recwarn: pytest.WarningsRecorder
+) -> None:
+    """NSK's catalogue of open bearings: 6203, 6305, 6000, 6210."""
+    check_speed_value("speed", rpm * math.pi / 30, pitch, groove=True)
+    assert not recwarn.list
+
+
+def test_a_deep_groove_bearing_beyond_its_makers_limit_is_doubted() -> None:
+    """3000 rad/s on a 6203, meant as 3000 rpm; its maker allows 26 000 rpm."""
+    app = bd.Application()
+    app.add("shaft", bd.Shaft([bd.Section(0.2, 0.017)], {"a": 0.02, "b": 0.18}))
+    for place in ("a", "b"):
+        app.bearing(
+            place, bd.catalogue.bearing("6203", clearance=8e-6), inner=f"shaft.{place}", outer="ground"
+        )
+    app.load("shaft.a", (0, -100.0, 50.0, 0, 0, 0))
+    state = bd.equilibrium(app)
+    with pytest.warns(
+        UnusualMagnitude, match=r"bearing 'a': speed is 3000 rad/s, 28647\.9 rpm; n·dm.*or rpm=3000$"
+    ):
+        bd.modes(state, speed=3000.0, count=1)
+
+
 def test_places_in_mm_are_named() -> None:
     """Of a seat, and of a disc that is on no shaft yet."""
     with pytest.raises(ValueError, match=r"is it in mm\? give 0\.03 m$"):

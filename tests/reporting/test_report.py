@@ -169,6 +169,27 @@ def test_results_of_another_machine_or_version_are_doubted(mass: bd.Application,
     assert "computed by version 0.0.1" in text_of(bd.report(old, tmp_path / "c.html"))
 
 
+def test_modes_that_nothing_holds_are_called_free_and_long_lists_end(
+    mass: bd.Application, tmp_path: Path
+) -> None:
+    """A rotor's spin is found at a thousandth of a hertz of round-off; nobody reads a hundred modes."""
+    found = bd.modes(mass)
+    many = found.isel(mode=np.zeros(60, dtype=int))
+    f = np.geomspace(100.0, 1e5, 60)
+    f[0] = 9e-4
+    many = (
+        many.assign_coords(frequency=("mode", f))
+        if "frequency" in many.coords
+        else many.assign(frequency=("mode", f, many["frequency"].attrs))
+    )
+    text = text_of(bd.report(many, tmp_path / "many.html"))
+    assert "free, nothing holds it" in text
+    assert "20 more, up to 100 kHz, are in the result." in text
+    held = text_of(bd.report(found, tmp_path / "held.html"))
+    assert "free" not in held
+    assert "more, up to" not in held
+
+
 def test_names_of_the_user_cannot_break_the_page(tmp_path: Path) -> None:
     evil = '</script><script>alert("1")</script>'
     app = bd.Application()

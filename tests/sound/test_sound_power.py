@@ -86,6 +86,11 @@ def test_equivalent_radiated_power_stands_beside_it(app, found) -> None:
     assert error[-1, 0] < 6.0
 
 
+def test_a_result_says_up_to_where_its_parts_are_right(found) -> None:
+    """The housing keeps modes to 3 kHz."""
+    assert found.attrs["valid_to"] == 3000.0
+
+
 def test_parts_add_up(found) -> None:
     assert found.part_power.values.sum(axis=1) == pytest.approx(found.power.values, rel=1e-9, abs=0.0)
 

@@ -90,7 +90,8 @@ def modes(
     damped, speed = truth("damped", damped), number("speed", one_speed(speed, rpm, 0.0))
     one_of("contacts", contacts, ("film", "viscous"))
     system = source.linearised() if isinstance(source, Equilibrium) else linear(source).system
-    system.check_speed(speed)
+    # linearised bearings are springs, which any speed suits
+    (source.system if isinstance(source, Equilibrium) else system).check_speed(speed)
     if damped:
         values, shapes = _damped(system, speed)
         if contacts == "film" and isinstance(source, Equilibrium) and source.filmed:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing import BallBearing, Lubricant, lubricate
 from bearingdyn.plot.arguments import figure
-from bearingdyn.plot.frame import colour, finish, halve, new_axes, style
+from bearingdyn.plot.frame import colour, finish, frame_log, halve, new_axes, style, written_out
 from bearingdyn.types import Array
 
 if TYPE_CHECKING:
@@ -85,9 +85,11 @@ def film(
     with style():
         ax = ax or new_axes(height=3.4 if roughness is None else 4.8)
         lower = None if roughness is None else halve(ax)
+        films = np.zeros(0)
         for k, (T, points) in enumerate(found.items()):
             for race, dash in (("inner", "-"), ("outer", "--")):
                 h = [getattr(point, f"film_{race}") * 1e6 for point in points]
+                films = np.append(films, h)
                 ax.plot(rpm, h, color=colour(k), linestyle=dash, label=f"{race} race, {T:g} °C")
                 if lower is not None:
                     ratio = [getattr(point, f"lambda_{race}") for point in points]
@@ -98,6 +100,8 @@ def film(
         bottom.set_xscale("log")
         bottom.set_xlim(float(rpm[0]), float(rpm[-1]))
         bottom.set_xlabel("speed of the inner ring, rpm")
+        written_out(bottom.xaxis, float(np.log10(rpm[-1] / rpm[0])))
+        frame_log(ax, films)
         if lower is not None:
             lower.set_yscale("log")
             lower.axhline(1.0, color="0.35", linewidth=0.7)

@@ -322,11 +322,11 @@ def equilibrium_html(eq: Equilibrium) -> str:
                     f"{float(one['modulus']) / 1e6:.4g}",
                 )
             )
-    moved = []
-    for name in eq.system.outputs:
-        u = eq.displacement(name)
-        # what is a picometre is round-off
-        moved.append((name, *(f"{1e6 * x:.4g}" if abs(x) > 1e-12 else "0" for x in u[:3])))
+    moved, motions = [], {name: eq.displacement(name)[:3] for name in eq.system.outputs}
+    # what is a millionth of the largest, or a picometre, is round-off
+    least = max([1e-12, *(1e-6 * float(np.abs(u).max()) for u in motions.values())])
+    for name, u in motions.items():
+        moved.append((name, *(f"{1e6 * x:.4g}" if abs(x) > least else "0" for x in u)))
     borne = []
     for name, state in eq.bearings.items():
         loads = state.loads

@@ -10,6 +10,7 @@ import numpy as np
 from bearingdyn.analysis import spectrum
 from bearingdyn.reporting.blocks import paragraph, scaled, table, told
 from bearingdyn.reporting.chart import Chart, Curve
+from bearingdyn.reporting.shapes import free_motions
 from bearingdyn.sound import level
 from bearingdyn.types import Array
 from bearingdyn.units import rpm
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     import xarray
 
 Results: TypeAlias = "Mapping[str, xarray.Dataset]"
+MODES = 40  # listed of a machine that may have hundreds
 MOST_CHANNELS = 12  # drawn of each kind of march
 FAINT = 1e-5  # of the largest line, below which the high end of a spectrum is not drawn
 WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
@@ -214,15 +216,26 @@ def _finite(values: Array) -> Array:
 
 
 def _modes(data: xarray.Dataset) -> str:
-    """Frequencies and damping."""
-    f, zeta = data["frequency"].values, data["damping_ratio"].values
+    """Frequencies and damping, of as many modes as somebody reads."""
+    f, zeta, free = data["frequency"].values, data["damping_ratio"].values, free_motions(data)
     damped = bool(data.attrs.get("damped"))
     rows = [
-        (str(k + 1), told(float(f[k]), "Hz"), f"{100 * zeta[k]:.3g} %" if damped else "undamped")
-        for k in range(f.size)
+        (
+            str(k + 1),
+            "free, nothing holds it" if free[k] else told(float(f[k]), "Hz"),
+            "" if free[k] else f"{100 * zeta[k]:.3g} %" if damped else "undamped",
+        )
+        for k in range(min(f.size, MODES))
     ]
-    return table(("mode", "natural frequency", "damping ratio"), rows) + _stated(
-        data, ("speed", "modulus", "contacts")
+    more = (
+        f"{f.size - MODES} more, up to {told(float(f[-1]), 'Hz')}, are in the result."
+        if f.size > MODES
+        else ""
+    )
+    return (
+        table(("mode", "natural frequency", "damping ratio"), rows)
+        + paragraph(more)
+        + _stated(data, ("speed", "modulus", "contacts"))
     )
 
 

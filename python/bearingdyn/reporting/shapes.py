@@ -6,6 +6,7 @@ import base64
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bearingdyn.analysis import Equilibrium, mode_surfaces
 from bearingdyn.reporting.chart import floats, json_text
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 CELLS = 24  # of a part along its longest side
 SHOWN = 12  # modes
-FREE = 1e-3  # of the median frequency of the modes shown, below which a motion is free
+FREE = 1e-3  # of the median frequency of the lowest modes, below which a motion is free
 
 
 def shapes_html(eq: Equilibrium, found: xarray.Dataset) -> str:
@@ -62,17 +63,21 @@ def shapes_html(eq: Equilibrium, found: xarray.Dataset) -> str:
     )
 
 
-def first_elastic(found: xarray.Dataset, count: int) -> int:
-    """Number, from 0, of the mode shape that a report opens with: the first that is no free motion.
+def free_motions(found: xarray.Dataset) -> NDArray[np.bool_]:
+    """Mode shapes (mode,) of a report that nothing holds, as a rotor's spin, found near 0 Hz."""
+    frequency = np.asarray(found["frequency"].values, dtype=np.float64)
+    return np.asarray(frequency <= FREE * np.median(frequency[:SHOWN]))
 
-    What nothing holds, as the spin of a rotor, is found near 0 Hz and not at it; it lies far below the rest.
-    """
-    frequency = np.asarray(found["frequency"].values[:count], dtype=np.float64)
-    return int(np.argmax(frequency > FREE * np.median(frequency)))
+
+def first_elastic(found: xarray.Dataset, count: int) -> int:
+    """Number, from 0, of the mode shape that a report opens with: the first that is no free motion."""
+    return int(np.argmin(free_motions(found)[:count]))
 
 
 def mode_title(found: xarray.Dataset, k: int) -> str:
     """Title of a report's mode shape: number and frequency, and damping where it has any."""
+    if free_motions(found)[k]:
+        return f"{k + 1}: free"
     damped = bool(found.attrs.get("damped"))
     zeta = f", ζ {100 * float(found['damping_ratio'].values[k]):.2g} %" if damped else ""
     return f"{k + 1}: {float(found['frequency'].values[k]):.4g} Hz{zeta}"

@@ -74,7 +74,7 @@ def sound_power(
         would radiate, and its error in dB; efficiency, the power over ½ ρ c ∫ |v|² dA; interpolation_error,
         dB. Over (frequency, part, input): part_power, what each part gives; it may be negative. With
         microphones: pressure (frequency, microphone, input), complex, zero-to-peak, Pa/N. Panels and their
-        sides by octave in attrs.
+        sides by octave, and valid_to, the lowest f_max of the parts, Hz, in attrs.
 
     Raises
     ------

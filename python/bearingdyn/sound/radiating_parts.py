@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -131,7 +132,9 @@ class RadiatingParts:
     def facts(self) -> dict[str, Any]:
         """Medium, surfaces and floor, as results tell them."""
         floor = self.radiators.floor
+        reach = min(skin.f_max for skin in self.radiators.skins)
         return {
+            **({"valid_to": reach} if math.isfinite(reach) else {}),
             "density": self.density,
             "sound_speed": self.sound_speed,
             "surfaces": ", ".join(self.names),
