@@ -157,7 +157,7 @@ class StrainedLayer(Notice):
     4 % of its thickness: there its stiffness has risen by 1 %. The text says by how much the state itself,
     and a small motion about it, is wrong. Along the axis the linear stiffness is good to 1 % up to 20 % of
     the thickness, and nothing warns. A Solid with rubber strained by more than .1 % rms is solved again at
-    finite strain, unless it has more than 30 000 coordinates, and the text tells the two answers apart where
+    finite strain, unless it has more than 12 000 coordinates, and the text tells the two answers apart where
     they differ by 1 %: a pad pressed by .4 % of its height.
 
     Remedy: less load or a thicker layer; give the application what `assembled` returns for that motion; or

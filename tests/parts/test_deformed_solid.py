@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 import bearingdyn as bd
+from bearingdyn.analysis import strained_rubber
 from bearingdyn.fem import SolidMesh, box_mesh, rigid_transfer, ring_mesh
 from bearingdyn.fem.meshes.solid_mesh import second_order
 from bearingdyn.material import STEEL, Elastic, Maxwell
@@ -276,7 +277,9 @@ def test_it_takes_the_place_of_the_solid_in_an_application() -> None:
     assert frequency[1] != pytest.approx(frequency[0], rel=1e-3)
 
 
-def test_an_equilibrium_tells_of_a_solid_strained_beyond_its_linear_stiffness() -> None:
+def test_an_equilibrium_tells_of_a_solid_strained_beyond_its_linear_stiffness(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     block = pad(MAXWELL, f_max=500.0)
     k = block.stiffness().real[6:, 6:]
 
@@ -296,6 +299,11 @@ def test_an_equilibrium_tells_of_a_solid_strained_beyond_its_linear_stiffness() 
     with warnings.catch_warnings():
         warnings.simplefilter("error", StrainedLayer)
         state(0.01 * MM)
+    with pytest.warns(StrainedLayer, match="finds no balance beyond"):
+        state(0.6 * T)
+    monkeypatch.setattr(strained_rubber, "LARGE", 0)  # too many coordinates to be solved for a warning
+    with pytest.warns(StrainedLayer, match="may be wrong by several times that"):
+        state(0.3 * MM)
 
 
 def test_deformations_that_cannot_be_are_named() -> None:

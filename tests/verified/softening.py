@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 
+import numpy as np
 import shaker
 
 import bearingdyn as bd
@@ -26,26 +27,30 @@ def amplitude() -> list[Row]:
         gap = abs(found - complex(storage, loss))
         cases.append((f"EPDM 70 at {percent:g} % strain, |F + iL| (MPa)", size, size + gap))
     law = rows(SECTION, 1e-4, "to the digits given", INDEPENDENT, cases)
-    return law + _steady() + _one_number() + (_fit() + _rings() if DATA.exists() else [])
+    return law + _steady() + _marched() + _one_number() + (_fit() + _rings() if DATA.exists() else [])
+
+
+PLACE = "mass.centre.z"
+RUBBER = bd.Maxwell(4e6, [6e5, 6e5, 7e5, 8e5], [1e-2, 2e-3, 4e-4, 7e-5], K=2e9, density=1150.0, payne=LAW)
+
+
+def _pulled(*tones: tuple[float, float]) -> bd.Application:
+    """A mass on a ring under forces (N, Hz) along its axis."""
+    made = bd.Application()
+    made.add("mass", bd.RigidBody(mass=0.6, inertia=(1e-3, 1e-3, 1e-3)))
+    made.add("layer", bd.Layer(0.020, 0.024, 0.012, RUBBER))
+    made.connect("mass.centre", "layer.inner", fits=False)
+    made.ground("layer.outer")
+    for size, hertz in tones:
+        made.load("mass.centre", (0, 0, size, 0, 0, 0), frequency=hertz)
+    return made
 
 
 def _steady() -> list[Row]:
     """A mass on a ring: the balance of harmonics, and the march, against the frequency response."""
-    rubber = bd.Maxwell(4e6, [6e5, 6e5, 7e5, 8e5], [1e-2, 2e-3, 4e-4, 7e-5], K=2e9, density=1150.0, payne=LAW)
-    place, hertz, size = "mass.centre.z", 260.0, 10.0
-
-    def app() -> bd.Application:
-        made = bd.Application()
-        made.add("mass", bd.RigidBody(mass=0.6, inertia=(1e-3, 1e-3, 1e-3)))
-        made.add("layer", bd.Layer(0.020, 0.024, 0.012, rubber))
-        made.connect("mass.centre", "layer.inner", fits=False)
-        made.ground("layer.outer")
-        return made
-
-    wanted = bd.frequency_response(app(), [hertz], [place], [place], amplitude=size)
-    pulled = app()
-    pulled.load("mass.centre", (0, 0, size, 0, 0, 0), frequency=hertz)
-    found = bd.steady_state(pulled, speed=100.0, record=[place])
+    hertz, size = 260.0, 10.0
+    wanted = bd.frequency_response(_pulled(), [hertz], [PLACE], [PLACE], amplitude=size)
+    found = bd.steady_state(_pulled((size, hertz)), speed=100.0, record=[PLACE])
     line = int(abs(found["frequency"].values - hertz).argmin())
     names = ("mass on a ring at 10 N, 260 Hz: amplitude (µm)", "mass on a ring at 10 N, 260 Hz: strain (%)")
     response = 1e6 * size * abs(complex(wanted["response"].values[0, 0, 0]))
@@ -58,6 +63,31 @@ def _steady() -> list[Row]:
         "harmonic response with one strain for the layer, found in another way",
         [(names[0], response, own[0]), (names[1], strain, own[1])],
     )
+
+
+def _marched() -> list[Row]:
+    """A mass on a ring under two forces, on both flanks of its resonance and near it: march and balance."""
+    cases = []
+    for tones, periods in (([(6.0, 200.0), (6.0, 320.0)], 40), ([(6.0, 230.0), (6.0, 260.0)], 46)):
+        balanced = bd.steady_state(_pulled(*tones), speed=100.0, record=[PLACE], stability=False)
+        base, steps = tones[0][1], 400
+        run = bd.transient(
+            bd.equilibrium(_pulled(*tones)),
+            speed=0.0,
+            dt=1 / base / steps,
+            steps=periods * steps,
+            settle=(240 - periods) * steps,
+            memory=10 / base,
+            record=[PLACE],
+            progress=False,
+        )
+        z, t = run.record.values[:, 0], run.time.values
+        for _, hertz in tones:
+            line = int(abs(balanced["frequency"].values - hertz).argmin())
+            own = 2e6 * abs(np.mean(z * np.exp(-2j * np.pi * hertz * t)))
+            name = f"mass on a ring, 6 N at {base:g} and {tones[1][1]:g} Hz: amplitude at {hertz:g} Hz (µm)"
+            cases.append((name, 1e6 * abs(complex(balanced["amplitude"].values[line, 0])), own))
+    return rows(SECTION, 2e-3, "asked for", "balance of harmonics, against the march", cases)
 
 
 def _one_number() -> list[Row]:

@@ -23,8 +23,8 @@ STRAINED = 0.01
 LEAST = 1e-3
 """Strain, rms over the rubber, below which no solid is solved anew: pressed rubber stiffens by some three
 times its strain."""
-LARGE = 30_000
-"""Coordinates of a solid above which it is not solved anew for a warning: each solution takes seconds."""
+LARGE = 12_000
+"""Coordinates of a solid above which it is not solved anew for a warning: that takes longer than 5 s."""
 DIRECTIONS = ("x", "y", "z", "θx", "θy", "θz")
 
 Displacement = Callable[[str], Array]
