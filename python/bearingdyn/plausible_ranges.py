@@ -477,6 +477,7 @@ def check_waves(field: str, modulus: float, density: float) -> None:
 
     The kind of slip: steel of E = 210e3, in MPa, with 7850 kg/m³ has √(E/ρ) = 5.2 m/s.
     """
+    modulus, density = float(modulus), float(density)
     speed = math.sqrt(modulus / density)
     floor = MAGNITUDES["wave speed"].possible[0]
     if density >= LIGHTEST and not speed >= floor:
@@ -489,6 +490,7 @@ def check_waves(field: str, modulus: float, density: float) -> None:
 
 def check_speed_value(field: str, speed: float, pitch: float) -> None:
     """Check the magnitude of a shaft's speed, rad/s, with the pitch diameter, m, of a bearing on it: n·dm."""
+    speed, pitch = float(speed), float(pitch)
     turns = speed * 30 / math.pi
     value, row = abs(turns) * pitch * 1e3, MAGNITUDES["speed value n·dm"]
     meant = row.within(value * math.pi / 30, row.usual)

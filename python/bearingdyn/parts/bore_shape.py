@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, number, real, require, whole
+from bearingdyn.checks import items, nonnegative, number, real, require, whole
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
@@ -37,9 +37,10 @@ class BoreShape:
 
     def __post_init__(self) -> None:
         remedy = "orders of a bore's shape are whole numbers from 2: 0 is the fit, 1 where the bore is"
+        require(isinstance(self.waves, Mapping), "waves", self.waves, "it must be (cosine, sine) by order")
         for n, pair in self.waves.items():
             whole("waves", n, 2, remedy=remedy)
-            for value in pair:
+            for value in items(f"waves[{n}]", pair, "it must be (cosine, sine) in m"):
                 number(f"waves[{n}]", value, "it must be (cosine, sine) in m")
                 plausible("bore wave", f"waves[{n}]", value)
         nonnegative("interference", self.interference, "it must be a length in m on the radius, zero or more")
