@@ -55,7 +55,9 @@ ctest: $(BUILD)/ctest/build.ninja
 ASAN_TESTS := tests/core tests/bearing/test_kernel.py tests/bearing/test_imperfections.py tests/cms/test_part_march.py \
   tests/analysis/test_march.py tests/analysis/test_exact_step.py tests/analysis/test_softening_march.py \
   tests/analysis/test_steady_borne.py tests/analysis/test_abreast.py tests/analysis/test_film_march.py \
-  tests/bearing/test_film_memory.py tests/sound/test_radiation.py
+  tests/bearing/test_film_memory.py tests/sound/test_radiation.py tests/analysis/test_beginnings.py \
+  tests/analysis/test_bands.py tests/analysis/test_steady_softening.py tests/analysis/test_softening_zones.py \
+  tests/analysis/test_film_response.py tests/parts/test_flexible_bore.py tests/parts/test_bore_of_a_solid.py
 asan: $(BUILD)/asan/build.ninja $(VENV)/package $(VENV)/test
 	meson compile -C $(BUILD)/asan
 	meson test -C $(BUILD)/asan --print-errorlogs

@@ -14,6 +14,8 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.types import Array
 
+_NO_NUMBERS = (str, bytes, bool, np.bool_)
+
 
 def require(ok: bool, field: str, value: object, remedy: str) -> None:
     """Check a condition: raise a ValueError naming field, value and remedy unless `ok`."""
@@ -25,7 +27,8 @@ def number(field: str, value: object, remedy: str = "give one finite number") ->
     """Check a number: the value as a finite float; ValueError if it is anything else."""
     # True is no length, and an array of one entry no number
     try:
-        other = isinstance(value, (str, bytes, bool, np.bool_)) or np.ndim(value) > 0  # type: ignore[arg-type]
+        # nor is a complex number, of which NumPy's own would lose the imaginary part
+        other = isinstance(value, _NO_NUMBERS) or np.ndim(value) > 0 or np.iscomplexobj(value)  # type: ignore[arg-type]
         x = math.nan if other else float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{field} is {value!r}; {remedy}") from None
@@ -95,10 +98,17 @@ def vector(field: str, value: ArrayLike, shape: Sequence[int], meaning: str) -> 
 def two(field: str, value: object, remedy: str) -> tuple[float, float]:
     """Check two numbers of any size, as floats; ValueError for anything else."""
     try:
-        low, high = (float(x) for x in value)  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
+        low, high = (x if isinstance(x, float) else _no_text(x) for x in value)  # type: ignore[attr-defined]
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{field} is {value!r}; {remedy}") from None
     return low, high
+
+
+def _no_text(value: Any) -> float:
+    """A number as a float; TypeError for a text and a truth, which `float` would take."""
+    if isinstance(value, str | bytes | bool | np.bool_):
+        raise TypeError(f"{value!r} is no number")
+    return float(value)
 
 
 def name_list(field: str, value: object, what: str = "channels", least: int = 0) -> list[str]:

@@ -484,6 +484,7 @@ def check_waves(field: str, modulus: float, density: float) -> None:
 
     The kind of slip: steel of E = 210e3, in MPa, with 7850 kg/m³ has √(E/ρ) = 5.2 m/s.
     """
+    modulus, density = float(modulus), float(density)
     speed = math.sqrt(modulus / density)
     floor = MAGNITUDES["wave speed"].possible[0]
     if density >= LIGHTEST and not speed >= floor:
@@ -499,6 +500,7 @@ def check_speed_value(field: str, speed: float, pitch: float, groove: bool = Fal
 
     groove: whether it is a deep groove bearing with steel balls, which runs less fast than a spindle's.
     """
+    speed, pitch = float(speed), float(pitch)
     kind = f"speed value n·dm{' of a deep groove bearing' if groove else ''}"
     turns = speed * 30 / math.pi
     value, row = abs(turns) * pitch * 1e3, MAGNITUDES[kind]

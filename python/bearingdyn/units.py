@@ -12,6 +12,8 @@ import inspect
 import math
 import re
 from collections.abc import Callable, Mapping
+from decimal import Decimal
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -193,6 +195,11 @@ def si(field: str, value: Any, unit: str | tuple[str, ...]) -> Any:
     """
     if value is None or isinstance(value, str | int | float | np.ndarray | np.generic):
         return value
+    if isinstance(value, Decimal | Fraction):  # which do not go with floats, or not into a format
+        try:
+            return float(value)
+        except OverflowError:
+            return value
     if hasattr(value, "dimensionality") and hasattr(value, "magnitude"):
         if isinstance(unit, str):
             return _of_pint(field, value, unit)

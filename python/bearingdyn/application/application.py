@@ -20,7 +20,7 @@ from bearingdyn.application.place import GRAVITY, Place
 from bearingdyn.application.plan import Plan
 from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, RowSet
-from bearingdyn.checks import named, require, truth
+from bearingdyn.checks import instance, named, require, truth
 from bearingdyn.cms import kept_superelement
 from bearingdyn.pictures import picture
 from bearingdyn.plausible_ranges import plausible
@@ -156,6 +156,8 @@ class Application:
         remedy = "it must be a part, such as bd.Shaft(…), bd.RigidBody(…) or bd.Layer(…)"
         ready = not isinstance(part, type) and callable(getattr(part, "superelement", None))
         require(ready, f"part {name!r}", part, remedy)
+        if cache is not None:
+            instance("cache", cache, (str, os.PathLike), "give the path of a folder, or None")
         twin = next((known for known, source in plan.sources.items() if source is part), None)
         # the twin's own, before a temperature was put on it
         if twin is not None:

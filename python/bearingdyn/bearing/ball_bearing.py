@@ -30,7 +30,7 @@ from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, OpenSide, open_sine, runs_off, shoulder
 from bearingdyn.bearing.raceway_series import RIGID, RacewaySeries
 from bearingdyn.bearing.ring_speeds import Turning, ring_speeds
-from bearingdyn.checks import nonnegative, number, one_speed, positive, require, vector, whole
+from bearingdyn.checks import instance, nonnegative, number, one_speed, positive, require, vector, whole
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.notice import OpenSideWarning, warn
 from bearingdyn.pictures import picture
@@ -232,6 +232,7 @@ class BallBearing:
         Geometry(Z, Dw, Dpw, fi, fo, clearance, contact_angle)
         for name, body in (("material", material), ("ball_material", ball_material)):
             require(isinstance(body, Elastic), name, body, "give a material.Elastic, such as STEEL")
+        instance("overrides", overrides, Overrides, "leave it out: kappa=, cage_ratio= and arm= are meant")
         given = Overrides(
             overrides.kappa if kappa is None else kappa,
             overrides.cage_ratio if cage_ratio is None else cage_ratio,
@@ -424,8 +425,8 @@ class BallBearing:
         contact_angle
             Of the loaded state, rad; None: nominal.
         """
-        whole("harmonics", harmonics, 1, 10_000)
-        f = self.frequencies(number("speed", speed), contact_angle)
+        harmonics, speed = whole("harmonics", harmonics, 1, 10_000), number("speed", speed)
+        f = self.frequencies(speed, contact_angle)
         found = {"shaft": abs(speed) / (2 * math.pi), "FTF": f.FTF}
         for k in range(1, harmonics + 1):
             found |= {
@@ -604,7 +605,8 @@ class BallBearing:
         """
         f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
         check_load("load", f)
-        turn = self.angle0 + number("angle", angle, "it must be a finite angle in rad")
+        angle = number("angle", angle, "it must be a finite angle in rad")
+        turn = self.angle0 + angle
         R = self.arm
         target = np.array([f[0], f[1], f[2], -f[4] / R, f[3] / R])
         still = np.zeros(5)
@@ -655,7 +657,8 @@ class BallBearing:
 
         z = self.relative(q)
         zdot = self.coefficients() @ vector("velocity", velocity, (6,), f"rate of {_MOTION}")
-        turn = self.angle0 + number("angle", angle, "it must be a finite angle in rad")
+        angle = number("angle", angle, "it must be a finite angle in rad")
+        turn = self.angle0 + angle
         cage = self.cage_ratio * plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
         check_speed_value("speed", speed, self.Dpw)
         # the shaft has turned so far that the cage stands at `angle`

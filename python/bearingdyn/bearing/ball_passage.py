@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Running
-from bearingdyn.checks import require
+from bearingdyn.checks import instance, require, vector
 from bearingdyn.notice import UnloadedBearing, warn
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -68,10 +68,12 @@ def passage(bearing: BallBearing | Running, load: ArrayLike, n: int = 16) -> Pas
         For a load of zero.
     """
     require(isinstance(n, int) and n >= 1, "n", n, "it must be a whole number of positions, one or more")
+    instance("bearing", bearing, (BallBearing, Running), "give a BallBearing")
+    load = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
     brg = bearing.bearing if isinstance(bearing, Running) else bearing
     smooth = not (brg.waviness or brg.defects or brg.oversize)
     require(smooth, "bearing", brg, "it must have neither waviness, defects nor unequal balls")
-    if not np.any(np.asarray(load, dtype=np.float64)):
+    if not np.any(load):
         warn(
             "load is zero: a bearing that bears nothing has no place of its own, and no stiffness unless it "
             "is clamped; give the load that it runs under",

@@ -10,7 +10,7 @@ import math
 import re
 from dataclasses import dataclass
 
-from bearingdyn.checks import require
+from bearingdyn.checks import positive, require
 
 CLEARANCE_CLASSES = ("C2", "CN", "C3", "C4", "C5")
 
@@ -135,6 +135,7 @@ def clearance_range(bore: float, group: str = "CN") -> tuple[float, float]:
         For another group or a bore above 120 mm.
     """
     require(group in CLEARANCE_CLASSES, "group", group, f"it must be one of {', '.join(CLEARANCE_CLASSES)}")
+    bore = positive("bore", bore, "it must be above 0 and at most 0.12 m, where the table ends")
     row = next((row for most, row in _CLEARANCES.items() if 0 < bore * 1e3 <= most + 1e-9), None)
     if row is None:
         raise ValueError(f"bore is {bore!r}; it must be above 0 and at most 0.12 m, where the table ends")

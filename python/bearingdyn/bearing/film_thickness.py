@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from bearingdyn.bearing.hertz import PointContact
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import instance, positive, require
 
 # by which the film of Nijenbanning, Venner and Moes, fitted to an oil that does not yield, lies above the
 # solutions when divided by ρ̄(p_h): the middle of −4 to +6 % over the table, from three times the turn on
@@ -74,7 +74,13 @@ def nijenbanning_venner_moes(contact: PointContact, F: float, us: float, eta0: f
         If a value is not positive, or Rx > Ry.
     """
     M, L, speed = moes_groups(contact, F, us, eta0, alpha)
-    return dimensionless_film(M, L, contact.Rx / contact.Ry) * contact.Rx * math.sqrt(speed)
+    try:
+        return dimensionless_film(M, L, contact.Rx / contact.Ry) * contact.Rx * math.sqrt(speed)
+    except ArithmeticError:  # numbers of no contact there is
+        raise ValueError(
+            f"F is {F:g} N, us {us:g} m/s, eta0 {eta0:g} Pa s and alpha {alpha:g} 1/Pa; no film has numbers "
+            f"of this size (M {M:g}, L {L:g})"
+        ) from None
 
 
 def dimensionless_film(M: float, L: float, D: float) -> float:
@@ -118,6 +124,7 @@ def film_formula(M: float, L: float, D: float) -> float:
 
 def film_scales(contact: PointContact) -> tuple[float, float]:
     """E′ with 2/E′ = Σ(1 − ν²)/E, Pa, and Rx, m, the scales of the film formulas."""
+    instance("contact", contact, PointContact, "give a bearing's inner_contact or outer_contact")
     require(
         contact.Rx <= contact.Ry,
         "contact.Rx",

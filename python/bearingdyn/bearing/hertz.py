@@ -15,7 +15,7 @@ from typing import Literal
 import scipy
 
 from bearingdyn.bearing.geometry import Geometry
-from bearingdyn.checks import nonnegative, number, positive, require
+from bearingdyn.checks import instance, nonnegative, number, positive, require
 from bearingdyn.material import Elastic
 
 
@@ -29,6 +29,8 @@ def contact_modulus(first: Elastic, second: Elastic) -> float:
     second
         The other body.
     """
+    instance("first", first, Elastic, "give a material.Elastic, such as STEEL")
+    instance("second", second, Elastic, "give a material.Elastic, such as STEEL")
     return 1 / ((1 - first.nu**2) / first.E + (1 - second.nu**2) / second.E)
 
 

@@ -82,7 +82,7 @@ def load_distribution(
     """
     instance("bearing", bearing, (BallBearing, Running), "give a BallBearing, or it Running")
     if shoulder is not None:
-        positive("shoulder", shoulder, "it must be positive and finite, in m")
+        shoulder = positive("shoulder", shoulder, "it must be positive and finite, in m")
     if isinstance(bearing, Running):
         brg, b = bearing.bearing, bearing.balls(q, angle)
         psi, Q_i, Q_o, a_i, a_o = b.azimuth, b.Q_i, b.Q_o, b.alpha_i, b.alpha_o

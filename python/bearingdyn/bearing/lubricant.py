@@ -85,9 +85,12 @@ class Walther:
         if nu_100 is None:
             grades = ", ".join(map(str, _VG_AT_100))
             require(
-                grade in _VG_AT_100, "grade", grade, f"it must be one of {grades} where nu_100 is not given"
+                float(grade) in _VG_AT_100,
+                "grade",
+                grade,
+                f"it must be one of {grades} where nu_100 is not given",
             )
-            nu_100 = _VG_AT_100[grade] * 1e-6
+            nu_100 = _VG_AT_100[int(grade)] * 1e-6
         return cls.from_two_points(40.0, positive("grade", grade) * 1e-6, 100.0, nu_100)
 
     def viscosity(self, T: float) -> float:

@@ -19,7 +19,7 @@ from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.load_distribution import load_distribution
 from bearingdyn.bearing.lubricant import Lubricant
 from bearingdyn.bearing.oil_supply import OilSupply
-from bearingdyn.checks import one_of, positive, require, vector
+from bearingdyn.checks import instance, nonnegative, number, one_of, positive, require, vector
 from bearingdyn.plausible_ranges import check_speed_value, plausible
 
 FilmLaw = Literal["ehl", "nijenbanning-venner-moes", "hamrock-dowson"]
@@ -195,7 +195,14 @@ def lubricated(
     ValueError
         As `lubricate`.
     """
+    instance("bearing", bearing, BallBearing, "give a BallBearing")
+    instance("supply", supply, OilSupply, "give an OilSupply(lubricant, temperature, speed)")
+    one_of("law", law, ("ehl", "nijenbanning-venner-moes", "hamrock-dowson"))
+    one_of("method", method, ("table", "solve"))
     _check_rolling(bearing, supply)
+    Q, angle = positive("Q", Q, "it must be a positive load of a ball, N"), number("angle", angle)
+    plausible("force", "Q", Q)
+    roughness = nonnegative("roughness", roughness)
     turns = bearing.ring_speeds
     gamma = bearing.Dw / bearing.Dpw * math.cos(angle)
     us = bearing.Dpw / 2 * abs(supply.speed * (turns[0] - turns[1])) * (1 - gamma**2)

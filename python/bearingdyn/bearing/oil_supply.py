@@ -37,7 +37,9 @@ class OilSupply:
     def __post_init__(self) -> None:
         require(isinstance(self.lubricant, Lubricant), "lubricant", self.lubricant, "give a Lubricant")
         omega = plausible("speed", "speed", self.speed, "it must be a finite speed in rad/s")
+        object.__setattr__(self, "speed", float(omega))
         require(omega != 0, "speed", self.speed, "it must not be zero: without speed there is no film")
         share = positive("starvation", self.starvation)
+        object.__setattr__(self, "starvation", share)
         require(share <= 1, "starvation", self.starvation, "it must be at most 1, fully flooded")
         self.lubricant.viscosity(self.temperature)

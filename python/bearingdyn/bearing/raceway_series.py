@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from bearingdyn.checks import whole
 from bearingdyn.types import Array
 
 
@@ -42,7 +43,8 @@ class RacewaySeries:
     @classmethod
     def up_to(cls, order: int) -> RacewaySeries:
         """All coefficients of the orders 0 to `order`, 2(2·order + 1) of them."""
-        one = [(n, sine) for n in range(order + 1) for sine in ((0, 1) if n else (0,))]
+        highest = whole("order", order, 0)
+        one = [(n, sine) for n in range(highest + 1) for sine in ((0, 1) if n else (0,))]
         return cls(tuple((axial, n, sine) for axial in (0, 1) for n, sine in one))
 
     def __len__(self) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.checks import instance, number, require, whole
+from bearingdyn.checks import instance, items, number, require, whole
 
 
 def fault_lines(
@@ -73,11 +73,11 @@ def waviness_lines(
         For an odd order of a ball, or a value that is not a positive whole number.
     """
     instance("bearing", bearing, BallBearing, "give a BallBearing")
-    _whole("multiples", multiples)
-    for n in ball_orders:
+    multiples, speed = whole("multiples", multiples, 1, 10_000), number("speed", speed)
+    for n in items("ball_orders", ball_orders, "it must be even orders of the balls' waves"):
         even = isinstance(n, int) and n > 0 and n % 2 == 0
         require(even, "ball_orders", ball_orders, "it must be even: odd orders cancel across a ball")
-    f = bearing.frequencies(number("speed", speed), contact_angle)
+    f = bearing.frequencies(speed, contact_angle)
     turn, Z = abs(speed) / (2 * math.pi), bearing.Z
     lines: dict[str, float] = {}
     inner, outer = bearing.ring_speeds

@@ -53,8 +53,8 @@ def dent(body: Body, angle: float, width: float, particle: float, *, ball: int =
     ValueError
         If the dent is wider than the particle.
     """
-    positive("width", width, "it must be positive and finite, in m")
-    plausible("pit width", "particle", positive("particle", particle))
+    width = positive("width", width, "it must be positive and finite, in m")
+    particle = plausible("pit width", "particle", positive("particle", particle))
     require(
         width <= particle,
         "width",

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, positive, real, require, two
+from bearingdyn.checks import nonnegative, positive, reals, require, two
 from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array, Complex
@@ -61,7 +61,8 @@ class BulkRelaxation:
 
     def __post_init__(self) -> None:
         for name in ("share", "tau"):
-            values = np.atleast_1d(real(getattr(self, name)))
+            remedy = "it must be numbers, one a branch"
+            values = np.atleast_1d(reals(f"BulkRelaxation.{name}", getattr(self, name), remedy))
             require(values.ndim == 1, f"BulkRelaxation.{name}", getattr(self, name), "give a value a branch")
             object.__setattr__(self, name, tuple(map(float, values.tolist())))
         require(

@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import number, positive, real, require, two
+from bearingdyn.checks import instance, number, positive, real, require, two
 from bearingdyn.material.amplitude import Payne, Softening
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.dma import DMAData
@@ -31,6 +31,17 @@ from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex
 
 _PER_DECADE = 40  # points at which a modulus is handed to the fit
+
+
+def _check_companions(owner: str, model: TabulatedModulus | PowerLaw | FractionalZener) -> None:
+    """ValueError for a law, a temperature, a softening or a volume that is none."""
+    law, T = model.law, model.temperature
+    is_law = law is None or (not isinstance(law, type) and callable(getattr(law, "log_shift", None)))
+    require(is_law, f"{owner}.law", law, "give a law of shifts, as WLF(C1, C2, T_ref)")
+    if T is not None:
+        number(f"{owner}.temperature", T, "it must be a temperature in °C, or None")
+    instance(f"{owner}.payne", model.payne, (Payne, type(None)), "give a Payne law, as fit_payne(...)")
+    instance(f"{owner}.bulk", model.bulk, (BulkRelaxation, type(None)), "give a BulkRelaxation, or None")
 
 
 def _check(owner: str, values: dict[str, float]) -> None:
@@ -118,6 +129,7 @@ class TabulatedModulus(Softening):
         return str(picture("as_html", self))
 
     def __post_init__(self) -> None:
+        _check_companions("TabulatedModulus", self)
         _check("TabulatedModulus", {"K": self.K, "density": self.density})
         for name in ("frequency", "storage", "loss"):
             try:
@@ -266,6 +278,7 @@ class PowerLaw(Softening):
 
     def __post_init__(self) -> None:
         values = {"modulus": self.modulus, "frequency": self.frequency, "K": self.K, "density": self.density}
+        _check_companions("PowerLaw", self)
         _check("PowerLaw", values)
         plausible("shear modulus", "PowerLaw.modulus", self.modulus)
         exponent = number("PowerLaw.exponent", self.exponent)
@@ -348,8 +361,9 @@ class FractionalZener(Softening):
 
     def __post_init__(self) -> None:
         values = {"G_inf": self.G_inf, "tau": self.tau, "K": self.K, "density": self.density}
+        _check_companions("FractionalZener", self)
         _check("FractionalZener", values)
-        remedy = f"it must lie between 0 and G_inf = {self.G_inf:g} Pa"
+        remedy = f"it must lie between 0 and G_inf = {float(self.G_inf):g} Pa"
         require(
             0 <= number("FractionalZener.G0", self.G0) < self.G_inf, "FractionalZener.G0", self.G0, remedy
         )

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import require
+from bearingdyn.checks import instance, items, positive, reals, require, truth, two
 from bearingdyn.material.isotherms import first_unsorted, group_isotherms
 from bearingdyn.material.shear_from_tension import shear_modulus
 from bearingdyn.notice import UnlikelyModulus, warn
@@ -89,8 +89,10 @@ class DMAData:
         )
 
     def __post_init__(self) -> None:
+        instance("source", self.source, str, "it must be a text that says where the data come from")
+        truth("runs_chosen", self.runs_chosen)
         for name in ("frequency", "temperature", "storage", "loss"):
-            values = np.array(getattr(self, name), dtype=np.float64)
+            values = reals(f"{self.source}: {name}", getattr(self, name), "it must be numbers, one a point")
             if values.ndim != 1:
                 raise ValueError(
                     f"{self.source}: {name} has shape {values.shape}; it must be one-dimensional"
@@ -107,6 +109,8 @@ class DMAData:
                     f"{self.source}: {name} has {getattr(self, name).size} values, frequency {n}; there "
                     "must be as many"
                 )
+        if self.K is not None:
+            positive(f"{self.source}: K", self.K, "it must be a positive bulk modulus in Pa, or None")
         if self.mode not in ("shear", "tension"):
             raise ValueError(f"{self.source}: mode is {self.mode!r}; it must be 'shear' (G) or 'tension' (E)")
         if not np.all(np.isfinite(self.temperature) & (self.temperature > -273.15)):
@@ -244,9 +248,14 @@ class DMAData:
         ValueError
             If no point is left, or there is no such run.
         """
+        f_min, f_max = two("f_min, f_max", (f_min, f_max), "each must be a frequency in Hz")
+        cold, hot = two("T", T, "it must be (coldest, hottest) in °C")
         keep = (self.frequency >= f_min) & (self.frequency <= f_max)
-        keep &= (self.temperature >= T[0]) & (self.temperature <= T[1])
-        wanted = None if run is None else [run] if isinstance(run, str) else [str(name) for name in run]
+        keep &= (self.temperature >= cold) & (self.temperature <= hot)
+        asked = (
+            [] if run is None else [run] if isinstance(run, str) else items("run", run, "give names of runs")
+        )
+        wanted = None if run is None else [str(name) for name in asked]
         if wanted is not None:
             have = list(self.runs)
             remedy = (
@@ -257,7 +266,7 @@ class DMAData:
         if not keep.any():
             raise ValueError(
                 f"{self.source}: no point between f_min = {f_min:g} and f_max = {f_max:g} Hz, "
-                f"T = {T[0]:g} to {T[1]:g} °C{'' if run is None else f', run {run!r}'}: data reach from "
+                f"T = {cold:g} to {hot:g} °C{'' if run is None else f', run {run!r}'}: data reach from "
                 f"{self.frequency.min():.4g} to {self.frequency.max():.4g} Hz, {self.temperature.min():.4g} "
                 f"to {self.temperature.max():.4g} °C"
             )

@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import instance, positive, reals, require
 from bearingdyn.material.maxwell import Maxwell
 from bearingdyn.material.shift_laws import GAS_CONSTANT, WLF, ZERO_CELSIUS, Arrhenius
 
@@ -48,7 +48,8 @@ def to_abaqus_frequency(material: Maxwell, frequency: ArrayLike, name: str = "RU
     ValueError
         If G0 = 0, which Abaqus cannot normalise by, or a frequency is not positive.
     """
-    f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
+    instance("material", material, Maxwell, "give a Maxwell model")
+    f = np.atleast_1d(reals("frequency", frequency, "it must be a list of positive, finite values, Hz"))
     if f.ndim != 1 or f.size == 0 or not (np.all(f > 0) and np.all(np.isfinite(f))):
         raise ValueError(f"frequency is {frequency!r}; it must be a list of positive, finite values, Hz")
     if not material.G0 > 0:
@@ -195,7 +196,9 @@ def to_calculix(material: Maxwell, frequency: float, name: str = "RUBBER") -> st
     ValueError
         If the frequency is not positive.
     """
-    positive("frequency", frequency, "it must be positive and finite, Hz")
+    frequency = positive("frequency", frequency, "it must be positive and finite, Hz")
+    instance("material", material, Maxwell, "give a Maxwell model")
+    _check_name(name)
     modulus = complex(material.complex_modulus(2 * math.pi * frequency))
     E, nu = elastic_constants(modulus.real, float(material.bulk_modulus(2 * math.pi * frequency).real))
     return "\n".join(
@@ -212,8 +215,14 @@ def to_calculix(material: Maxwell, frequency: float, name: str = "RUBBER") -> st
     )
 
 
+def _check_name(name: str) -> None:
+    good = isinstance(name, str) and name and not set(name) & set(",=*\n\r")
+    require(bool(good), "name", name, "it must be the name of a material: a text without , = * and line ends")
+
+
 def _abaqus_head(material: Maxwell, name: str, G: float, kind: str) -> list[str]:
     E, nu = elastic_constants(G, material.K)
+    _check_name(name)
     return [
         f"*MATERIAL, NAME={name}",
         "*DENSITY",
@@ -224,6 +233,7 @@ def _abaqus_head(material: Maxwell, name: str, G: float, kind: str) -> list[str]
 
 
 def _check_prony(material: Maxwell, program: str) -> None:
+    instance("material", material, Maxwell, "give a Maxwell model")
     if material.eta0 > 0:
         raise ValueError(
             f"Maxwell.eta0 is {material.eta0:g} Pa s; {program}'s Prony series has no dashpot; fit with "

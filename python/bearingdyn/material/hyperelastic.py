@@ -68,7 +68,7 @@ class MooneyRivlin:
 
     def __post_init__(self) -> None:
         for name in ("C10", "C01"):
-            number(f"MooneyRivlin.{name}", getattr(self, name))
+            object.__setattr__(self, name, number(f"MooneyRivlin.{name}", getattr(self, name)))
         _checked("Mooney–Rivlin", self.C10 + self.C01, "MooneyRivlin.C10 + C01")
 
     def derivatives(self, I1: ArrayLike, I2: ArrayLike) -> Derivatives:

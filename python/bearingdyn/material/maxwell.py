@@ -11,7 +11,18 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import instance, nonnegative, number, positive, real, require, vector
+from bearingdyn.checks import (
+    instance,
+    items,
+    nonnegative,
+    number,
+    positive,
+    real,
+    reals,
+    require,
+    truth,
+    vector,
+)
 from bearingdyn.material.amplitude import Payne, Rest, Softening, rest_of
 from bearingdyn.material.bulk_relaxation import BulkRelaxation
 from bearingdyn.material.creep import creep_compliance
@@ -175,10 +186,12 @@ class Maxwell(Retunable, Softening, Drawable):
         )
         if band is None and fit is not None:
             band = fit.band
+        instance("Maxwell.vertical", vertical, (RhoT, type(None)), "give a RhoT(T_ref), or None")
+        instance("Maxwell.low_end", low_end, (LowEnd, type(None)), "leave it out: a fit knows it")
         instance("Maxwell.spread", spread, (Spread, type(None)), "it must be a bd.material.Spread, or None")
         if spread is None and fit is not None:
             spread = Spread.of(fit)
-        for doubt in doubts:
+        for doubt in items("Maxwell.doubts", doubts, "give those of bd.doubts(...), in a list"):
             instance("Maxwell.doubts", doubt, Doubt, "give those of bd.doubts(...)")
         edges = band if band is None else vector("Maxwell.band", band, (2,), "lowest and highest, in Hz")
         if temperature is None and law is not None:
@@ -323,7 +336,7 @@ class Maxwell(Retunable, Softening, Drawable):
         ----------
         Paper eqs 17-19.
         """
-        omega = np.asarray(omega, dtype=np.float64)
+        omega, doubt = reals("omega", omega, "it must be angular frequencies, rad/s"), truth("doubt", doubt)
         if not np.all(np.isfinite(omega)):
             raise ValueError("omega: every angular frequency must be finite, rad/s")
         self._warn_outside(omega)
@@ -397,7 +410,7 @@ class Maxwell(Retunable, Softening, Drawable):
         OutsideBand
             For times shorter than that band.
         """
-        t = np.asarray(t, dtype=np.float64)
+        t, doubt = reals("t", t, "it must be times, s"), truth("doubt", doubt)
         if not np.all(t >= 0):
             raise ValueError("t: a relaxation modulus exists for times t >= 0 s only")
         if doubt:
@@ -420,10 +433,10 @@ class Maxwell(Retunable, Softening, Drawable):
         BeyondData, OutsideBand
             As `relaxation`.
         """
-        times = np.asarray(t, dtype=np.float64)
+        times = reals("t", t, "it must be times, s")
         if np.all(times >= 0):
             self._warn_of_times(times, "the creep compliance")
-        return creep_compliance(self.G0, self.G, self.tau, self.eta0, t)
+        return creep_compliance(self.G0, self.G, self.tau, self.eta0, times)
 
     def spectrum(self) -> tuple[Array, Array]:
         """Discrete relaxation spectrum: times, s, rising, and strengths, Pa, of the branches; (N,) each."""
@@ -457,14 +470,14 @@ class Maxwell(Retunable, Softening, Drawable):
         ----------
         Paper eqs 7-11 with the branch stress as the state (theory, §1).
         """
-        rate = np.asarray(strain_rate, dtype=np.float64)
+        rate = reals("strain_rate", strain_rate, "it must be rates of strain, 1/s")
         if rate.ndim == 0 or rate.shape[0] == 0:
             raise ValueError(
                 f"strain_rate has shape {rate.shape}; axis 0 must be time, with at least one sample"
             )
         if not np.all(np.isfinite(rate)):
             raise ValueError("strain_rate: every value must be finite, 1/s")
-        step = np.asarray(dt, dtype=np.float64)
+        step = reals("dt", dt, "it must be a time step, s, or one between each two samples")
         if step.ndim > 0 and step.shape != (rate.shape[0] - 1,):
             raise ValueError(
                 f"dt has shape {step.shape}; it must be one number, or {rate.shape[0] - 1} for "
@@ -552,6 +565,7 @@ class Maxwell(Retunable, Softening, Drawable):
     @classmethod
     def from_json(cls, text: str) -> Maxwell:
         """The material written by :meth:`to_json`; ValueError naming what is missing or unknown."""
+        instance("Maxwell.from_json: text", text, str, "give the text that to_json returned")
         try:
             data = json.loads(text)
         except (ValueError, RecursionError) as error:  # integers of thousands of digits, nested without end

@@ -39,7 +39,7 @@ def uniforms(n: int, size: int, seed: int = 0, method: str = "sobol") -> Array:
     """
     import warnings
 
-    n = whole("n", n, 1)
+    n, seed = whole("n", n, 1), whole("seed", seed, 0)
     one_of("method", method, ("sobol", "random"))
     if method == "random":
         unit = np.random.default_rng(seed).random((n, size))

@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import number, positive, require
 from bearingdyn.material.amplitude import Payne
 from bearingdyn.material.low_end import LowEnd
 from bearingdyn.material.spread import Spread
@@ -41,7 +41,8 @@ class Retunable:
 
         The loss factor is unchanged at every frequency; a law of softening is scaled along.
         """
-        positive("modulus", modulus, "it must be positive and finite, Pa")
+        modulus = positive("modulus", modulus, "it must be positive and finite, Pa")
+        omega = number("omega", omega, "it must be one angular frequency, rad/s")
         magnitude = float(np.abs(self.complex_modulus(omega)))
         require(magnitude > 0, "omega", omega, "|G*| is zero at this angular frequency; take one above zero")
         factor = modulus / magnitude
@@ -69,7 +70,8 @@ class Retunable:
         ValueError
             If the material has no spring or no branches, or the loss factor is out of reach.
         """
-        positive("omega", omega, "it must be positive and finite, rad/s")
+        omega = positive("omega", omega, "it must be positive and finite, rad/s")
+        loss_factor = number("loss_factor", loss_factor)
         modulus = complex(self.complex_modulus(omega))
         branches = modulus - self.G0
         if not (self.G0 > 0 and branches.imag > 0):

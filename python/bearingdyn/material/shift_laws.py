@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import number, positive, require
+from bearingdyn.checks import nonnegative, number, positive, reals, require, vector
 from bearingdyn.notice import OutsideIsotherms, warn
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -32,6 +32,8 @@ _HOTTEST = 500.0  # °C; no polymer lasts there
 _FURTHEST = 40.0  # decades; beyond it a relaxation time has no meaning
 _JITTER = 0.5  # K; as far as the mean temperature of an isotherm may miss the one that was meant
 
+NUMBERS = "it must be temperatures in °C"
+
 
 class ShiftLaw(Protocol):
     """What a shift law offers: its reference temperature and log10 a_T."""
@@ -46,7 +48,8 @@ class ShiftLaw(Protocol):
 
 def _above_zero(field: str, T: float) -> None:
     """ValueError unless T is a finite temperature above absolute zero, °C."""
-    require(-ZERO_CELSIUS < T < math.inf, field, T, f"it must lie above -{ZERO_CELSIUS} °C and be finite")
+    remedy = f"it must lie above -{ZERO_CELSIUS} °C and be finite"
+    require(number(field, T, remedy) > -ZERO_CELSIUS, field, T, remedy)
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,8 @@ class WLF:
 
     def __post_init__(self) -> None:
         _check_range("WLF", self.measured)
+        if self.covariance is not None:
+            vector("WLF.covariance", self.covariance, (2, 2), "of C1 and C2")
         number("WLF.T_ref", self.T_ref, "it must be a finite temperature, °C")
         positive("WLF.C1", self.C1)
         positive("WLF.C2", self.C2, "it must be positive and finite, K")
@@ -98,7 +103,7 @@ class WLF:
         ValueError
             If a temperature is at or below T_ref − C2, where the law has its pole.
         """
-        x = np.asarray(T, dtype=float) - self.T_ref
+        x = reals("T", T, NUMBERS) - self.T_ref
         if not np.all(self.C2 + x > 0):
             raise ValueError(
                 f"T is {np.min(x) + self.T_ref:.6g} °C; this WLF law holds above "
@@ -137,12 +142,14 @@ class Arrhenius:
 
     def __post_init__(self) -> None:
         _check_range("Arrhenius", self.measured)
+        if self.variance is not None:
+            nonnegative("Arrhenius.variance", self.variance)
         positive("Arrhenius.Ea", self.Ea, "it must be positive and finite, J/mol")
         _above_zero("Arrhenius.T_ref", self.T_ref)
 
     def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C; ValueError at or below absolute zero."""
-        kelvin = np.asarray(T, dtype=float) + ZERO_CELSIUS
+        kelvin = reals("T", T, NUMBERS) + ZERO_CELSIUS
         if not np.all(kelvin > 0):
             raise ValueError(f"T is {np.min(kelvin) - ZERO_CELSIUS:.6g} °C; it must lie above -273.15 °C")
         slope = self.Ea / (GAS_CONSTANT * math.log(10))
@@ -203,7 +210,7 @@ class Joined:
 
     def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C; ValueError at or below absolute zero."""
-        T = np.asarray(T, dtype=float)
+        T = reals("T", T, NUMBERS)
         if not np.all(T > -ZERO_CELSIUS):
             raise ValueError(f"T is {np.min(T):.6g} °C; it must lie above -273.15 °C")
         return np.asarray(self._from_transition(T) - self._from_transition(np.asarray(float(self.T_ref))))
@@ -235,8 +242,11 @@ class ShiftTable:
     __repr__ = short
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "T", tuple(float(v) for v in self.T))
-        object.__setattr__(self, "log_aT", tuple(float(v) for v in self.log_aT))
+        for name in ("T", "log_aT"):
+            values = reals(f"ShiftTable.{name}", getattr(self, name), "it must be numbers, one a temperature")
+            require(values.ndim == 1, f"ShiftTable.{name}", getattr(self, name), "give a list of numbers")
+            object.__setattr__(self, name, tuple(values.tolist()))
+        object.__setattr__(self, "T_ref", number("ShiftTable.T_ref", self.T_ref))
         if len(self.T) != len(self.log_aT) or len(self.T) < 2:
             raise ValueError(
                 f"ShiftTable: {len(self.T)} temperatures and {len(self.log_aT)} shifts; "
@@ -262,7 +272,7 @@ class ShiftTable:
 
     def log_shift(self, T: ArrayLike) -> Array:
         """log10 a_T at T, °C; ValueError outside the table."""
-        T = np.asarray(T, dtype=float)
+        T = reals("T", T, NUMBERS)
         self._check(T)
         curve = scipy.interpolate.PchipInterpolator(self.T, self.log_aT)
         return np.asarray(curve(T) - curve(self.T_ref))
@@ -301,7 +311,7 @@ class RhoT:
 
     def factor(self, T: ArrayLike) -> Array:
         """b_T at T, °C; same shape as T. ValueError where ρT is not positive."""
-        T = np.asarray(T, dtype=float)
+        T = reals("T", T, NUMBERS)
         density = 1 + self.expansion * (T - self.T_ref)
         if not (np.all(T > -ZERO_CELSIUS) and np.all(density > 0)):
             raise ValueError(f"T is {T.tolist()!r} °C; ρT must be positive")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import instance, nonnegative, number, real, require, whole
+from bearingdyn.checks import instance, items, nonnegative, number, real, require, whole
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
@@ -40,8 +40,9 @@ class BoreShape:
         instance("waves", self.waves, Mapping, "it must be {order: (cosine, sine) in m}")
         for n, pair in self.waves.items():
             whole("waves", n, 2, remedy=remedy)
-            require(np.shape(pair) == (2,), f"waves[{n}]", pair, "it must be (cosine, sine) in m")
-            for value in pair:
+            values = items(f"waves[{n}]", pair, "it must be (cosine, sine) in m")
+            require(len(values) == 2, f"waves[{n}]", pair, "it must be (cosine, sine) in m")
+            for value in values:
                 number(f"waves[{n}]", value, "it must be (cosine, sine) in m")
                 plausible("bore wave", f"waves[{n}]", value)
         nonnegative("interference", self.interference, "it must be a length in m on the radius, zero or more")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bearingdyn.checks import positive, vector
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.parts.regions import Region, ViscoelasticSolid
 from bearingdyn.parts.revolved import Revolved
@@ -57,8 +58,9 @@ def damping_sample(
     >>> [round(float(f)) for f in sample.modes(0, 4).frequency[2:]]  # axial, torsion, Hz
     [840, 925]
     """
+    width = positive("width", width, "it must be a positive length in m")
     half = (-0.5 * width, 0.5 * width)
-    a, b, c, d = radii
+    a, b, c, d = vector("radii", radii, (4,), "of the bore, the two bonds and the outside, m").tolist()
     return Revolved(
         (
             Region((a, b), half, metal),

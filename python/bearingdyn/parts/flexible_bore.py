@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse
 
 from bearingdyn.bearing import RacewaySeries
-from bearingdyn.checks import instance, whole
+from bearingdyn.checks import instance, require, whole
 from bearingdyn.cms import Raceway, RoundFace
 from bearingdyn.fem import SolidMesh
 from bearingdyn.types import Array
@@ -43,6 +43,7 @@ class FlexibleBore:
 
     def __post_init__(self) -> None:
         instance("surface", self.surface, str, "it must be the name of a surface of the mesh")
+        require(bool(self.surface), "surface", self.surface, "it must be the name of a surface of the mesh")
         whole("order", self.order, 1)
 
     @property

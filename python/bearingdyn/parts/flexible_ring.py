@@ -149,7 +149,8 @@ class FlexibleRing:
             )
         for name in ("groove", "groove_radius"):
             if getattr(self, name) is not None:
-                positive(name, getattr(self, name), "it must be a positive length in m")
+                length = positive(name, getattr(self, name), "it must be a positive length in m")
+                plausible("length", name, length)
         if self.groove is not None and not 0 < self.groove <= self.width:
             raise ValueError(f"groove is {self.groove}; it must lie in 0...width = {self.width} m")
         if self.groove_radius is not None:

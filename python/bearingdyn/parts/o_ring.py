@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bearingdyn.checks import nonnegative, positive, require
+from bearingdyn.checks import nonnegative, number, positive, require
 from bearingdyn.fem import (
     NoBalance,
     RevolutionMesh,
@@ -76,7 +76,8 @@ class ORing:
         require(
             self.cord < 2.0 * self.radius, "cord", self.cord, f"it must be less than {2 * self.radius:g} m"
         )
-        require(0.25 <= self.refinement <= 8, "refinement", self.refinement, "it must lie in 0.25...8")
+        fine = number("refinement", self.refinement, "it must lie in 0.25...8")
+        require(0.25 <= fine <= 8, "refinement", self.refinement, "it must lie in 0.25...8")
         plausible("length", "radius", self.radius)
         _ = self.body
 

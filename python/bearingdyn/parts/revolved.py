@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import named, require, whole
+from bearingdyn.checks import named, require, vector, whole
 from bearingdyn.cms import (
     Basis,
     FullModel,
@@ -145,7 +145,9 @@ class Revolved:
                         f"interfaces {owner[node]!r} and {name!r} share the circle "
                         f"r = {self.mesh.r[node]:g}, z = {self.mesh.z[node]:g} m; keep them apart"
                     )
-        for name, (r, z, _) in self.outputs.items():
+        remedy = "it must be places (r, z, azimuth) in m and rad, by name"
+        for name, place in named("outputs", self.outputs, remedy).items():
+            r, z, _ = vector(f"outputs[{name!r}]", place, (3,), "r and z in m, azimuth in rad").tolist()
             if name in self.interfaces or name in self.grooves:
                 raise ValueError(f"outputs has {name!r}, the name of an interface; choose another")
             try:

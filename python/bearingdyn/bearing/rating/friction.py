@@ -163,6 +163,7 @@ def friction(
     """
     one_of("model", model, ("palmgren", "four-term"))
     one_of("supply", supply, tuple(_SUPPLY))
+    one_of("series", series, tuple(_DEEP))
     Fr, Fa = radial_and_axial(radial, axial)
     omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
     nu = plausible("kinematic viscosity", "viscosity", positive("viscosity", viscosity)) * 1e6

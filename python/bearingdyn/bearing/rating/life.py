@@ -126,7 +126,10 @@ def life_of_loads(
     rating = found if C is None else check_given("C", C, found)
     Qc = race_capacities(bearing, rating)
     Qe = equivalent_ball_loads(bearing, inner, inner if outer is None else outer)
-    wear = sum((e / c) ** (10 / 3) for e, c in zip(Qe, Qc, strict=True))
+    try:
+        wear = sum((e / c) ** (10 / 3) for e, c in zip(Qe, Qc, strict=True))
+    except ArithmeticError:
+        raise ValueError(f"C is {C!r} N; beside the loads it is too small for a life") from None
     return float(wear**-0.9) if wear > 0 else math.inf
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from bearingdyn.bearing.rating.iso_ratings import warn_of_overload
-from bearingdyn.checks import meant, nonnegative, number, positive, require
+from bearingdyn.checks import items, meant, nonnegative, number, positive, reals, require
 from bearingdyn.plausible_ranges import check_speed_value, plausible
 
 LEAST_KAPPA = 0.1
@@ -82,7 +82,7 @@ def contamination_factor(contamination: float | str, Dpw: float) -> float:
     if isinstance(contamination, str):
         known = contamination in CONTAMINATION
         require(known, "contamination", contamination, meant(contamination, CONTAMINATION))
-        return CONTAMINATION[contamination][0 if Dpw < 0.1 else 1]
+        return CONTAMINATION[contamination][0 if positive("Dpw", Dpw) < 0.1 else 1]
     remedy = "e_C must lie in 0..1 (ISO 281: 0 is very severe contamination, 1 extreme cleanliness)"
     e = number("contamination", contamination, remedy)
     require(0 <= e <= 1, "contamination", contamination, remedy)
@@ -212,6 +212,8 @@ def modified_life(
     BearingWarning
         For a load above the static rating.
     """
+    L10 = nonnegative("L10", L10, "it must be the rating life in million revolutions")
+    speed, Dpw = number("speed", speed), positive("Dpw", Dpw)
     nu = plausible("kinematic viscosity", "viscosity", positive("viscosity", viscosity))
     nu1 = reference_viscosity(speed, Dpw)
     kappa, e, Cu = nu / nu1, contamination_factor(contamination, Dpw), fatigue_limit(C0, Dpw)
@@ -233,6 +235,7 @@ def in_hours(revolutions: float, speed: float) -> float:
     speed
         rad/s.
     """
+    revolutions = number("revolutions", revolutions, "it must be million revolutions")
     turns = abs(plausible("speed", "speed", speed)) / (2 * math.pi)  # per second
     return revolutions * 1e6 / turns / 3600 if turns > 0 else math.inf
 
@@ -266,7 +269,10 @@ def equivalent_life(phases: Iterable[Phase]) -> tuple[float, float]:
     ValueError
         Without a phase, or for a share or life that is not positive.
     """
-    cycle = list(phases)
+    cycle = items("phases", phases, "it must be phases of a duty cycle")
+    for k, phase in enumerate(cycle):
+        remedy = "it must be a share of the time, a speed in rad/s and a life in million revolutions"
+        require(reals(f"phases[{k}]", phase, remedy).shape == (3,), f"phases[{k}]", phase, remedy)
     require(len(cycle) > 0, "phases", cycle, "give at least one phase")
     total, turned, worn = 0.0, 0.0, 0.0
     for k, (share, speed, life) in enumerate(cycle):

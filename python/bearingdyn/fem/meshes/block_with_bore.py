@@ -6,9 +6,12 @@ import math
 
 import numpy as np
 
+from bearingdyn.checks import nonnegative, positive, require, vector
 from bearingdyn.fem.meshes.grid_lines import lines_through
-from bearingdyn.fem.meshes.patches import extruded, joined, patch, with_kind
+from bearingdyn.fem.meshes.patches import MOST, extruded, joined, patch, with_kind
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, second_order
+
+LENGTHS = ("width", "height", "length", "bore_diameter", "bore_height", "element_size")
 
 
 def block_with_bore(
@@ -45,7 +48,27 @@ def block_with_bore(
         Width, m, of two strips along the base at either side, which grid lines bound; None: none.
     element
         "hex20" or "hex27".
+
+    Raises
+    ------
+    ValueError
+        For a length that is not positive, or elements without number.
     """
+    given = (width, height, length, bore_diameter, bore_height, element_size)
+    width, height, length, bore_diameter, bore_height, element_size = (
+        positive(name, value, "it must be a positive length in m")
+        for name, value in zip(LENGTHS, given, strict=True)
+    )
+    most = MOST * element_size
+    longest = max(width, height, length, bore_diameter, bore_height)
+    require(longest <= most, "element_size", element_size, f"{longest} m would have too many elements")
+    if flange is not None:
+        out, up = vector("flange", flange, (2,), "width and height in m").tolist()
+        flange = (positive("flange[0]", out), positive("flange[1]", up))
+        require(max(flange) <= most, "flange", flange, "it would have too many elements")
+    if strip is not None:
+        strip = nonnegative("strip", strip, "it must be a length in m, or None")
+        require(strip <= 0.5 * width, "strip", strip, "it must be at most half of the width")
     r, half, base, top = 0.5 * bore_diameter, 0.5 * width, -bore_height, height - bore_height
     low = base if bore_height - top < element_size else -top  # a box about the bore, the pedestal below it
     x = lines_through([-half, 0.0, half] + ([strip - half, half - strip] if strip else []), element_size, 2)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import reals
 from bearingdyn.fem.meshes.patches import with_kind
 from bearingdyn.fem.meshes.solid_element import HEX20
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, second_order
@@ -31,10 +32,11 @@ def box_mesh(x: ArrayLike, y: ArrayLike, z: ArrayLike, element: str = "hex20") -
     ValueError
         For lines that do not rise, or an unknown element.
     """
-    lines = [np.asarray(v, dtype=np.float64) for v in (x, y, z)]
+    remedy = "it must be two grid lines or more, rising, m"
+    lines = [reals(name, v, remedy) for name, v in (("x", x), ("y", y), ("z", z))]
     for name, v in zip("xyz", lines, strict=True):
         if v.ndim != 1 or v.size < 2 or not np.all(np.diff(v) > 0):
-            raise ValueError(f"{name} is {v.tolist()}; it must be two grid lines or more, rising, m")
+            raise ValueError(f"{name} is {v.tolist()}; {remedy}")
         for x_k in (v[0], v[-1]):
             plausible("length", name, x_k)
     return bricks(lines, element)

@@ -6,11 +6,13 @@ import math
 
 import numpy as np
 
-from bearingdyn.checks import whole
+from bearingdyn.checks import positive, whole
 from bearingdyn.fem.meshes.disc_section import disc_section
 from bearingdyn.fem.meshes.grid_lines import crowded
-from bearingdyn.fem.meshes.patches import angles_of, extruded, revolved, with_kind
+from bearingdyn.fem.meshes.patches import MOST, angles_of, extruded, revolved, with_kind
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, second_order
+
+LENGTH = "it must be a positive length in m"
 
 
 def o_ring_mesh(
@@ -48,13 +50,15 @@ def o_ring_mesh(
     ValueError
         For measures out of range.
     """
+    cord, radius = positive("cord", cord, LENGTH), positive("radius", radius, LENGTH)
+    band = positive("band", band, LENGTH)
     if not (cord > 0 and 0.5 * cord < radius < math.inf):
         raise ValueError(f"cord is {cord} and radius {radius}; they must be positive, radius above cord/2, m")
     if not 0.2 * cord <= band <= 0.95 * cord:
         raise ValueError(
             f"band is {band}; it must lie in 0.2 to 0.95 of the cord, {0.2 * cord} to {0.95 * cord} m"
         )
-    whole("across", across, 2)
+    across = whole("across", across, 2, MOST)
     start, end = angles_of(angle, around)
     a, half = 0.5 * cord, math.asin(band / cord)  # lines crowd to the ends of the bands
     plane, quads = disc_section(a, half, crowded(0.0, 1.0, across), max(2, across // 2))

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bearingdyn.checks import whole
+from bearingdyn.checks import two, whole
 from bearingdyn.fem.meshes.solid_element import HEX20, HEX27
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh, merged
 from bearingdyn.types import Array, Index
 
+MOST = 10_000  # elements along one direction of a built-in mesh
 BRICKS = (HEX20.name, HEX27.name)
 
 
@@ -39,11 +40,12 @@ def revolved(flat: SolidMesh, closed: bool) -> SolidMesh:
 
 def angles_of(angle: tuple[float, float] | None, around: int) -> tuple[float, float]:
     """Angles at which revolved patches begin and end, rad; ValueError for an empty or too wide one."""
-    start, end = (0.0, 2.0 * math.pi) if angle is None else angle
+    remedy = "it must be (from, to) in rad, less than a turn; None: the whole"
+    start, end = (0.0, 2.0 * math.pi) if angle is None else two("angle", angle, remedy)
     if not (start < end and (angle is None or end - start < 2.0 * math.pi - 1e-6)):
-        raise ValueError(f"angle is {angle}; it must be (from, to) in rad, less than a turn; None: the whole")
+        raise ValueError(f"angle is {angle}; {remedy}")
     least = 6 if angle is None else 1
-    whole("around", around, least)
+    whole("around", around, least, MOST)
     return start, end
 
 

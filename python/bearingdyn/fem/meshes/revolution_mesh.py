@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bearingdyn.checks import vector
+from bearingdyn.checks import number, vector
 from bearingdyn.fem.meshes.grid_lines import graded_line
 from bearingdyn.fem.meshes.quadrilateral_element import shape_functions
 from bearingdyn.short_repr import short
@@ -215,8 +215,9 @@ def revolution_mesh(
     """
     if not rectangles:
         raise ValueError("rectangles is empty; a body needs at least one region")
-    if not 0.25 <= refinement <= 8:
-        raise ValueError(f"refinement is {refinement}; it must lie in 0.25...8, and 1 is the default density")
+    remedy = "it must lie in 0.25...8, and 1 is the default density"
+    if not 0.25 <= number("refinement", refinement, remedy) <= 8:
+        raise ValueError(f"refinement is {refinement}; {remedy}")
     size = max(
         max(q.r[1] for q in rectangles) - min(q.r[0] for q in rectangles),
         max(q.z[1] for q in rectangles) - min(q.z[0] for q in rectangles),
@@ -232,11 +233,11 @@ def revolution_mesh(
 
     r_mid, z_mid = 0.5 * (R[1:] + R[:-1]), 0.5 * (Z[1:] + Z[:-1])
     owner = np.full((r_mid.size, z_mid.size), -1, dtype=np.intp)
-    for number, q in enumerate(rectangles):
+    for place, q in enumerate(rectangles):
         cells = np.ix_((r_mid > q.r[0]) & (r_mid < q.r[1]), (z_mid > q.z[0]) & (z_mid < q.z[1]))
         if (owner[cells] >= 0).any():
-            raise ValueError(f"regions {int(owner[cells].max())} and {number} overlap; they may only touch")
-        owner[cells] = number
+            raise ValueError(f"regions {int(owner[cells].max())} and {place} overlap; they may only touch")
+        owner[cells] = place
     at_r, at_z = np.nonzero(owner >= 0)
 
     r_nodes = np.insert(R, np.arange(1, R.size), r_mid)

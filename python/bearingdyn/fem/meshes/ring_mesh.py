@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from bearingdyn.checks import positive
+from bearingdyn.checks import items, name_list, numbers, positive, whole
 from bearingdyn.fem.meshes.box_mesh import bricks
 from bearingdyn.fem.meshes.grid_lines import crowded
-from bearingdyn.fem.meshes.patches import angles_of, revolved, with_kind
+from bearingdyn.fem.meshes.patches import MOST, angles_of, revolved, with_kind
 from bearingdyn.fem.meshes.solid_mesh import SolidMesh
 
 
@@ -51,12 +51,16 @@ def ring_mesh(
     ValueError
         For measures out of order, fewer than 6 elements around a whole ring, or a segment of a turn or more.
     """
+    remedy = "it must be two radii or more, rising from above 0, m"
+    radii = numbers("radii", radii, remedy).tolist()
     count = len(radii) - 1
     if not (count >= 1 and radii[0] > 0 and all(b > a for a, b in itertools.pairwise(radii))):
-        raise ValueError(f"radii is {tuple(radii)}; it must be two radii or more, rising from above 0, m")
-    positive("width", width, "it must be a positive length in m")
-    names = tuple(regions) or tuple(f"layer {k + 1}" for k in range(count))
-    steps = (across,) * count if isinstance(across, int) else tuple(across)
+        raise ValueError(f"radii is {tuple(radii)}; {remedy}")
+    width = positive("width", width, "it must be a positive length in m")
+    names = tuple(name_list("regions", regions, "names")) or tuple(f"layer {k + 1}" for k in range(count))
+    given = [across] * count if np.ndim(across) == 0 else items("across", across, "give one number a layer")
+    steps = tuple(whole(f"across[{k}]", n, 1, MOST) for k, n in enumerate(given))
+    along = whole("along", along, 1, MOST)
     if len(names) != count or len(steps) != count or len(set(names)) != count:
         raise ValueError(
             f"regions is {names} and across {steps}; {count} layers need a name of its own and a number each"

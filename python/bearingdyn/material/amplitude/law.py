@@ -21,7 +21,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import number, positive, require
+from bearingdyn.checks import instance, number, positive, require, two
 from bearingdyn.material.amplitude.report import PayneFit
 from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
@@ -92,6 +92,7 @@ class Payne:
     _repr_html_ = page
 
     def __post_init__(self) -> None:
+        instance("Payne.fit", self.fit, (PayneFit, type(None)), "leave it out: fit_payne gives it")
         for name in ("D", "gamma_c", "m", "gamma_l", "p", "gamma_r"):
             object.__setattr__(self, name, positive(f"Payne.{name}", getattr(self, name)))
         remedy = "it must be zero or positive, and finite, Pa"
@@ -108,7 +109,7 @@ class Payne:
                 f"{value / 100:g}",
             )
         if self.strains is not None:
-            low, high = (float(x) for x in self.strains)
+            low, high = two("Payne.strains", self.strains, "give lowest and highest")
             require(0 < low < high < math.inf, "Payne.strains", self.strains, "give lowest and highest")
             object.__setattr__(self, "strains", (low, high))
         top = self.strains[1] if self.strains is not None else _BEYOND * max(self.gamma_c, self.gamma_l)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bearingdyn.checks import number, two
 from bearingdyn.types import Array
 
 
@@ -60,8 +61,10 @@ class Limits:
         both = set(bounds) & set(fixed)
         if both:
             raise ValueError(f"{sorted(both)}: both in bounds and in fixed: give one")
-        wanted = {name: tuple(pair) for name, pair in bounds.items()}
-        wanted |= {name: (value, value) for name, value in fixed.items()}
+        remedy = "it must be a lower and an upper value, both >= 0"
+        wanted = {name: two(f"bounds[{name!r}]", pair, remedy) for name, pair in bounds.items()}
+        held = {name: number(f"fixed[{name!r}]", value) for name, value in fixed.items()}
+        wanted |= {name: (value, value) for name, value in held.items()}
         for name, pair in wanted.items():
             what = "fixed" if name in fixed else "bounds"
             if name not in strengths and name not in times:

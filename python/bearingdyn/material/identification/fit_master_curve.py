@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import named, positive, require, two
+from bearingdyn.checks import named, positive, require, truth, two
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification.bounds import Limits
@@ -35,6 +35,7 @@ from bearingdyn.notice import CoarseModel, TensionAsShear, warn
 from bearingdyn.plausible_ranges import check_bulk
 from bearingdyn.types import Array
 
+MOST_BRANCHES = 200
 _MOST = 20  # branches tried by n = "auto"
 _SPREADS = (0.0, 0.4)  # decades by which the starts are wider than the band
 # Shares of the sum of squares; its own standard error is sqrt(2 / points), some tens of per cent. A gain
@@ -131,11 +132,13 @@ def fit_maxwell(
     (5, True)
     """
     remedy = "the number of branches must be a positive integer, or 'auto'"
-    require(n == "auto" or (isinstance(n, int) and n >= 1), "n", n, remedy)
-    for name, value in (("K", K), ("density", density), ("tolerance", tolerance)):
-        positive(name, value)
+    dashpot = truth("dashpot", dashpot)
+    some = isinstance(n, int) and not isinstance(n, bool) and 1 <= n <= MOST_BRANCHES
+    require(some or (isinstance(n, str) and n == "auto"), "n", n, remedy)
+    K, density = positive("K", K), positive("density", density)
+    positive("tolerance", tolerance)
     remedy = "the number of refits must be zero or a positive integer"
-    require(isinstance(bootstrap, int) and bootstrap >= 0, "bootstrap", bootstrap, remedy)
+    require(isinstance(bootstrap, int) and 0 <= bootstrap <= 10_000, "bootstrap", bootstrap, remedy)
     if isinstance(master, RelaxationData):
         require(not bounds, "bounds", bounds, "a fit to relaxation takes none")
         require(not bootstrap, "bootstrap", bootstrap, "a fit to relaxation has one isotherm; leave it out")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import number, require
+from bearingdyn.checks import number, require, truth
 from bearingdyn.material.dma import DMAData, Mode, UnitError, check_range
 from bearingdyn.material.isotherms import first_unsorted, group_isotherms
 from bearingdyn.material.reading.errors import ReadingError
@@ -99,6 +99,7 @@ def read_dma(
     >>> dma.storage.tolist(), dma.isotherm.tolist()
     ([4000000.0, 5000000.0, 2000000.0, 3000000.0], [0, 0, 1, 1])
     """
+    sort, drop_invalid = truth("sort", sort), truth("drop_invalid", drop_invalid)
     files = _files(data)
     if files is None:
         if temperature is not None and not isinstance(temperature, int | float):

@@ -280,7 +280,7 @@ def _rows_of(names: Sequence[str], columns: Sequence[Any]) -> Source:
 def _array_columns(data: Sequence[Any]) -> dict[str, Any]:
     try:
         array = np.asarray(data, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         array = np.empty(0)
     if array.ndim != 2 or array.shape[1] != 4:
         raise ValueError(

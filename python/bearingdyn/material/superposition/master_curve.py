@@ -209,8 +209,11 @@ def master_curve(
     if shifts is not None:
         instance("shifts", shifts, Mapping, "it must be a mapping, temperature -> decades, or None")
     require(-ZERO_CELSIUS < T_ref < 1e4, "T_ref", T_ref, "it must be a temperature in °C")
+    refine = truth("refine", refine)
     if smoothness is not None:
-        nonnegative("smoothness", smoothness)
+        smoothness = nonnegative("smoothness", smoothness)
+        remedy = "the curve is smooth to the eye at 1, and a line at 1e6"
+        require(smoothness <= 1e6, "smoothness", smoothness, remedy)
     instance("dma", dma, (DMAData, RelaxationData), "it must be the result of `read_dma`")
     check_range(dma)
     doubt_runs(dma)
@@ -301,7 +304,8 @@ def _levels(
         require(levels == "find", "levels", levels, "it must be 'find', {run: factor} or None")
         return None if by_hand else find_levels(dma, T_ref, law, smoothness)
     require(isinstance(levels, Mapping), "levels", levels, "it must be 'find', {run: factor} or None")
-    unknown = sorted(set(levels) - set(dma.runs))
+    require(bool(dma.runs), "levels", levels, "the data name no runs; read them with columns={'run': ...}")
+    unknown = sorted(map(str, set(levels) - set(dma.runs)))
     require(not unknown, "levels", levels, f"there are the runs {list(dma.runs)}, not {unknown}")
     factors = {
         name: positive(f"levels[{name!r}]", levels.get(name, 1.0), "it must be a positive factor")
@@ -372,6 +376,8 @@ def _by_hand(T: Array, start: Array, shifts: Mapping[float, float]) -> tuple[Arr
     """First shifts with those set by hand put in, the others moved along with them, and which are set."""
     held, values = np.zeros(T.size, dtype=bool), np.zeros(T.size)
     for temperature, shift in shifts.items():
+        number("shifts", temperature, "its keys must be temperatures of isotherms, °C")
+        number(f"shifts[{temperature!r}]", shift, "it must be a shift in decades")
         k = int(np.argmin(np.abs(T - temperature)))
         if not abs(T[k] - temperature) <= 2.0 or held[k]:
             have = ", ".join(f"{t:.4g}" for t in T)
