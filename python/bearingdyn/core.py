@@ -119,6 +119,7 @@ class Scheme:
     def __post_init__(self) -> None:
         if self.hold not in (1, 2, 3):
             raise ValueError(f"hold is {self.hold!r}; it is the order of a polynomial: give 1, 2 or 3")
+        object.__setattr__(self, "hold", int(self.hold))
         Stepping(1.0, scheme=self)
 
 
