@@ -376,6 +376,17 @@ def test_what_it_cannot_do_is_named(state: Equilibrium):
         transient(state, speed=SPEED, dt=1e-5, steps=1, record=RECORD, resume=exact(state, steps=1))
 
 
+@pytest.mark.parametrize("hold", [0, 4, 2.5, float("nan"), "3", None])
+def test_an_order_that_no_step_has_is_named(hold: Any):
+    with pytest.raises(ValueError, match=r"hold is .*give 1, 2 or 3"):
+        core.Scheme(hold=hold)
+
+
+def test_an_order_may_be_any_whole_number(state: Equilibrium):
+    whole, other = (exact(state, steps=5, scheme=core.Scheme(hold=h))["record"].values for h in (2, 2.0))
+    np.testing.assert_array_equal(whole, other)
+
+
 def test_check_step_says_what_is_left(state: Equilibrium):
     found = exact(state, steps=100, check_step=True)
     assert "fourth order" in found.attrs["step_error_made"]
