@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import _core
-from bearingdyn.checks import number, require, whole
 from bearingdyn.progress import Progress as Progress
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -114,11 +113,6 @@ class Scheme:
     isa: str = "best"
 
     def __post_init__(self) -> None:
-        for name in ("beta", "gamma", "tolerance"):
-            object.__setattr__(self, name, number(f"scheme.{name}", getattr(self, name)))
-        require(isinstance(self.isa, str), "scheme.isa", self.isa, f"it must be one of {', '.join(ISAS)}")
-        most = whole("scheme.max_iterations", self.max_iterations, 1, 1000)
-        object.__setattr__(self, "max_iterations", most)
         Stepping(1.0, scheme=self)
 
 
