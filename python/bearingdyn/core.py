@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn import _core
-from bearingdyn.checks import number, require, whole
 from bearingdyn.progress import Progress as Progress
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
@@ -118,13 +117,9 @@ class Scheme:
     hold: int = 3
 
     def __post_init__(self) -> None:
-        for name in ("beta", "gamma", "tolerance"):
-            object.__setattr__(self, name, number(f"scheme.{name}", getattr(self, name)))
-        require(isinstance(self.isa, str), "scheme.isa", self.isa, f"it must be one of {', '.join(ISAS)}")
-        most = whole("scheme.max_iterations", self.max_iterations, 1, 1000)
-        object.__setattr__(self, "max_iterations", most)
-        hold = whole("scheme.hold", self.hold, 1, 3, "it is the order of a polynomial: give 1, 2 or 3")
-        object.__setattr__(self, "hold", hold)
+        if self.hold not in (1, 2, 3):
+            raise ValueError(f"hold is {self.hold!r}; it is the order of a polynomial: give 1, 2 or 3")
+        object.__setattr__(self, "hold", int(self.hold))
         Stepping(1.0, scheme=self)
 
 

@@ -33,8 +33,8 @@ NONE = [
 HOSTILE = [
     *NONE, math.inf, -math.inf, -1, 0, 1e300, 1e-300, 10**400, True, None, [], [1, 2], [[1, 2], [3]], {},
     {"a": 1}, {1: 2}, {"a": None}, object(), print, type, bd, [None], ["a"], [True] * 3, np.array(3.0),
-    np.zeros((2, 0)), np.float32(1), np.int8(3), Fraction(1, 3), Decimal("0.1"), range(3), set(), iter([1, 2]),
-    "ground", ".",
+    np.zeros((2, 0)), np.float32(1), np.int8(3), Fraction(1, 3), Decimal("0.1"), range(3), set(),
+    iter([1, 2]), "ground", ".",
 ]  # fmt: skip
 
 RUBBER = bd.Maxwell(1e6, [2e6, 1e6], [1e-3, 1e-2], K=2e9, density=1200.0, law=material.WLF(10.0, 100.0, 20.0))
@@ -103,7 +103,7 @@ CASES: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "FractionalZener": (bd.FractionalZener, {"G0": 1e6, "G_inf": 1e7, "tau": 1e-4, "alpha": 0.5, **MODEL}),
     "TabulatedModulus": (
         bd.TabulatedModulus,
-        {"frequency": np.array([1.0, 9.0]), "storage": np.array([1e6, 2e6]), "loss": np.array([1e5] * 2), **MODEL},
+        {"frequency": np.array([1.0, 9.0]), "storage": np.array([1e6, 2e6]), "loss": [1e5] * 2, **MODEL},
     ),
     "MooneyRivlin": (bd.MooneyRivlin, {"C10": 5e5, "C01": 1e5}),
     "Yeoh": (bd.Yeoh, {"C10": 5e5, "C20": -1e4}),
@@ -149,7 +149,6 @@ CASES: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Seat": (brg.Seat, {}),
     "LoadDamping": (brg.LoadDamping, {"time": 1e-5}),
     "TabulatedDamping": (brg.TabulatedDamping, {"delta": [0.0, 1e-5], "c": [0.0, 100.0]}),
-    "Scheme": (bd.Scheme, {}),
     "displacement": (BALL.displacement, {"load": LOAD}),
     "force": (BALL.force, {"q": PLACE, "velocity": [0.0] * 6, "speed": 10.0}),
     "stiffness": (BALL.stiffness, {"q": PLACE}),
@@ -181,7 +180,8 @@ CASES: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {"bearing": BALL, "lubricant": OIL, "temperature": 60.0, "speed": 100.0, "load": LOAD},
     ),
     "lubricated": (
-        brg.lubricated, {"bearing": BALL, "supply": brg.OilSupply(OIL, 60.0, 100.0), "Q": 100.0, "angle": 0.0},
+        brg.lubricated,
+        {"bearing": BALL, "supply": brg.OilSupply(OIL, 60.0, 100.0), "Q": 100.0, "angle": 0.0},
     ),
     "fault_lines": (brg.fault_lines, {"bearing": BALL, "speed": 100.0}),
     "waviness_lines": (brg.waviness_lines, {"bearing": BALL, "speed": 100.0}),
@@ -207,7 +207,7 @@ def nowhere(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", CASES)
 def test_what_cannot_be_meant_is_a_value_error_from_the_door(name: str) -> None:
-    """No AttributeError, KeyError, OverflowError and their like from within, and no NaN or text for a number."""
+    """No AttributeError, KeyError and their like from within, and no NaN or text for a number."""
     call, good = CASES[name]
     call(**good)
     kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)

@@ -121,7 +121,7 @@ def diameter_scatter(Z: int, deviation: float, seed: int) -> tuple[float, ...]:
     ValueError
         For a Z or seed that is not a whole number, or a negative deviation.
     """
-    Z = whole("Z", Z, 1, 1000, "it must be a whole number of balls")
+    Z = whole("Z", Z, 1, 10**6, "it must be a whole number of balls")
     require(isinstance(seed, int) and seed >= 0, "seed", seed, "it must be a whole number, zero or more")
     sigma = nonnegative("deviation", deviation, "it must be zero or positive, and finite, in m")
     plausible("oversize", "deviation", sigma)

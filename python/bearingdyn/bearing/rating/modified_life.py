@@ -82,7 +82,7 @@ def contamination_factor(contamination: float | str, Dpw: float) -> float:
     if isinstance(contamination, str):
         known = contamination in CONTAMINATION
         require(known, "contamination", contamination, meant(contamination, CONTAMINATION))
-        return CONTAMINATION[contamination][0 if positive("Dpw", Dpw) < 0.1 else 1]
+        return CONTAMINATION[contamination][0 if nonnegative("Dpw", Dpw) < 0.1 else 1]
     remedy = "e_C must lie in 0..1 (ISO 281: 0 is very severe contamination, 1 extreme cleanliness)"
     e = number("contamination", contamination, remedy)
     require(0 <= e <= 1, "contamination", contamination, remedy)
@@ -212,7 +212,7 @@ def modified_life(
     BearingWarning
         For a load above the static rating.
     """
-    L10 = nonnegative("L10", L10, "it must be the rating life in million revolutions")
+    L10 = _life("L10", L10)
     speed, Dpw = number("speed", speed), positive("Dpw", Dpw)
     nu = plausible("kinematic viscosity", "viscosity", positive("viscosity", viscosity))
     nu1 = reference_viscosity(speed, Dpw)
@@ -225,6 +225,12 @@ def modified_life(
     return ModifiedLife(kappa, nu1, e, Cu, factor, revolutions, in_hours(revolutions, speed))
 
 
+def _life(field: str, value: float) -> float:
+    """Million revolutions, zero or more; inf where nothing wears. ValueError for anything else."""
+    endless = isinstance(value, float) and value == math.inf
+    return math.inf if endless else nonnegative(field, value, "it must be a life in million revolutions")
+
+
 def in_hours(revolutions: float, speed: float) -> float:
     """Modified life in hours, from million revolutions and a speed in rad/s; inf at rest.
 
@@ -235,7 +241,7 @@ def in_hours(revolutions: float, speed: float) -> float:
     speed
         rad/s.
     """
-    revolutions = number("revolutions", revolutions, "it must be million revolutions")
+    revolutions = _life("revolutions", revolutions)
     turns = abs(plausible("speed", "speed", speed)) / (2 * math.pi)  # per second
     return revolutions * 1e6 / turns / 3600 if turns > 0 else math.inf
 

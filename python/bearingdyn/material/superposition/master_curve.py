@@ -377,7 +377,7 @@ def _by_hand(T: Array, start: Array, shifts: Mapping[float, float]) -> tuple[Arr
     held, values = np.zeros(T.size, dtype=bool), np.zeros(T.size)
     for temperature, shift in shifts.items():
         number("shifts", temperature, "its keys must be temperatures of isotherms, °C")
-        number(f"shifts[{temperature!r}]", shift, "it must be a shift in decades")
+        number(f"shifts[{temperature!r}]", shift, "it must be a finite log10 a_T")
         k = int(np.argmin(np.abs(T - temperature)))
         if not abs(T[k] - temperature) <= 2.0 or held[k]:
             have = ", ".join(f"{t:.4g}" for t in T)
