@@ -56,8 +56,11 @@ class Killer(threading.Thread):
 
 def one_cluster(cases: list[Any], store: Path, workers: int, every: float, until: int | None) -> Any:
     """A study on a cluster of its own, which goes away at so many cases: what came of it, and the kills."""
+    import dask
     import distributed
 
+    # on a busy machine a successor takes longer to start than the 15 s after which it is given up
+    dask.config.set({"distributed.deploy.lost-worker-timeout": "10 min"})
     cluster = distributed.LocalCluster(
         n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
     )

@@ -9,7 +9,7 @@ from bearingdyn.analysis.envelope import envelope_spectrum
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium, state_of
 from bearingdyn.analysis.equivalent_radiated_power import radiated_power
 from bearingdyn.analysis.frequency_response import frequencies, frequency_response
-from bearingdyn.analysis.gradient import Gradient, gradient
+from bearingdyn.analysis.gradient import Gradient, gradient, power_slopes, power_table
 from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import Linear, linear
 from bearingdyn.analysis.loaded_cage import cage_ratios, with_loaded_cages
@@ -72,6 +72,8 @@ __all__ = [
     "order_spectrum",
     "parameter_map",
     "part_velocities",
+    "power_slopes",
+    "power_table",
     "radiated_power",
     "ross_table",
     "shaft_angle",

@@ -15,6 +15,7 @@ from bearingdyn.sound.levels import (
     vibration_severity,
 )
 from bearingdyn.sound.power import sound_power
+from bearingdyn.sound.power_gradient import sound_power_gradient
 from bearingdyn.sound.radiation import Radiation, radiated_power, solve
 from bearingdyn.sound.triangle_surface import TriangleSurface
 from bearingdyn.sound.wav import read_wav, write_wav
@@ -48,6 +49,7 @@ __all__ = [
     "sound_contributions",
     "sound_intensity",
     "sound_power",
+    "sound_power_gradient",
     "total",
     "vibration_severity",
     "weighted_signal",

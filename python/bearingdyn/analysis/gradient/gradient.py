@@ -19,6 +19,7 @@ from bearingdyn.analysis.gradient.parameters import (
     Change,
     changes_of,
 )
+from bearingdyn.analysis.gradient.power_slopes import equivalent_power
 from bearingdyn.analysis.gradient.response_slopes import ResponseSlopes
 from bearingdyn.analysis.inputs_outputs import Input, Output, recovered
 from bearingdyn.analysis.linearised import Linear, linear
@@ -83,6 +84,11 @@ class Gradient:
         """Names of the parameters."""
         return list(self.changes)
 
+    @property
+    def slopes(self) -> ResponseSlopes:
+        """Slopes of responses by their adjoints."""
+        return ResponseSlopes(self.state, self.changes, self.K, self.C, self.B)
+
     @takes(frequency="Hz", speed="rad/s")
     def response(
         self,
@@ -126,7 +132,7 @@ class Gradient:
         force = np.array([i.force for i in given])
         rows = np.array([o.rows[0] for o in wanted])
         omega, power = 2 * np.pi * f, QUANTITIES.index(quantity)
-        of = ResponseSlopes(self.state, self.changes, self.K, self.C, self.B)
+        of = self.slopes
         felt = of.felt(rows)
         every = np.eye(system.n)[felt]
         if speed == 0.0:
@@ -167,6 +173,38 @@ class Gradient:
                 "parameter": (self.parameters, ""),
             },
         )
+
+    @takes(frequency="Hz", speed="rad/s")
+    def radiated_power(
+        self,
+        frequency: ArrayLike,
+        inputs: Sequence[str],
+        surfaces: Sequence[str],
+        *,
+        speed: float = 0.0,
+        density: float = 1.204,
+        sound_speed: float = 343.2,
+    ) -> xarray.Dataset:
+        """Equivalent radiated power as of `radiated_power`, of all surfaces together, and its derivatives.
+
+        `bearingdyn.sound.sound_power_gradient` gives those of the sound power itself.
+
+        Parameters
+        ----------
+        frequency, inputs, surfaces, speed, density, sound_speed
+            As for `radiated_power`.
+
+        Returns
+        -------
+        xarray.Dataset
+            power (frequency, input), W per N², and derivative (parameter, frequency, input).
+
+        Raises
+        ------
+        ValueError
+            As `radiated_power`.
+        """
+        return equivalent_power(self.slopes, frequency, inputs, surfaces, speed, density, sound_speed)
 
     def modes(self, count: int | None = None, *, speed: float = 0.0, damped: bool = True) -> xarray.Dataset:
         """Frequencies and damping ratios of the modes, and their derivatives.
