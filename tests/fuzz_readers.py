@@ -26,6 +26,7 @@ import warnings
 import zipfile
 import zlib
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -384,10 +385,16 @@ def _store() -> Reader:
 
     case = Case({"x": 1.0, "name": "a"}, {"y": 2.0})
 
+    # closed, since a file that is cut while SQLite has it mapped ends the process
     def write(folder: Path) -> None:
-        Store(folder, json.dumps).write(case)
+        with closing(Store(folder, json.dumps)) as store:
+            store.write(case)
 
-    return Reader(write, lambda f: Store(f, json.dumps).read(case.parameters))
+    def read(folder: Path) -> None:
+        with closing(Store(folder, json.dumps)) as store:
+            store.read([case.parameters])
+
+    return Reader(write, read)
 
 
 def _material() -> Reader:

@@ -195,6 +195,7 @@ CASES: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
 ANY_TEXT = {"name", "cache", "surface", "body", "source", "step", "order"}
 TAKES_ANY = {
     ("DMAData", "notes"), ("DMAData", "run"), ("read_dma", "step"),
+    ("ring_mesh", "regions"),  # an array of texts names them
     ("Maxwell.relaxation", "t"), ("Maxwell.creep", "t"),  # at rest after an infinite time
 }  # fmt: skip
 

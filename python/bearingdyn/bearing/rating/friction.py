@@ -54,6 +54,7 @@ _DEEP = {
     "618": _Constants(4.7e-7, 1.7, 6.50e-3, 0.78),
     "619": _Constants(4.3e-7, 1.7, 4.75e-3, 3.6),
 }
+_ANGULAR = ("70", "72", "73")
 # single row angular contact bearings of 40°; the third are of the load by centrifugal forces, R3 and S3
 _STEEP = _Constants(5.03e-7, 1.97, 1.30e-2, 0.68)
 _STEEP_CENTRIFUGAL = (1.90e-12, 1.91e-12)
@@ -163,7 +164,7 @@ def friction(
     """
     one_of("model", model, ("palmgren", "four-term"))
     one_of("supply", supply, tuple(_SUPPLY))
-    one_of("series", series, tuple(_DEEP))
+    one_of("series", series, (*_DEEP, *_ANGULAR))
     Fr, Fa = radial_and_axial(radial, axial)
     omega = plausible("speed", "speed", speed, "it must be a finite speed in rad/s")
     nu = plausible("kinematic viscosity", "viscosity", positive("viscosity", viscosity)) * 1e6
