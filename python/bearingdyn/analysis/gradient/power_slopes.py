@@ -107,7 +107,28 @@ def equivalent_power(
 def power_table(
     of: ResponseSlopes, f: Array, inputs: Sequence[str], power: Array, slopes: Array, analysis: str
 ) -> xarray.Dataset:
-    """A power (f, i) and its derivatives (parameters, f, i) as a Dataset."""
+    """Radiated power and its derivatives by the parameters of a gradient, as a Dataset.
+
+    Parameters
+    ----------
+    of
+        Slopes of responses, whose parameters are named.
+    f
+        (f,), Hz.
+    inputs
+        Names of the inputs.
+    power
+        (f, i), W/N².
+    slopes
+        (parameters, f, i), W/N² per unit of each.
+    analysis
+        What was computed, in words.
+
+    Returns
+    -------
+    xarray.Dataset
+        `power` and `derivative` over these.
+    """
     from bearingdyn.results import dataset
 
     dims = ("frequency", "input")
