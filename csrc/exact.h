@@ -69,7 +69,7 @@ struct bd_exact {
 void bd_exact_recall(const bd_model *model, bd_work *work, const bd_state *state);
 
 /* The step's weights: Newton's operators, and the loads' factors from t to t + dt. */
-void bd_exact_choose(const bd_model *model, bd_work *work, const bd_state *state, double from);
+void bd_exact_choose(const bd_model *model, bd_work *work, bd_state *state, double from);
 
 /* A channel of motion from q; the loads' factors are those of the present time. */
 double bd_exact_row(const bd_model *model, const bd_work *work, const bd_state *state, int channel);

@@ -293,9 +293,12 @@ void bd_exact_recall(const bd_model *model, bd_work *work, const bd_state *state
     work->kernels->exact_shares(exact, state->g_before + model->coefs, exact->shares[3]);
 }
 
-void bd_exact_choose(const bd_model *model, bd_work *work, const bd_state *state, double from)
+void bd_exact_choose(const bd_model *model, bd_work *work, bd_state *state, double from)
 {
     bd_exact *exact = work->exact;
+    /* while the order grows, so does what a force does in the step: Newton's inverse was of the order before */
+    if (state->clock.steps > 0 && state->clock.steps < exact->hold)
+        state->clock.inverse_set = false;
     exact->order = (int)(state->clock.steps < exact->hold ? state->clock.steps + 1 : exact->hold);
     work->W = exact->W[exact->order - 1][0];
     work->W_rate = exact->W[exact->order - 1][1];
