@@ -13,6 +13,7 @@ import pytest
 from bearingdyn import core
 from bearingdyn.analysis import equilibrium, frequency_response, transient, transients
 from bearingdyn.analysis.equilibrium import Equilibrium
+from bearingdyn.analysis.exact_step import ExactModes
 from bearingdyn.analysis.held_forces import held_growth, phi
 from bearingdyn.analysis.march import March
 from bearingdyn.application import Application
@@ -69,6 +70,19 @@ def test_phi_functions_are_their_integrals():
     for k in range(1, 6):
         each = np.exp(z[:, None] * (1 - s)) * s ** (k - 1) / math.factorial(k - 1)
         assert np.abs(phi(z, 5)[k] / (each @ (0.5 * share)) - 1).max() < 1e-12
+
+
+def test_newtons_matrix_is_of_the_steps_own_order(state: Equilibrium) -> None:
+    """A force counts otherwise on a line, a parabola and a cubic: the matrix is made anew with each of them.
+
+    One of the first step alone would serve too, with an evaluation more in every step.
+    """
+    march = March.of(state, speed=SPEED, dt=1e-5, steps=3, method="exact")
+    model, modes = march.model([]), ExactModes.of(march.modal, SPEED).step(1e-5, 3)
+    _, after, first = core.march(model, march.start(model), march.stepping, 3, 1, start=True, modes=modes)
+    _, _, later = core.march(model, after, march.stepping, 100, 1, modes=modes)
+    assert (first.refreshes, later.refreshes) == (3, 0)
+    assert later.iterations <= 2.1 * later.steps
 
 
 @pytest.mark.parametrize("speed", [0.0, 400.0])
