@@ -28,6 +28,7 @@ from bearingdyn.analysis.steady.event_accuracy import once, within
 from bearingdyn.analysis.steady.factored import Factored, jacobian
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.reaching import curve_of
+from bearingdyn.analysis.steady.receptances import AtRest
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.application import Application
 from bearingdyn.material import FractionalZener
@@ -319,6 +320,24 @@ def test_the_derivative_as_one_matrix_is_that_of_products_and_of_differences() -
     kept = J.copy()
     solved = Factored.of(J).solve(vector)
     np.testing.assert_allclose(kept @ solved, vector, rtol=0, atol=1e-9 * np.abs(vector).max())
+    # corrections take half the digits: of single numbers in sums of a hundred products, six
+    half = jacobian(balance, pressed, half=True)
+    assert half.dtype == np.float32
+    np.testing.assert_allclose(half, kept, rtol=0, atol=1e-6 * np.abs(kept).max())
+    rough = Factored.of(half).solve(vector)
+    np.testing.assert_allclose(rough, solved, rtol=0, atol=1e-3 * np.abs(solved).max())
+
+
+def test_what_stands_answers_at_every_speed_from_one_factoring() -> None:
+    rng = np.random.default_rng(1)
+    D, N, forces = rng.normal(size=(8, 8)) + 8 * np.eye(8), np.zeros((8, 8)), rng.normal(size=(8, 3))
+    N[2:5, 1:6] = rng.normal(size=(3, 5))
+    for turning in (N, np.zeros_like(N)):
+        at_rest = AtRest.of(D, turning)
+        for speed in (0.0, 0.3, -2.0):
+            expected = np.linalg.solve(D + speed * turning, forces)
+            # round-off of two well-conditioned solves
+            np.testing.assert_allclose(at_rest.solve(speed, forces), expected, rtol=0, atol=1e-13)
 
 
 def test_a_corrector_that_lands_far_from_its_predictor_is_refused() -> None:
@@ -329,7 +348,13 @@ def test_a_corrector_that_lands_far_from_its_predictor_is_refused() -> None:
     curve = curve_of(lambda p: problem.balance(lines, p), found, speed)
     point = curve.begin(found, speed, -1.0)
     length = 0.02
-    assert curve.step(point, length) is not None
+    held = curve.step(point, length, bend=np.zeros(len(point.tangent) + 1))
+    across = curve.step(point, length)
+    assert held is not None
+    assert across is not None
+    # no fold is near: the parameter stays where it was predicted, and the tangent goes on the same way
+    assert held.parameter == point.parameter + curve.scale * length * point.slope
+    assert curve.turn(held, across) < 1e-2
     away = np.zeros(len(point.tangent) + 1)
     away[2 * point.z.shape[1]] = 2.0 / length  # the predictor leaves the tangent by the length of the step
     assert curve.step(point, length, bend=away) is None

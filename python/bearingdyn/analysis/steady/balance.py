@@ -55,6 +55,11 @@ class Pressed:
     C: Array
     softened: Softened
 
+    @property
+    def has_tangents(self) -> bool:
+        """Whether the tangents are there, sample by sample."""
+        return all(a.K.size for a in self.bearings)
+
     def without_tangents(self) -> Pressed:
         """The same, to be kept of many motions: the bearings' tangents sample by sample are most of it."""
         none = np.zeros((0, 0, 0))

@@ -14,6 +14,7 @@ from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
 from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, follow, locate
 from bearingdyn.analysis.steady.event_accuracy import once
+from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.analysis.steady.layer_lines import Softened, frozen
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.stability import (
@@ -28,7 +29,8 @@ from bearingdyn.analysis.steady.stability import (
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
 from bearingdyn.notice import OutsideBand, untold
-from bearingdyn.types import Complex
+from bearingdyn.system import System
+from bearingdyn.types import Array, Complex
 
 # of a motion, by which another at the same parameter must differ to be another
 DIFFERENT = 1e-3
@@ -123,8 +125,11 @@ class Task:
     def at(self, parameter: float, lines: Lines) -> Balance:
         """The balance at a parameter, on lines."""
         problem, speed = self.family.at(parameter)
-        rows = [channel_of(problem.system, name)[0][1] for name in self.places]
-        return problem.balance(lines, speed, np.array(rows).reshape(-1, problem.system.n))
+        known = _rows(problem.system)
+        if self.places not in known:
+            own = [channel_of(problem.system, name)[0][1] for name in self.places]
+            known[self.places] = np.array(own).reshape(-1, problem.system.n)
+        return problem.balance(lines, speed, known[self.places])
 
     def standing(self, parameter: float, lines: Lines) -> Complex:
         """The motion that stands still."""
@@ -159,6 +164,12 @@ class Task:
                 self.models.clear()
             self.models[key] = FirstOrder.of(balance.system, fastest, hertz)
         return self.models[key]
+
+
+@kept_by_system
+def _rows(_: System) -> dict[tuple[str, ...], Array]:
+    """Branches' rows of motions (k, n), by the names of their channels: filled as they are asked for."""
+    return {}
 
 
 # balances of a curve that are kept: what they have answered is asked again

@@ -35,6 +35,9 @@ EASY_TURN, HARD_TURN = 0.25, 0.45
 NEAR = 1e-4
 # of the residual that a correction with an earlier derivative may leave, before the derivative is made anew
 SLOW = 0.3
+# where the tangent's rise keeps this share of itself over a step, and is above the level, the parameter is
+# held while a point is corrected: its receptances are then asked once
+STEADY, LEVEL = 0.5, 0.02
 # steps shorter than this share of the longest end a branch
 SHORTEST = 1e-6
 
@@ -77,11 +80,19 @@ class Curve:
     slope_step: float = SLOPE
 
     def solver(
-        self, balance: Balance, pressed: Pressed, column: Complex, border: tuple[Array, float]
+        self,
+        balance: Balance,
+        pressed: Pressed,
+        column: Complex,
+        border: tuple[Array, float],
+        half: bool = True,
     ) -> Solver:
-        """What solves J dz + F_p dp = right, border · (dz, dp) = across, in the curve's measure."""
+        """What solves J dz + F_p dp = right, border · (dz, dp) = across, in the curve's measure.
+
+        With `half`, to half the digits.
+        """
         if few(column):
-            return Triangles.of(self, balance, pressed, column, border)
+            return Triangles.of(self, balance, pressed, column, border, half)
         linear = balance.linearised(pressed)
         return Products(self, linear, linear.prepared(column) * self.scale, border)
 
@@ -108,7 +119,8 @@ class Curve:
             balance = self.at(point.parameter)
             r = balance.residual(point.z, point.pressed)
             column = self.column(point.z, point.parameter, r)
-            solver = self.solver(balance, point.pressed, column, (border, slope))
+            pressed = point.pressed if point.pressed.has_tangents else balance.press(point.z)
+            solver = self.solver(balance, pressed, column, (border, slope), half=False)
         dz, dp = solver.solve(None, 1.0, 1e-8)
         length = math.sqrt(float(dz @ dz) + dp * dp)
         return replace(point, tangent=dz / length, slope=dp / length)
@@ -126,7 +138,10 @@ class Curve:
             along, rise = along + 0.5 * length * bend[:-1], rise + 0.5 * length * float(bend[-1])
         z = point.z + self.size * length * unflat_like(along, point.z)
         p = point.parameter + self.scale * length * rise
-        new = self.correct(z, p, (point.tangent, point.slope), exact)
+        border = point.tangent, point.slope
+        if not exact and bend is not None and straight(point.slope, point.slope + length * float(bend[-1])):
+            border = (np.zeros_like(point.tangent), math.copysign(1.0, point.slope))
+        new = self.correct(z, p, border, exact)
         if new is None or exact or self.apart(new, z, p) <= LARGEST_CORRECTION * abs(length):
             return new
         return None
@@ -146,7 +161,8 @@ class Curve:
         made = 0
         last = math.inf
         for iteration in range(CORRECTIONS):
-            pressed = balance.press(z)
+            lasting = solver is not None and solver.lasting
+            pressed = balance.press(z, tangents=not lasting)
             r = balance.residual(z, pressed)
             size, _ = measure(r, z)
             if size <= self.tolerance and balance is not anchor:
@@ -160,6 +176,8 @@ class Curve:
                 point = Point(z, p, pressed, size, iteration, *border)
                 return self.with_tangent(point, *border, None if exact else solver)
             if solver is None or not solver.lasting or size > SLOW * last:
+                if lasting:
+                    pressed = balance.press(z)
                 anchor = balance = self.at(p)
                 if column is None or iteration - made >= 3:
                     r = balance.residual(z, pressed)
@@ -185,6 +203,11 @@ class Curve:
         """Angle between the tangents of two points, rad."""
         cosine = float(a.tangent @ b.tangent) + a.slope * b.slope
         return math.acos(min(1.0, max(-1.0, cosine)))
+
+
+def straight(before: float, after: float) -> bool:
+    """Whether no fold is near a step of a continuation, by how its tangents rise in the parameter."""
+    return before * after > 0.0 and min(abs(before), abs(after)) > max(STEADY * abs(before), LEVEL)
 
 
 class Solver(Protocol):
@@ -228,7 +251,11 @@ class Products:
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """Continuation, its solver for few lines: the derivative with its border in triangles."""
+    """Continuation, its solver for few lines: the derivative with its border in triangles.
+
+    Half the digits are enough for corrections, whose residuals have them all; tangents by which events are
+    located need more.
+    """
 
     curve: Curve
     factored: Factored
@@ -242,17 +269,19 @@ class Triangles:
         pressed: Pressed,
         column: Complex,
         border: tuple[Array, float],
+        half: bool,
     ) -> Triangles:
         """At a motion."""
         n = 2 * column.size
-        A = np.empty((n + 1, n + 1))
-        A[:n, :n] = jacobian(balance, pressed)
+        J = jacobian(balance, pressed, half=half)
+        A = np.empty((n + 1, n + 1), dtype=J.dtype)
+        A[:n, :n] = J
         A[:n, n] = flat(column) * (curve.scale / curve.size)
         A[n, :n], A[n, n] = border
         return cls(curve, Factored.of(A))
 
     def solve(self, right: Complex | None, across: float, tolerance: float) -> tuple[Array, float]:
-        """To round-off."""
+        """To round-off of the triangles."""
         rhs = np.zeros(len(self.factored.pivots))
         if right is not None:
             rhs[:-1] = flat(right) / self.curve.size

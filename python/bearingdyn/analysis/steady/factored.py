@@ -26,18 +26,22 @@ def few(z: Complex) -> bool:
     return 0 < 2 * z.size <= LARGEST
 
 
-def jacobian(balance: Balance, pressed: Pressed) -> Array:
-    """Derivative of a balance's residual (2Lm, 2Lm), to be factored: amplitudes (L, m) as real numbers."""
-    lines, omega, R = balance.lines, balance.omega, balance.R
+def jacobian(balance: Balance, pressed: Pressed, *, half: bool = False) -> Array:
+    """Derivative of a balance's residual (2Lm, 2Lm), to be factored: amplitudes (L, m) as real numbers.
+
+    In half as many digits, with `half`: enough for corrections, whose residual has them all.
+    """
+    number = np.complex64 if half else np.complex128
+    lines, omega, R = balance.lines, balance.omega, balance.R.astype(number)
     count, m = R.shape[:2]
     away = (lines.place[:, None] - lines.place) % lines.samples
     towards = (lines.place[:, None] + lines.place) % lines.samples
-    rate = 1j * omega[None, :, None, None]
-    linear = np.zeros((count, m, count, m), dtype=np.complex128)
+    rate = (1j * omega[None, :, None, None]).astype(number)
+    linear = np.zeros((count, m, count, m), dtype=number)
     mirrored = np.zeros_like(linear)
     for own, along in zip(balance.slots, pressed.bearings, strict=True):
         n = own.stop - own.start
-        K, C = (scipy.fft.fft(T, axis=0) / lines.samples for T in (along.K, along.C))
+        K, C = ((scipy.fft.fft(T, axis=0) / lines.samples).astype(number) for T in (along.K, along.C))
         straight, turned = K[away] + rate * C[away], K[towards] - rate * C[towards]
         straight[0] *= 0.5
         turned[0] *= 0.5
@@ -51,7 +55,7 @@ def jacobian(balance: Balance, pressed: Pressed) -> Array:
     _soften(balance, pressed, linear, mirrored)
     each = np.arange(count * m)
     linear.reshape(count * m, count * m)[each, each] += 1.0
-    J = np.empty((count, m, 2, count, m, 2))
+    J = np.empty((count, m, 2, count, m, 2), dtype=linear.real.dtype)
     J[:, :, 0, :, :, 0] = linear.real + mirrored.real
     J[:, :, 0, :, :, 1] = mirrored.imag - linear.imag
     J[:, :, 1, :, :, 0] = linear.imag + mirrored.imag
@@ -86,10 +90,13 @@ class Factored:
     def of(cls, A: Array) -> Factored:
         """Of A (n, n) in rows, which is overwritten."""
         # in columns, as LAPACK has it, these rows are the transpose
-        triangles, pivots, _ = scipy.linalg.lapack.dgetrf(A.T, overwrite_a=True)
+        factor = scipy.linalg.lapack.sgetrf if A.dtype == np.float32 else scipy.linalg.lapack.dgetrf
+        triangles, pivots, _ = factor(A.T, overwrite_a=True)
         return cls(triangles, pivots)
 
     def solve(self, right: Array) -> Array:
         """A⁻¹ right (n,)."""
-        x, _ = scipy.linalg.lapack.dgetrs(self.triangles, self.pivots, right, trans=1)
-        return np.asarray(x)
+        half = self.triangles.dtype == np.float32
+        solve = scipy.linalg.lapack.sgetrs if half else scipy.linalg.lapack.dgetrs
+        x, _ = solve(self.triangles, self.pivots, right, trans=1)
+        return np.asarray(x, dtype=np.float64)

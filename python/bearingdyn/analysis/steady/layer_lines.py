@@ -83,6 +83,9 @@ class SoftLayers:
     def along(self, y: Complex, omega: Array, standing: Array) -> Softened:
         """What softening does along amplitudes y (L, k) of lines omega (L,), rad/s, about `standing` (k,)."""
         count = len(self.layers)
+        if not count:
+            none = np.zeros((0, *y.shape), dtype=np.complex128)
+            return Softened(np.zeros(0), np.zeros(0), np.zeros_like(y), np.zeros_like(y), none, none)
         strain, mean = np.zeros(count), np.ones(count)
         change = np.zeros(y.shape, dtype=np.complex128)
         lasting = np.zeros_like(change)

@@ -26,6 +26,37 @@ REFERENCES = 4
 
 
 @dataclass(frozen=True, eq=False)
+class AtRest:
+    """Receptances at 0 Hz: D + Ω N, factored for all speeds.
+
+    N, of damping that turns, has few rows that are not zero, E their unit columns and n what stands in them:
+
+        (D + Ω E n)⁻¹ F = X − Ω Y (1 + Ω n Y)⁻¹ n X,   X = D⁻¹ F,   Y = D⁻¹ E
+    """
+
+    triangles: tuple[Array, Index]
+    turning: Array
+    gives: Array
+    felt: Array
+
+    @classmethod
+    def of(cls, D: Array, N: Array) -> AtRest:
+        """Of D and N (n, n)."""
+        triangles = scipy.linalg.lu_factor(D)
+        own = np.flatnonzero(N.any(axis=1))
+        gives = scipy.linalg.lu_solve(triangles, np.eye(len(D))[:, own])
+        return cls(triangles, N[own], gives, N[own] @ gives)
+
+    def solve(self, speed: float, forces: Array) -> Array:
+        """Motions (n, i) under forces (n, i) at a speed, rad/s."""
+        X, _ = scipy.linalg.lapack.dgetrs(*self.triangles, forces)
+        if not len(self.turning):
+            return np.asarray(X)
+        share = np.linalg.solve(np.eye(len(self.felt)) + speed * self.felt, speed * (self.turning @ X))
+        return np.asarray(X - self.gives @ share)
+
+
+@dataclass(frozen=True, eq=False)
 class Kept:
     """Of one system, for receptances at many speeds: its model in the core, and what it answers at rest.
 
@@ -34,11 +65,11 @@ class Kept:
     model
         The core's.
     at_rest
-        By the bytes of a reference stiffness, D (n, n) at 0 Hz with it, and its triangles.
+        By the bytes of a reference stiffness, D at 0 Hz with it.
     """
 
     model: core.Model
-    at_rest: dict[bytes, tuple[Array, tuple[Array, Index]]]
+    at_rest: dict[bytes, AtRest]
 
 
 @kept_by_system
@@ -103,24 +134,20 @@ class Receptances:
         out = np.zeros((len(omega), len(rows), len(forces)), dtype=np.complex128)
         rest = omega == 0.0
         if rest.any():
-            D, triangles = self._at_rest
-            if self.system.N.any():
-                out[rest] = rows @ np.linalg.solve(D + speed * self.system.N, np.transpose(forces))
-            else:
-                out[rest] = rows @ scipy.linalg.lu_solve(triangles, np.transpose(forces))
+            # a mean has no imaginary part
+            out[rest] = rows @ self._standing.solve(speed, np.real(forces).T)
         if not rest.all():
             out[~rest] = self._moving(omega[~rest], speed, rows, forces)
         return out
 
-    @property
-    def _at_rest(self) -> tuple[Array, tuple[Array, Index]]:
-        """D (n, n) at 0 Hz with the reference on, and springs on free motions that no bearing feels."""
+    @cached_property
+    def _standing(self) -> AtRest:
+        """D at 0 Hz with the reference on, and springs on free motions that no bearing feels."""
         known, key = kept(self.system).at_rest, self.K.tobytes()
         if key not in known:
             if len(known) >= REFERENCES:
                 known.clear()
-            D = self._found_at_rest()
-            known[key] = D, scipy.linalg.lu_factor(D)
+            known[key] = AtRest.of(self._found_at_rest(), self.system.N)
         return known[key]
 
     def _found_at_rest(self) -> Array:

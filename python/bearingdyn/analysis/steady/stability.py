@@ -435,7 +435,7 @@ def floquet(
     count = len(K) // 2
     # what follows at once softens the tangents: h = K (z − F h) + C ż
     give = np.eye(K.shape[1]) + K @ model.flexibility
-    K, C = np.asarray(np.linalg.solve(give, K)), np.asarray(np.linalg.solve(give, C))
+    K, C = np.split(np.linalg.solve(give, np.concatenate([K, C], axis=2)), 2, axis=2)
     K0, C0 = K.mean(axis=0), C.mean(axis=0)
     propagator = Propagator.of(model, speed, period / count, K0, C0)
     K, C = K - K0, C - C0
