@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import require
-from bearingdyn.fem import Harmonic, factorise, harmonic_slopes
+from bearingdyn.fem import Harmonic, harmonic_slopes, held_factors
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.revolved_joints import Boundaries
 from bearingdyn.parts.revolved_shapes import ROUND_OFF
@@ -140,9 +140,9 @@ def _shape_slopes(
 
     def solved(G: float) -> tuple[Array, dict[str, Array]]:
         """Constraint shapes at a modulus, and their derivatives."""
-        rows = h.stiffness([bulk], [G])[inner]
-        lu: Any = factorise(rows[:, inner])
-        edge = rows[:, at]
+        K = h.stiffness([bulk], [G])
+        lu = held_factors(h, K, inner)
+        edge = K[inner][:, at]
         u = np.zeros((h.n, fixed))
         u[at] = R
         u[inner] = -lu.solve(np.asarray(edge @ R))
