@@ -1,13 +1,15 @@
 """What exact derivatives cost: 30 parameters of the demo's motor against one response of 500 frequencies.
 
-Both are of one force and four outputs, from a given equilibrium to a Dataset. Three ratios, each of CPU times that
-are the least of several runs:
+Both are of one force and four outputs, from a given equilibrium to a Dataset. Three ratios, each of CPU
+times that are the least of several runs:
 
-derivatives over response: `slope.response` over `frequency_response`. Target 3. The response itself and the
-    adjoints of its outputs are counted, and what a `Gradient` prepares once for all its answers is not.
-prepared and told over response: with `bd.gradient` itself, which differentiates the element matrices of the layers,
-    their shapes and the equilibrium. A response has no such work: its layers were reduced when the machine was built.
-a design with derivatives over one without: both from the drawing on, layers reduced anew, as a search sees them.
+derivatives over response: `slope.response` over `frequency_response`. Target 3. The response itself and
+    the adjoints of its outputs are counted, and what a `Gradient` prepares once for all its answers is not.
+prepared and told over response: with `bd.gradient` itself, which differentiates the element matrices of
+    the layers, their shapes and the equilibrium. A response has no such work: its layers were reduced when
+    the machine was built.
+a design with derivatives over one without: both from the drawing on, layers reduced anew, as a search sees
+    them.
 
 `python benchmarks/gradient.py --json` prints the figures as JSON.
 """

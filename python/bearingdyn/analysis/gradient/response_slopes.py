@@ -14,7 +14,6 @@ from bearingdyn.analysis.linearised import Linear
 from bearingdyn.material import answer_of
 from bearingdyn.types import Array, Complex, Index
 
-
 Factor = Callable[[Array], Any]
 _Term = tuple[Array, list[tuple[int, Factor]]]
 
@@ -173,7 +172,7 @@ class ResponseSlopes:
 
 
 def _between(matrices: Sequence[Array], y: Complex, x: Complex) -> Complex:
-    """yᵀ A x (matrices, k, i, f) of y (k, n, f) and x (i, n, f): of the entries that are not zero in all A."""
+    """yᵀ A x (matrices, k, i, f) of y (k, n, f) and x (i, n, f), by entries that are not zero in some A."""
     A = np.array(matrices)
     a, b = np.nonzero(A.any(axis=0))
     entries = np.ascontiguousarray(A[:, a, b])
