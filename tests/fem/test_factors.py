@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import scipy.sparse
 
 from bearingdyn.fem import assemble_solid, box_mesh, factorise, lowest_modes
 from bearingdyn.fem import factors as room
+from bearingdyn.fem.pardiso import library_path
 from bearingdyn.material import STEEL
 
 
@@ -26,7 +29,7 @@ def solid():
 def plain(A, monkeypatch):
     """Factors as without the extra."""
     with monkeypatch.context() as m:
-        m.setattr(room, "_has_pardiso", lambda: False)
+        m.setattr(room, "library_path", lambda: None)
         return factorise(A)
 
 
@@ -39,7 +42,8 @@ class TestPardiso:
 
     @pytest.fixture(autouse=True)
     def installed(self):
-        pytest.importorskip("pypardiso")
+        if library_path() is None:
+            pytest.skip("the extra fast is not installed")
 
     def test_solutions_agree(self, solid, monkeypatch):
         K = solid[0]
@@ -83,6 +87,14 @@ class TestPardiso:
         b = np.ones(K.shape[0])
         assert np.abs(shifted @ found.solve(b) - b).max() < 1e-6
 
+    def test_a_gap_in_the_diagonal_is_no_crash(self, solid):
+        K = scipy.sparse.lil_matrix(solid[0])
+        K[7, :], K[:, 7] = 0.0, 0.0
+        K = scipy.sparse.csc_matrix(K)
+        K.eliminate_zeros()
+        with pytest.raises(np.linalg.LinAlgError, match="diagonal"):
+            room.Cholesky(K)
+
     def test_every_run_factorises_alike(self, solid):
         """What is kept by the hash of a reduced part is found again: threads that race may not matter.
 
@@ -96,3 +108,10 @@ class TestPardiso:
                 x = factorise(solid[0]).solve(x)
             told.add(x.tobytes())
         assert len(told) == 1
+
+    def test_the_environment_is_left_as_it_was(self, solid):
+        """Where the library is, is found without a word in the environment."""
+        before = dict(os.environ)
+        factorise(solid[0]).solve(np.ones(solid[0].shape[0]))
+        assert dict(os.environ) == before
+        assert Path(library_path()).is_file()

@@ -59,6 +59,7 @@ from bearingdyn.fem.revolution_harmonics import (
     assemble_harmonic,
     deviatoric_strains,
     harmonic_slopes,
+    moved_sections,
 )
 from bearingdyn.fem.rigid_motion import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
 from bearingdyn.fem.solid_matrices import SolidMatrices, assemble_solid
@@ -106,6 +107,7 @@ __all__ = [
     "held_factors",
     "lagrange",
     "lowest_modes",
+    "moved_sections",
     "o_ring_mesh",
     "order_of",
     "quadrilaterals",

@@ -7,7 +7,6 @@ dimensions share.
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +18,7 @@ from bearingdyn.fem.revolution_harmonics import Harmonic
 from bearingdyn.types import Array, Index
 
 WIDEST = 320  # subdiagonals: from here on SuperLU is as quick
-KEPT = 32  # topologies at once; a layer has three, of some 2 MB each
+KEPT = 8  # sets of coordinates at once, of some 2 MB each; a body asks for one
 SMALL = 20_000  # coordinates: larger ones are not kept, for memory
 
 
@@ -89,26 +88,20 @@ def held_factors(h: Harmonic, K: Any, inner: Index) -> Factor:
     return factorise(K[inner][:, inner])
 
 
-_bands: dict[bytes, _Band] = {}
-
-
 def _known_band(h: Harmonic, inner: Index) -> _Band:
-    """The band of a topology, found once."""
-    digest = hashlib.blake2b(h.indices.tobytes(), digest_size=16)
-    digest.update(h.indptr.tobytes())
-    digest.update(np.ascontiguousarray(inner).tobytes())
-    key = digest.digest()
-    band = _bands.get(key)
+    """The band of a topology, found once and kept with its pattern."""
+    known, key = h.pattern.held, np.ascontiguousarray(inner).tobytes()
+    band: _Band | None = known.get(key)
     if band is None:
         band = _band(h, inner)
-        while len(_bands) >= KEPT:
-            _bands.pop(next(iter(_bands)), None)
-        _bands[key] = band
+        while len(known) >= KEPT:
+            known.pop(next(iter(known)), None)
+        known[key] = band
     return band
 
 
 def _band(h: Harmonic, inner: Index) -> _Band:
-    number = h.matrix(np.arange(h.indices.size, dtype=np.float64))[inner][:, inner].tocoo()
+    number = h.matrix(np.arange(h.pattern.indices.size, dtype=np.float64))[inner][:, inner].tocoo()
     c = len(h.components)
     node, component = inner // c, inner % c
     r, z = (np.round(x[node] / h.mesh.size, 9) for x in (h.mesh.r, h.mesh.z))

@@ -14,6 +14,7 @@ from bearingdyn.types import Array
 
 DENSE_LIMIT = 400  # below this size LAPACK's dense eigensolver is quicker than a factorisation and Lanczos
 EQUAL = 1e-10  # relative distance of ω² below which two modes are of one frequency, but for round-off
+APART = 2  # vectors at a time where factors answer each by itself
 
 
 def lowest_modes(
@@ -43,7 +44,8 @@ def lowest_modes(
     found = None
     if n > DENSE_LIMIT and (math.isfinite(f_max) or limit < n // 2):
         lu = factorise(K) if lu is None else lu
-        found = lowest_pairs(lu.solve, scipy.sparse.csc_matrix(M), limit, omega_max**2, n // 2)
+        width = getattr(lu, "together", APART)
+        found = lowest_pairs(lu.solve, scipy.sparse.csc_matrix(M), limit, omega_max**2, n // 2, width)
     if found is None:
         dense = [A.toarray() if scipy.sparse.issparse(A) else np.asarray(A) for A in (K, M)]
         found = scipy.linalg.eigh(dense[0], dense[1])

@@ -12,7 +12,8 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,11 +23,13 @@ from numpy.typing import ArrayLike, NDArray
 from bearingdyn.checks import whole
 from bearingdyn.fem.meshes.quadrilateral_element import shape_functions
 from bearingdyn.fem.meshes.revolution_mesh import RevolutionMesh
+from bearingdyn.fem.meshes.section_integrals import SectionIntegrals
 from bearingdyn.types import Array, Index
 
 AXIAL = (0, 2)  # components U, W of order 0
 TORSION = (1,)  # component V of order 0
 ALL_COMPONENTS = (0, 1, 2)
+STEP = 1e-30  # m/m: of complex steps
 KEPT_BELOW = 1000  # elements: their pattern takes some 6 MB
 
 
@@ -45,8 +48,8 @@ class Harmonic:
         Fourier order n.
     components
         Those of U, V, W (0, 1, 2) that are carried.
-    indices, indptr
-        Sparsity pattern of a csc matrix.
+    pattern
+        Where element matrices add up in a csc matrix.
     mass, volumetric, deviatoric
         (regions, nonzeros) data per unit density, m³, per unit bulk modulus, m, and per 2G, m.
     free
@@ -56,8 +59,7 @@ class Harmonic:
     mesh: RevolutionMesh
     order: int
     components: tuple[int, ...]
-    indices: NDArray[np.intc]
-    indptr: NDArray[np.intc]
+    pattern: Pattern
     mass: Array
     volumetric: Array
     deviatoric: Array
@@ -66,19 +68,22 @@ class Harmonic:
     @property
     def n(self) -> int:
         """Number of coordinates, those removed on the axis included."""
-        return int(self.indptr.size - 1)
+        return int(self.pattern.indptr.size - 1)
 
     def matrix(self, data: Any) -> Any:
         """Sparse (n, n) matrix with the shared pattern."""
-        return scipy.sparse.csc_matrix((data, self.indices, self.indptr), shape=(self.n, self.n))
+        of = self.pattern
+        return scipy.sparse.csc_matrix((data, of.indices, of.indptr), shape=(self.n, self.n))
 
     def stiffness(self, bulk: ArrayLike, shear: ArrayLike) -> Any:
         """K = Σ bulk·volumetric + 2·shear·deviatoric over the regions, N/m, sparse; shear may be complex."""
-        return self.matrix(np.asarray(bulk) @ self.volumetric + 2.0 * np.asarray(shear) @ self.deviatoric)
+        return self.matrix(
+            _weighed(bulk, self.volumetric) + _weighed(2.0 * np.asarray(shear), self.deviatoric)
+        )
 
     def mass_matrix(self, density: ArrayLike) -> Any:
         """M = Σ density·mass over the regions, kg, sparse."""
-        return self.matrix(np.asarray(density) @ self.mass)
+        return self.matrix(_weighed(density, self.mass))
 
     def coordinates(self, nodes: Index) -> Index:
         """Coordinates of some nodes, (nodes·components,)."""
@@ -137,6 +142,11 @@ class Harmonic:
         return A
 
 
+def _weighed(weights: Any, data: Array) -> Any:
+    """Σ weights·data over the regions; of one region a tenth of what the product of matrices takes."""
+    return np.asarray(weights)[0] * data[0] if len(data) == 1 else np.asarray(weights) @ data
+
+
 def _strain_operators(
     mesh: RevolutionMesh, n: int, components: tuple[int, ...]
 ) -> tuple[Array, Array, Array, Array, Array, Array]:
@@ -156,8 +166,7 @@ def _strain_operators(
     d_z = (r_xi / det)[:, :, None] * N_eta - (r_eta / det)[:, :, None] * N_xi
     by_r = N / r[:, :, None]
 
-    # complex where a derivative is taken by a complex step of the nodes
-    B = np.zeros((*d_r.shape[:2], 6, 9, 3), dtype=d_r.dtype)
+    B = np.zeros((*d_r.shape[:2], 6, 9, 3))
     B[..., 0, :, 0] = d_r
     B[..., 1, :, 0], B[..., 1, :, 1] = by_r, n * by_r
     B[..., 2, :, 2] = d_z
@@ -167,31 +176,6 @@ def _strain_operators(
     B = B[..., list(components)].reshape(*d_r.shape[:2], 6, -1)
 
     return N, r, z, det, dV, B
-
-
-def _element_matrices(
-    mesh: RevolutionMesh, n: int, components: tuple[int, ...]
-) -> tuple[Array, Array, Array]:
-    """Mass (m, 9, 9) of one component, volumetric and deviatoric stiffness (m, 9c, 9c) of every element."""
-    N, r, z, det, dV, B = _strain_operators(mesh, n, components)
-
-    trace = B[:, :, :3].sum(axis=2)
-    # Pressures are linear in r and z themselves: linear in ξ and η they lose an order where elements are
-    # distorted (Boffi & Gastaldi, Computing 69 (2002) 145-151).
-    size = np.sqrt(det.sum(axis=1, keepdims=True))
-    middle = [c.mean(axis=1, keepdims=True) for c in (r, z)]
-    p = np.stack([np.ones_like(r), (r - middle[0]) / size, (z - middle[1]) / size], axis=-1)
-    D = np.einsum("eq,eqi,eqa->eia", dV, p, trace, optimize=True)
-    P = np.einsum("eq,eqi,eqj->eij", dV, p, p, optimize=True)
-    volumetric = D.transpose(0, 2, 1) @ np.linalg.solve(P, D)
-
-    # e:e = Σ(ε_ii − ε_kk/3)² + ½Σγ², which is εᵀT2ε.
-    _make_deviatoric(B)
-    B *= np.sqrt(dV)[:, :, None, None]
-    B = B.reshape(len(B), -1, B.shape[-1])
-    deviatoric = B.transpose(0, 2, 1) @ B
-    mass = np.einsum("eq,qa,qb->eab", dV, N, N, optimize=True)
-    return mass, volumetric, deviatoric
 
 
 def _make_deviatoric(B: Array) -> None:
@@ -243,6 +227,11 @@ class Pattern:
     indices: NDArray[np.intc]
     indptr: NDArray[np.intc]
     place: Index
+
+    @cached_property
+    def held(self) -> dict[bytes, Any]:
+        """How matrices are factorised with some coordinates held, by the numbers of the others."""
+        return {}
 
     def add(self, blocks: Array, region: Index) -> Array:
         """Data (regions, nonzeros) of the sums over the elements of each region."""
@@ -332,12 +321,29 @@ def assemble_harmonic(
         raise ValueError(
             f"components is {components}; orders above 0 need (0, 1, 2), order 0 takes (0, 2) or (1,) too"
         )
-    mass, volumetric, deviatoric = _element_matrices(mesh, order, components)
+    mass, volumetric, deviatoric = mesh.integrals.matrices(order, components)
     return gathered_harmonic(mesh, order, components, mass, volumetric, deviatoric)
 
 
-def harmonic_slopes(h: Harmonic, rates: Iterable[tuple[Array, Array]]) -> list[Harmonic]:
-    """Derivatives of a harmonic's matrices where the nodes of its mesh move at rates dr, dz (nodes,) each.
+def moved_sections(mesh: RevolutionMesh, rates: Iterable[tuple[Array, Array]]) -> list[SectionIntegrals]:
+    """Integrals over a section whose nodes move at rates dr, dz (nodes,) each, a complex step of STEP on.
+
+    Parameters
+    ----------
+    mesh
+        The section where it is.
+    rates
+        Of its nodes, by each parameter.
+    """
+    r, z = mesh.element_nodes
+    return [
+        SectionIntegrals.of(r + 1j * STEP * dr[mesh.elements], z + 1j * STEP * dz[mesh.elements])
+        for dr, dz in rates
+    ]
+
+
+def harmonic_slopes(h: Harmonic, moved: Iterable[SectionIntegrals]) -> list[Harmonic]:
+    """Derivatives of a harmonic's matrices where the nodes of its mesh move.
 
     By a complex step of the nodes within the element matrices, which is exact to round-off.
 
@@ -345,21 +351,19 @@ def harmonic_slopes(h: Harmonic, rates: Iterable[tuple[Array, Array]]) -> list[H
     ----------
     h
         Matrices of the mesh where it is.
-    rates
-        Of its nodes, by each parameter.
+    moved
+        By each parameter, of `moved_sections`.
 
     References
     ----------
     W. Squire and G. Trapp, SIAM Rev. 40 (1998) 110.
     """
-    mesh, step = h.mesh, 1e-30
-    where, found = pattern(mesh, len(h.components)), []
-    for dr, dz in rates:
-        moved = replace(mesh, r=mesh.r + 1j * step * dr, z=mesh.z + 1j * step * dz)
-        mass, volumetric, deviatoric = (
-            A.imag / step for A in _element_matrices(moved, h.order, h.components)
+    found = []
+    for section in moved:
+        mass, volumetric, deviatoric = (A.imag / STEP for A in section.matrices(h.order, h.components))
+        found.append(
+            gathered_harmonic(h.mesh, h.order, h.components, mass, volumetric, deviatoric, h.pattern)
         )
-        found.append(gathered_harmonic(mesh, h.order, h.components, mass, volumetric, deviatoric, where))
     return found
 
 
@@ -400,8 +404,7 @@ def gathered_harmonic(
         mesh=mesh,
         order=order,
         components=components,
-        indices=where.indices,
-        indptr=where.indptr,
+        pattern=where,
         mass=data[0],
         volumetric=data[1],
         deviatoric=data[2],

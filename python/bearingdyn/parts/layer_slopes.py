@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.checks import require
-from bearingdyn.fem import Harmonic, factorise, harmonic_slopes
+from bearingdyn.fem import Harmonic, harmonic_slopes, held_factors, moved_sections
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.revolved_joints import Boundaries
 from bearingdyn.parts.revolved_shapes import ROUND_OFF
@@ -73,8 +73,9 @@ def layer_slopes(layer: Layer, names: Sequence[str]) -> dict[str, LayerSlopes]:
     bulk, density = layer.material.K, layer.material.density
     n = body._size
     found = {name: LayerSlopes(*(np.zeros((n, n)) for _ in range(3))) for name in names}
+    sections = moved_sections(mesh, [rates[name] for name in moving])
     for h, Psi, places in body._placed():
-        slopes = dict(zip(moving, harmonic_slopes(h, [rates[name] for name in moving]), strict=True))
+        slopes = dict(zip(moving, harmonic_slopes(h, sections), strict=True))
         whole = _Matrices.of(h)
         loads = {
             name: _Motion(slopes[name], *rates[name]) if name in slopes else _Motion(None, still, still)
@@ -140,9 +141,9 @@ def _shape_slopes(
 
     def solved(G: float) -> tuple[Array, dict[str, Array]]:
         """Constraint shapes at a modulus, and their derivatives."""
-        rows = h.stiffness([bulk], [G])[inner]
-        lu: Any = factorise(rows[:, inner])
-        edge = rows[:, at]
+        K = h.stiffness([bulk], [G])
+        lu = held_factors(h, K, inner)
+        edge = K[inner][:, at]
         u = np.zeros((h.n, fixed))
         u[at] = R
         u[inner] = -lu.solve(np.asarray(edge @ R))

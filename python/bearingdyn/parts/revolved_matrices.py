@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -88,7 +89,7 @@ def reduced(
         outputs=rows,
         viscoelastic=(
             *(
-                Viscoelastic(m, P @ h @ P, *concentrations(mesh, soft_elements(mesh, regions, j), placed, n))
+                Viscoelastic(m, P @ h @ P, *_strained(m, mesh, soft_elements(mesh, regions, j), placed, n))
                 for j, (m, h) in enumerate(zip(rubbers, H, strict=True))
             ),
             *(Viscoelastic(volumes[j], P @ S @ P) for j, S in swelling.items()),
@@ -96,3 +97,16 @@ def reduced(
         faces=faces,
         raceways={name: Raceway(t.series, t.arm, raceways[name]) for name, t in boundaries.tracks.items()},
     )
+
+
+def _strained(
+    material: object,
+    mesh: RevolutionMesh,
+    elements: Index,
+    placed: Sequence[tuple[Harmonic, Array, list[tuple[Index, Array]]]],
+    n: int,
+) -> tuple[float, Array | None]:
+    """Volume of rubber, m³, and how its shapes strain it, which a law of softening alone asks for."""
+    if getattr(material, "payne", None) is None:
+        return 2 * math.pi * float(mesh.integrals.mass[elements].sum()), None
+    return concentrations(mesh, elements, placed, n)

@@ -12,9 +12,27 @@ import numpy as np
 from bearingdyn.cms import inertia_shapes, orthogonalise
 from bearingdyn.fem import Harmonic, held_factors, lowest_modes
 from bearingdyn.parts.revolved_joints import Boundaries
-from bearingdyn.types import Array
+from bearingdyn.types import Array, Index
 
 ROUND_OFF = 1e-9  # stiffness of a shape, over that of its parts, below which it is rigid motion
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Coordinates of a harmonic that its faces hold, their shapes R (at, columns), and those that remain."""
+
+    at: Index
+    R: Array
+    inner: Index
+
+    @classmethod
+    def of(cls, h: Harmonic, boundaries: Boundaries) -> Held:
+        """What the faces hold of a harmonic."""
+        at, R = boundaries.held(h)
+        left = np.zeros(h.n, dtype=bool)
+        left[h.free] = True
+        left[at] = False
+        return cls(at, R, np.flatnonzero(left))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,13 +61,16 @@ class ShapeMaker:
     def constraint_shapes(self, h: Harmonic, shear: Sequence[complex]) -> tuple[Any, Any]:
         """Static shapes (n, columns) of unit motions of the faces at given moduli, and their stiffness."""
         K = h.stiffness(self.bulk, shear)
-        at, R = self.boundaries.held(h)
-        inner = np.setdiff1d(h.free, at)
-        u = np.zeros((h.n, R.shape[1]), dtype=K.dtype)
-        u[at] = R
-        if inner.size and R.shape[1]:
-            u[inner] = -held_factors(h, K, inner).solve((K @ u)[inner])
+        u = self._static(h, K, Held.of(h, self.boundaries))
         return u, u.T @ (K @ u)
+
+    def _static(self, h: Harmonic, K: Any, held: Held) -> Any:
+        """Static shapes (n, columns) of unit motions of the faces, by the stiffness."""
+        u = np.zeros((h.n, held.R.shape[1]), dtype=K.dtype)
+        u[held.at] = held.R
+        if held.inner.size and held.R.shape[1]:
+            u[held.inner] = -held_factors(h, K, held.inner).solve((K @ u)[held.inner])
+        return u
 
     def basis(self, h: Harmonic, levels: Sequence[Sequence[float]]) -> tuple[Array, int]:
         """Basis (n, columns) of a family: constraint shapes, then internal ones; and the number of the first.
@@ -59,29 +80,36 @@ class ShapeMaker:
         those without energy of their own are dropped (torsion has none: it changes no volume, so its shape
         does not depend on the modulus).
         """
-        static, k = self.constraint_shapes(h, levels[0])
+        held = Held.of(h, self.boundaries)
         K, M = h.stiffness(self.bulk, levels[0]), h.mass_matrix(self.density)
+        static = self._static(h, K, held)
+        energy = np.sum(static * (K @ static), axis=0)
         scale = np.sum(np.abs(static) * (abs(K) @ np.abs(static)), axis=0)
-        moving = np.diag(k) > ROUND_OFF * scale
+        moving = energy > ROUND_OFF * scale
         # Rigid motion of all boundaries has the same shape at every modulus: those of the first add nothing.
-        moving[: self.boundaries.held(h)[1].shape[1] // max(len(self.boundaries.faces), 1)] = False
-        unit = 1.0 / np.sqrt(np.diag(k)[moving])
-        extra = [(self.constraint_shapes(h, level)[0] - static)[:, moving] * unit for level in levels[1:]]
+        moving[: held.R.shape[1] // max(len(self.boundaries.faces), 1)] = False
+        unit = 1.0 / np.sqrt(energy[moving])
+        extra = []
+        # of one material without volumetric energy, as in torsion, the shapes are those of any modulus
+        if len(self.bulk) > 1 or h.volumetric.any():
+            for level in levels[1:]:
+                shape = self._static(h, h.stiffness(self.bulk, level), held)
+                extra.append((shape - static)[:, moving] * unit)
         if self.inertia_rounds:
             for level in levels:
-                extra += self._inertia_shapes(h, h.stiffness(self.bulk, level), M, level)
+                extra += self._inertia_shapes(h, h.stiffness(self.bulk, level), M, held)
         if self.f_max > 0:
-            extra.append(self._modes(h, K, M, levels[0]))
+            extra.append(self._modes(h, K, M, levels[0], held))
         internal = np.hstack(extra) if extra else np.zeros((h.n, 0))
         _, internal = orthogonalise(internal, K, M)
         return np.hstack([static, internal]), static.shape[1]
 
-    def _inertia_shapes(self, h: Harmonic, K: Any, M: Any, level: Sequence[float]) -> list[Array]:
+    def _inertia_shapes(self, h: Harmonic, K: Any, M: Any, held: Held) -> list[Array]:
         """Answers (n, m), at rest on the boundaries, to the inertia of the constraint shapes at a modulus."""
-        inner = np.setdiff1d(h.free, self.boundaries.held(h)[0])
+        inner = held.inner
         if not inner.size:
             return []
-        static = self.constraint_shapes(h, level)[0]
+        static = self._static(h, K, held)
         lu = held_factors(h, K, inner)
 
         def answer(load: Array) -> Array:
@@ -91,11 +119,10 @@ class ShapeMaker:
 
         return inertia_shapes(answer, K, M, static, inner, self.inertia_rounds)
 
-    def _modes(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float]) -> Array:
+    def _modes(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float], held: Held) -> Array:
         """Modes (n, m) with interfaces held."""
-        at, _ = self.boundaries.held(h)
-        inner = np.setdiff1d(h.free, at)
-        shift = 0.0 if at.size else self.slow_rate(shear) ** 2
+        inner = held.inner
+        shift = 0.0 if held.at.size else self.slow_rate(shear) ** 2
         limit = math.sqrt(self.f_max**2 + shift / (2 * math.pi) ** 2)
         K_i, M_i = K[inner][:, inner], M[inner][:, inner]
         frequency, phi = lowest_modes(K_i + shift * M_i, M_i, f_max=limit)

@@ -133,8 +133,8 @@ class Gradient:
         rows = np.array([o.rows[0] for o in wanted])
         omega, power = 2 * np.pi * f, QUANTITIES.index(quantity)
         of = self.slopes
-        felt = of.felt(rows)
-        every = np.eye(system.n)[felt]
+        felt = of.felt()
+        every = np.vstack([np.eye(system.n)[felt], rows])
         if speed == 0.0:
             both = self.state.solve(omega, np.vstack([force, rows]), every, 0.0)
             x, y = both[:, :, : len(force)], both[:, :, len(force) :]
@@ -142,7 +142,7 @@ class Gradient:
             # gyroscopic and circulatory forces are skew: the adjoint turns the other way
             x = self.state.solve(omega, force, every, speed)
             y = self.state.solve(omega, rows, every, -speed)
-        plain = np.asarray(rows[:, felt] @ x)
+        x, y, plain = x[:, : felt.size], y[:, : felt.size], x[:, felt.size :]
         response = recovered(
             wanted, given, plain, omega, speed, power, np.zeros((f.size, 0, 0), dtype=np.complex128)
         )

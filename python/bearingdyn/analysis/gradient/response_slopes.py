@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,45 @@ from bearingdyn.analysis.inputs_outputs import Input
 from bearingdyn.analysis.linearised import Linear
 from bearingdyn.material import answer_of
 from bearingdyn.types import Array, Complex, Index
+
+Factor = Callable[[Array], Any]
+_Term = tuple[Array, list[tuple[int, Factor]]]
+
+
+def _one(omega: Array) -> float:
+    return 1.0
+
+
+def _rate(omega: Array) -> Complex:
+    return np.asarray(1j * omega)
+
+
+def _inertia(omega: Array) -> Array:
+    return -(omega**2)
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Matrices that act on the same few motions.
+
+    Attributes
+    ----------
+    own
+        The coordinates, among those felt.
+    rows
+        (r, own) combinations of them; None: they themselves.
+    terms
+        Each matrix (r, r), with the parameters by which it changes Z, and by what factor (f,).
+    """
+
+    own: Index
+    rows: Array | None
+    terms: list[_Term]
+
+    def seen(self, motion: Complex) -> Complex:
+        """The motions (k, r, f) out of those felt, (k, felt, f)."""
+        found = motion[:, self.own]
+        return found if self.rows is None else np.asarray(self.rows @ found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,15 +64,15 @@ class ResponseSlopes:
     C: Array
     B: Mapping[int, Array]
 
-    def felt(self, rows: Array) -> Index:
-        """Coordinates that the outputs' rows (k, n) and the changes of the system touch.
+    def felt(self, rows: Array | None = None) -> Index:
+        """Coordinates that the changes of the system touch, and rows (k, n) beside them.
 
         Parameters
         ----------
         rows
-            Of the outputs.
+            Of outputs that are told by these coordinates too; None: they are asked for by themselves.
         """
-        touched = np.abs(rows).sum(axis=0)
+        touched = np.zeros(self.state.system.n) if rows is None else np.abs(rows).sum(axis=0)
         for change in self.changes.values():
             for A in (change.M, change.C, change.K, *change.H.values()):
                 if A is not None:
@@ -62,79 +101,85 @@ class ResponseSlopes:
         inputs
             What acts: the ground's motion acts by the masses, which change.
         """
-        turned, w = y.transpose(0, 2, 1), omega[:, None, None]
-        total = np.zeros((len(self.changes), omega.size, y.shape[2], x.shape[2]), dtype=np.complex128)
-        for own, matrices in self._matrices(felt).items():
-            at = np.asarray(own)
-            each = _between([A for _, _, A in matrices], turned[:, :, at], x[:, at])
-            for (p, kind, _), found in zip(matrices, each, strict=True):
-                total[p] += self._factor(kind, omega) * found
-        self._add_bearings(total, felt, turned, x, w)
-        self._add_moduli(total, felt, turned, x, omega)
+        # frequencies last: each number of a matrix then acts on a row of them
+        near, far = (np.ascontiguousarray(motion.transpose(2, 1, 0)) for motion in (y, x))
+        total = np.zeros((len(self.changes), len(near), len(far), omega.size), dtype=np.complex128)
+        for group in (*self._matrices(felt), *self._bearings(felt), *self._moduli(felt)):
+            forms = _between([A for A, _ in group.terms], group.seen(near), group.seen(far))
+            for form, (_, uses) in zip(forms, group.terms, strict=True):
+                for p, factor in uses:
+                    total[p] += factor(omega) * form
         for p, change in enumerate(self.changes.values()):
             if change.inertia is not None:
                 for i, one in enumerate(inputs):
                     if one.axis is not None:
-                        total[p, :, :, i] += turned @ change.inertia[felt, one.axis]
-        return -total
+                        total[p, :, i] += change.inertia[felt, one.axis] @ near
+        return -total.transpose(0, 3, 1, 2)
 
-    def _matrices(self, felt: Index) -> dict[tuple[int, ...], list[tuple[int, str | int, Array]]]:
-        """By the coordinates that they touch: parameter, "K", "C", "M" or the layer of a H, and matrix."""
+    def _matrices(self, felt: Index) -> list[_Group]:
+        """Changes of the system's own matrices, together where they touch the same coordinates."""
         B = self.state.system.B
-        found: dict[tuple[int, ...], list[tuple[int, str | int, Array]]] = {}
+        found: dict[tuple[int, ...], _Group] = {}
         for p, change in enumerate(self.changes.values()):
-            mine: list[tuple[str | int, Array | None]] = [
-                ("K", change.K),
-                ("C", change.C),
-                ("M", change.M),
-                *change.H.items(),
+            mine: list[tuple[Factor, Array | None]] = [
+                (_one, change.K),
+                (_rate, change.C),
+                (_inertia, change.M),
+                *((self._modulus(k), H) for k, H in change.H.items()),
             ]
             if p in self.B:  # (B'ᵀ A B + Bᵀ A B'), A = K + iωC
-                halves = (("K", self.B[p].T @ self.state.K @ B), ("C", self.B[p].T @ self.state.C @ B))
-                mine += [(kind, half + half.T) for kind, half in halves]
-            for kind, A in mine:
+                halves = (_one, self.B[p].T @ self.state.K @ B), (_rate, self.B[p].T @ self.state.C @ B)
+                mine += [(factor, half + half.T) for factor, half in halves]
+            for factor, A in mine:
                 if A is None:
                     continue
                 A = A[np.ix_(felt, felt)]
                 own = np.flatnonzero(np.abs(A).sum(axis=0))
                 if own.size:
-                    entry = (p, kind, A[np.ix_(own, own)])
-                    found.setdefault(tuple(own.tolist()), []).append(entry)
-        return found
+                    group = found.setdefault(tuple(own.tolist()), _Group(own, None, []))
+                    group.terms.append((A[np.ix_(own, own)], [(p, factor)]))
+        return list(found.values())
 
-    def _factor(self, kind: str | int, omega: Array) -> Any:
-        """What a matrix is multiplied by in Z (f, 1, 1)."""
-        w = omega[:, None, None]
-        if isinstance(kind, str):
-            return {"K": np.ones_like(w), "C": 1j * w, "M": -(w**2)}[kind]
-        modulus = answer_of(self.state.system.layers[kind].material, omega)
-        return 2.0 * np.asarray(modulus)[:, None, None]
-
-    def _add_bearings(self, total: Complex, felt: Index, turned: Complex, x: Complex, w: Array) -> None:
-        """The bearings' tangents change, and act on few coefficients."""
+    def _bearings(self, felt: Index) -> list[_Group]:
+        """Changes of the bearings' tangents, which act on few coefficients."""
+        terms: list[_Term] = []
+        for A, factor in ((self.K, _one), (self.C, _rate)):
+            terms += [(A[p], [(p, factor)]) for p in range(len(A)) if A[p].any()]
         B = self.state.system.B[:, felt]
-        near, far = turned @ B.T, B @ x
-        for A, factor in ((self.K, 1.0), (self.C, 1j * w)):
-            changed = [p for p in range(len(A)) if A[p].any()]
-            if changed:
-                total[changed] += factor * _between([A[p] for p in changed], near, far)
+        own = np.flatnonzero(np.abs(B).sum(axis=0))
+        return [_Group(own, B[:, own], terms)] if terms else []
 
-    def _add_moduli(self, total: Complex, felt: Index, turned: Complex, x: Complex, omega: Array) -> None:
-        """Moduli change, each by itself: yᵀ L Lᵀ x of a layer stands for all of them."""
-        seen: dict[int, Complex] = {}
+    def _moduli(self, felt: Index) -> list[_Group]:
+        """Changes of moduli: yᵀ L Lᵀ x of a layer stands for all of them."""
+        uses: dict[int, list[tuple[int, Factor]]] = {}
         for p, change in enumerate(self.changes.values()):
             for (k, name), weight in change.shear.items():
-                layer = self.state.system.layers[k]
-                if k not in seen:
-                    L = layer.L[felt]
-                    own = np.flatnonzero(np.abs(L).sum(axis=1))
-                    seen[k] = (turned[:, :, own] @ L[own]) @ (L[own].T @ x[:, own])
-                slope = np.asarray(modulus_slope(layer.material, name, 1j * omega))
-                total[p] += 2.0 * weight * slope[:, None, None] * seen[k]
+                uses.setdefault(k, []).append((p, self._by_modulus(k, name, weight)))
+        found = []
+        for k, mine in uses.items():
+            L = self.state.system.layers[k].L[felt]
+            own = np.flatnonzero(np.abs(L).sum(axis=1))
+            found.append(_Group(own, L[own].T, [(np.eye(L.shape[1]), mine)]))
+        return found
+
+    def _modulus(self, k: int) -> Factor:
+        material = self.state.system.layers[k].material
+        return lambda omega: 2.0 * answer_of(material, omega)
+
+    def _by_modulus(self, k: int, name: str, weight: float) -> Factor:
+        material = self.state.system.layers[k].material
+        return lambda omega: 2.0 * weight * modulus_slope(material, name, 1j * omega)
 
 
 def _between(matrices: Sequence[Array], y: Complex, x: Complex) -> Complex:
-    """yᵀ A x (matrices, f, k, i) of y (f, k, n) and x (f, n, i)."""
-    f, k, n = y.shape
-    half = y.reshape(f * k, n) @ np.concatenate(matrices, axis=1)
-    return np.asarray(np.einsum("fkpn,fni->pfki", half.reshape(f, k, -1, n), x))
+    """yᵀ A x (matrices, k, i, f) of y (k, n, f) and x (i, n, f), by entries that are not zero in some A."""
+    A = np.array(matrices)
+    a, b = np.nonzero(A.any(axis=0))
+    entries = np.ascontiguousarray(A[:, a, b])
+    found = np.empty((len(A), len(y), len(x), y.shape[2]), dtype=np.complex128)
+    for k, left in enumerate(y):
+        for i, right in enumerate(x):
+            # a product of real matrices: the entries stand for real and imaginary parts alike
+            pairs = (left[a] * right[b]).view(np.float64)
+            found[:, k, i] = (entries @ pairs).view(np.complex128)
+    return found

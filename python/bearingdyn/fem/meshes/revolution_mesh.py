@@ -13,9 +13,11 @@ import numpy as np
 from bearingdyn.checks import number, vector
 from bearingdyn.fem.meshes.grid_lines import graded_line
 from bearingdyn.fem.meshes.quadrilateral_element import shape_functions
+from bearingdyn.fem.meshes.section_integrals import SectionIntegrals
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 
+KEPT_BELOW = 1000  # elements: their integrals take 12 MB
 SAME = 1e-9  # lengths closer than this fraction of the body are one grid line
 
 
@@ -73,6 +75,21 @@ class RevolutionMesh:
     region: Index
 
     __repr__ = short
+
+    @property
+    def element_nodes(self) -> tuple[Array, Array]:
+        """Nodes of every element, r and z (m, 9), m."""
+        return self.r[self.elements], self.z[self.elements]
+
+    @property
+    def integrals(self) -> SectionIntegrals:
+        """Integrals over the elements, from which the matrices of every order combine; kept by small ones."""
+        small = len(self.elements) <= KEPT_BELOW
+        return self._integrals if small else SectionIntegrals.of(*self.element_nodes)
+
+    @cached_property
+    def _integrals(self) -> SectionIntegrals:
+        return SectionIntegrals.of(*self.element_nodes)
 
     @property
     def size(self) -> float:
