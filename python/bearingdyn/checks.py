@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from bearingdyn.types import Array
 
@@ -79,6 +79,18 @@ def reals(field: str, value: ArrayLike, remedy: str) -> Array:
     try:
         return real(value)
     except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; {remedy}") from None
+
+
+def indices(field: str, value: ArrayLike, remedy: str) -> NDArray[np.intp]:
+    """Check whole numbers of any shape, as a new array; ValueError for anything else."""
+    try:
+        x = np.asarray(value)
+        if x.dtype.kind not in "iu":
+            x = real(value)
+            require(bool((x % 1 == 0).all()) and bool((np.abs(x) < 2**53).all()), field, value, remedy)
+        return np.array(x, dtype=np.intp)
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{field} is {value!r}; {remedy}") from None
 
 

@@ -120,7 +120,12 @@ class Scheme:
         if self.hold not in (1, 2, 3):
             raise ValueError(f"hold is {self.hold!r}; it is the order of a polynomial: give 1, 2 or 3")
         object.__setattr__(self, "hold", int(self.hold))
-        Stepping(1.0, scheme=self)
+        if not isinstance(self.isa, str):
+            raise ValueError(f"scheme.isa is {self.isa!r}; it must be one of {sorted(ISAS)}")
+        try:
+            Stepping(1.0, scheme=self)
+        except (TypeError, OverflowError) as error:  # of what is no number, or none that a double holds
+            raise ValueError(str(error)) from None
 
 
 @dataclass(frozen=True)

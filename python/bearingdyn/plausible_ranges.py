@@ -12,10 +12,21 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
 
+import numpy as np
+
 from bearingdyn.checks import number
 from bearingdyn.notice import UnusualMagnitude, warn
+from bearingdyn.types import Array
 
-__all__ = ["MAGNITUDES", "Magnitude", "UnusualMagnitude", "check_bulk", "check_density", "plausible"]
+__all__ = [
+    "MAGNITUDES",
+    "Magnitude",
+    "UnusualMagnitude",
+    "check_bulk",
+    "check_density",
+    "check_reference",
+    "plausible",
+]
 
 
 class Slip(NamedTuple):
@@ -137,6 +148,13 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "temperature": Magnitude(
             "°C", (-273.15, 2000.0), (-150.0, 250.0), "rubber serves from -100 to 250 °C", _CELSIUS, False
         ),
+        "activation energy": Magnitude(
+            "J/mol",
+            (1.0, 1e9),
+            (2e3, 3e6),
+            "that of flow is 2e4 to 1e6 J/mol",
+            (Slip("kJ/mol", 1e3), Slip("kcal/mol", 4184.0)),
+        ),
         "oil temperature": Magnitude(
             "°C", (-273.15, 1000.0), (-80.0, 250.0), "oils serve from -60 to 200 °C", _CELSIUS, False
         ),
@@ -187,6 +205,17 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         ),
         "solid length": Magnitude(
             "m", (1e-8, 100.0), (1e-6, 100.0), "of a mesh that read_mesh was told is that large", _LENGTHS
+        ),
+        "place": Magnitude(
+            "m",
+            (0.0, 100.0),
+            (0.0, 10.0),
+            "a point of a part, along its axis",
+            _LENGTHS,
+        ),
+        "machine": Magnitude("m", (1e-4, 1e3), (5e-3, 50.0), "machines are 0.01 to 20 m long", _LENGTHS),
+        "microphone": Magnitude(
+            "m", (1e-4, 1e4), (5e-3, 100.0), "microphones stand 0.01 to 16 m from a machine", _LENGTHS
         ),
         "specimen": Magnitude(
             "m", (1e-6, 1.0), (1e-4, 0.2), "specimens are 1 to 50 mm thick and wide", (_MM,)
@@ -250,6 +279,9 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "pit depth": Magnitude("m", (1e-9, 0.01), (1e-9, 1e-3), "spalls are 1 to 500 µm deep", (_UM, _MM)),
         "offset": Magnitude(
             "m", (0.0, 1.0), (0.0, 5e-3), "preload by displacement is 1 to some 100 µm", (_UM, _MM)
+        ),
+        "static displacement": Magnitude(
+            "m", (0.0, 1e3), (0.0, 0.05), "the softest mounts sag by 40 mm", _LENGTHS
         ),
         "displacement": Magnitude(
             "m", (0.0, 1.0), (0.0, 0.01), "parts move by µm; the theory is of small motions", (_UM, _MM)
@@ -326,8 +358,25 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         "moment": Magnitude(
             "N m", (0.0, 1e12), (0.0, 1e8), "the heaviest shafts pass 1e7 N m", (Slip("N mm", 1e-3),)
         ),
+        "seal moment": Magnitude(
+            "N m", (0.0, 1e4), (0.0, 10.0), "contact seals have 0.005 to 5 N m", (Slip("N mm", 1e-3),)
+        ),
         "gravity": Magnitude(
             "m/s²", (0.0, 1000.0), (0.0, 30.0), "the earth has 9.81 m/s²", (Slip("mm/s²", 1e-3),)
+        ),
+        "field of gravity": Magnitude(
+            "m/s²",
+            (0.0, 1000.0),
+            (1.2, 30.0),
+            "the moon has 1.62 m/s², the earth 9.81",
+            (Slip("g", 9.80665), Slip("mm/s²", 1e-3)),
+        ),
+        "velocity of a housing": Magnitude(
+            "m/s",
+            (0.0, 1e3),
+            (0.0, 0.3),
+            "machines are stopped at 0.01 to 0.03 m/s (ISO 20816)",
+            (Slip("mm/s", 1e-3), Slip("µm/s", 1e-6)),
         ),
         "acceleration": Magnitude(
             "m/s²", (0.0, 1e7), (0.0, 5000.0), "a hard shock has 500 g, 5000 m/s²", (Slip("mm/s²", 1e-3),)
@@ -361,6 +410,12 @@ MAGNITUDES: Mapping[str, Magnitude] = MappingProxyType(
         ),
         "pressure by Barus": Magnitude(
             "Pa", (0.0, 3e10), (0.0, 5e8), "Barus' law is some times too high above 1e8 Pa; take Roelands'"
+        ),
+        "share of the static rating": Magnitude(
+            "",
+            (0.0, 1e9),
+            (5e-4, 1e9),
+            "balls of a bearing that bears less than a hundredth slide instead of rolling",
         ),
         "rating": Magnitude(
             "N", (0.0, 1e10), (5.0, 1e8), "the smallest ball bearings have 10 N, the largest 1e7", (_KN,)
@@ -530,3 +585,18 @@ def check_gyration(field: str, inertia: float, mass: float) -> None:
         if not row.within(radius / side, row.possible):
             raise ValueError(f"{text}it must be at most {row.possible[1]:g} ({row.reason}); {meant}")
         warn(f"{text}usual is at most {row.usual[1]:g} ({row.reason}); {meant}", UnusualMagnitude)
+
+
+def check_reference(field: str, reference: Array, points: Array) -> None:
+    """Check the magnitude of a reference point (3,), m, by the extent of the body's points (n, 3), m.
+
+    Twenty times the body away, a rigid arm to it is no part of a machine. Raises ValueError.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float((high - low).max())
+    away = float(np.linalg.norm(np.maximum(0.0, np.maximum(low - reference, reference - high))))
+    if not away <= 20.0 * size:
+        raise ValueError(
+            f"{field} is {reference.tolist()}, {away:.4g} m away from a body {size:.4g} m large; it must lie "
+            f"within 20 times that; is it in mm? give {(1e-3 * reference).tolist()} m"
+        )

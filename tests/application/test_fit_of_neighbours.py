@@ -246,3 +246,34 @@ def test_a_ring_many_balls_thick_is_doubted():
         hang(OWN, shaft((0.1, 0.025)), ring(0.0245, 0.026, 0.015))
         hang(OWN, ring(0.0125, 0.0165, 0.015), ring(0.0228, 0.026, 0.015))
         hang(OWN, shaft((0.1, 0.008)), ring(0.026, 0.03, 0.015))
+
+
+def hung(r_inner: float, r_outer: float, *, race: str = "outer", fits: bool = True) -> None:
+    """A bearing in a ring that was made by its arm alone."""
+    own = bd.FlexibleRing(r_inner, r_outer, 0.015, arm=OWN.arm, order=10, race=race, f_max=0.0)
+    app = bd.Application()
+    app.add("rotor", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+    app.add("ring", own)
+    app.bearing("b", OWN, inner="rotor.centre", outer="ring.raceway", fits=fits)
+
+
+def test_a_ring_made_by_its_arm_alone_is_compared_with_the_balls_hung_in_it():
+    """As one that is made with bearing=: where the balls run, and how thick it is under their contact."""
+    with pytest.raises(
+        ValueError, match=r"bearing 'b' in a FlexibleRing: r_inner is 0\.03; balls of 0\.0079"
+    ):
+        hung(0.030, 0.036)
+    with pytest.warns(FitWarning, match=r"contact is 2\.2 mm long, the ring 0\.6 mm thick"):
+        hung(0.0222, 0.0228)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        hung(0.0222, 0.026)
+        hung(0.0222, 0.0228, fits=False)
+
+
+def test_fits_of_another_bearing_are_refused():
+    other = bd.bearing.Mounting(0.030, 0.062)
+    with pytest.raises(ValueError, match=r"bore is 0\.03; the bearing's is 0\.025 m"):
+        other.mounted(BALL)
+    assert bd.bearing.Mounting(0.025, 0.052).mounted(BALL).clearance == pytest.approx(1e-5, rel=1e-12)
+    other.mounted(OWN)  # whose rings are not known

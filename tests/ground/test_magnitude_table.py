@@ -11,7 +11,18 @@ import numpy as np
 import pytest
 
 import bearingdyn as bd
-from bearingdyn.bearing import Lubricant, Mounting, Pair, Running, Seat, Walther, lubricate
+from bearingdyn.bearing import (
+    Lubricant,
+    Mounting,
+    Pair,
+    Running,
+    Seat,
+    Walther,
+    friction,
+    load_cases,
+    lubricate,
+    rating_life,
+)
 from bearingdyn.notice import BearingWarning, Notice, UnloadedBearing, UnusualMagnitude
 from bearingdyn.plausible_ranges import MAGNITUDES, plausible
 
@@ -112,6 +123,14 @@ def held():
 
 def ball(**given):
     return bd.BallBearing(**BALLS, **{"clearance": 10e-6, **given})
+
+
+def sagging(stiffness):
+    app = bd.Application()
+    app.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004)))
+    app.ground("r.centre", stiffness=[stiffness] * 6)
+    app.load("r.centre", (0, -400.0, 0, 0, 0, 0))
+    return bd.equilibrium(app)
 
 
 def unbalanced(moment):
@@ -226,6 +245,44 @@ SLIPS = {
     "table of a load of nothing": lambda: bd.stiffness_table(ball(), [[0.0] * 6]),
     "pressed by 1 mm": lambda: ball().force([0, -1e-3, 0, 0, 0, 0]),
     "pressed by 10 in µm": lambda: ball().force([0, -10.0, 0, 0, 0, 0]),
+    "life under kN": lambda: rating_life(ball(), (0, -0.4, 0.1, 0, 0, 0)),
+    "load cases in kN": lambda: load_cases(ball(), [[0, -0.4, 0.1, 0, 0, 0]]),
+    "oil under kN": lambda: lubricate(ball(), OIL, 60.0, 100.0, (0, -0.4, 0.1, 0, 0, 0)),
+    "equilibrium under kN": lambda: bd.equilibrium(rotor((0, -0.4, 0.1, 0, 0, 0))),
+    "stiffness in N/µm": lambda: sagging(100.0),
+    "gravity in g": lambda: held().gravity((0, -1.0, 0)),
+    "cage at 90 degrees": lambda: ball().stiffness([0, -1e-5, 0, 0, 0, 0], angle=90.0),
+    "displacement with its cage in degrees": lambda: ball().displacement((0, -400.0, 0, 0, 0, 0), 90.0),
+    "shapes at moduli in MPa": lambda: bd.Layer(
+        0.026, 0.028, 0.016, bd.Maxwell(1e6, [2e6], [1e-3], K=2e9, density=1200.0), moduli=(1.0, 4.0)
+    ),
+    "one branch in MPa": lambda: bd.Maxwell(1e6, [2.0], [1e-3], K=2e9, density=1200.0),
+    "WLF in kelvin": lambda: bd.material.WLF(8.86, 101.6, 293.0),
+    "shift table in kelvin": lambda: bd.material.ShiftTable((273.0, 293.0, 313.0), (1.0, 0.0, -1.0), 293.0),
+    "activation energy in kJ/mol": lambda: bd.material.Arrhenius(120.0, 20.0),
+    "vertical shift in kelvin": lambda: bd.material.RhoT(293.0),
+    "seals in N mm": lambda: friction(
+        radial=400.0,
+        axial=100.0,
+        speed=100.0,
+        viscosity=2e-5,
+        bore=0.025,
+        outside=0.052,
+        C0=7800.0,
+        seals=30.0,
+    ),
+    "reference in mm": lambda: bd.RigidSurface("x-", (5.0, 5.0, 5.0)).place(
+        bd.box_mesh([0, 0.02], [0, 0.02], [0, 0.02])
+    ),
+    "cylinder in mm": lambda: bd.Cylinder(26.0),
+    "groove's arm in mm": lambda: bd.Groove(bd.Cylinder(0.02), 20.5),
+    "microphones in mm": lambda: bd.sound.hemisphere_positions(1000.0),
+    "machine in mm": lambda: bd.sound.box_positions((0, 0, 0), (100.0, 100.0, 100.0)),
+    "velocity in mm/s": lambda: bd.sound.vibration_severity(4.5 * np.sin(0.1 * np.arange(20000)), 10000.0),
+    "signal at 48 kHz": lambda: bd.sound.mean_squares(np.ones(1000), 48.0),
+    "fit's tolerance in per cent": lambda: bd.fit_maxwell(
+        bd.master_curve(bd.read_dma(bd.sample_dma_path())), "auto", K=2e9, density=1150.0, tolerance=2.0
+    ),
 }
 
 

@@ -18,6 +18,7 @@ from bearingdyn.bearing import (
     RIGID,
     BallBearing,
     check_bearing_pressure,
+    check_light,
     lubricated,
     runs_off,
     warn_of_lean,
@@ -265,6 +266,7 @@ def equilibrium(
             if isinstance(term.bearing, BallBearing):
                 check_bearing_pressure(term.bearing, states[term.name].loads, f"bearing {term.name!r}, ")
                 _doubt_lean(term, states[term.name])
+        _doubt_light(bearings, states)
         passage.append(
             {
                 term.name: replace(
@@ -288,6 +290,7 @@ def equilibrium(
     found = Equilibrium(first, x, mean, state if after is None else "after", after, average)
     if isinstance(app, Application):
         warn_of_strained_rubber(app, found.displacement, after)
+        _doubt_way(app, found)
     return found
 
 
@@ -328,6 +331,27 @@ def state_of(source: object) -> dict[str, str]:
     """
     layered = isinstance(source, Equilibrium) and source.system.layers
     return {"layers": source.layers} if isinstance(source, Equilibrium) and layered else {}
+
+
+def _doubt_way(app: Application, found: Equilibrium) -> None:
+    """Warn (UnusualMagnitude) of the place that goes farthest in the equilibrium, where that is far."""
+    places = [f"{part}.{name}" for part, element in app.plan.parts.items() for name in element.interfaces]
+    ways = {place: float(np.linalg.norm(found.displacement(place)[:3])) for place in places}
+    place = max(ways, key=ways.__getitem__)
+    hint = "; is a stiffness in N/µm or kN/mm, or a load in mN?"
+    plausible("static displacement", f"{place}: its way from the unloaded state", ways[place], hint=hint)
+
+
+def _doubt_light(terms: Sequence[BearingTerm], states: Mapping[str, BearingState]) -> None:
+    """Warn (UnusualMagnitude) where all bearings carry as little as of a load in kN."""
+    found: list[tuple[float, BallBearing, str, Array]] = []
+    for term in terms:
+        bearing, loads = term.bearing, states[term.name].loads
+        if isinstance(bearing, BallBearing) and (loads > PARTED).any():
+            found.append((bearing.pressure(float(loads.max())), bearing, term.name, loads))
+    if found:
+        _, bearing, name, loads = max(found, key=lambda one: one[0])
+        check_light(bearing, loads, f"bearing {name!r}, the most loaded one")
 
 
 def _doubt_lean(term: BearingTerm, state: BearingState) -> None:

@@ -78,6 +78,8 @@ class ThermalNetwork:
         ValueError
             For a conductance that is not positive, or a node joined to itself.
         """
+        for end, node in (("a", a), ("b", b)):
+            require(isinstance(node, str) and bool(node), end, node, "it must be the name of a node")
         G = positive(f"conductance of {a!r} to {b!r}", conductance, "it must be positive and finite, in W/K")
         plausible("conductance", f"conductance of {a!r} to {b!r}", G)
         require(a != b, "b", b, "a node cannot be joined to itself")

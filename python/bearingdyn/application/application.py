@@ -22,6 +22,7 @@ from bearingdyn.application.summary import summary
 from bearingdyn.bearing import BallBearing, LooseFit, RowSet
 from bearingdyn.checks import instance, named, require, truth
 from bearingdyn.cms import kept_superelement
+from bearingdyn.parts import FlexibleRing
 from bearingdyn.pictures import picture
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
@@ -395,6 +396,9 @@ class Application:
             if fits:
                 for ring, place in zip(RINGS, (joint.inner, joint.outer), strict=True):
                     check_bearing(joint, ring, place, self.plan.faces(place))
+                    source = self.plan.sources.get(place.part)
+                    if isinstance(source, FlexibleRing) and self.plan.raceway(place) is not None:
+                        source.check_bearing(name, joint.bearing)
                 # the rows of one set must not overlap either
                 others = [*self.plan.bearings.values(), *joints]
                 check_beside(joint, [b for b in others if b.inner.part == ends[0].part], self.plan.faces)

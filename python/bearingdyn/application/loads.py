@@ -78,6 +78,8 @@ class DirectedLoad(Load):
         shape, meaning = ((3,), ACCELERATION) if of_all else ((6,), FORCE)
         object.__setattr__(self, "vector", vector(self._label, self.vector, shape, meaning))
         self._check_magnitudes(1.0, f"{self._label}:")
+        if self.where == GRAVITY:
+            plausible("field of gravity", "gravity", float(np.linalg.norm(self.vector)))
 
     @property
     def _label(self) -> str:

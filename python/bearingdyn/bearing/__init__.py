@@ -16,7 +16,7 @@ from bearingdyn.bearing.contact_damping import (
     TabulatedDamping,
     resultant_damping,
 )
-from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure
+from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_bearing_pressure, check_light
 from bearingdyn.bearing.designation import clearance_range, read_designation
 from bearingdyn.bearing.energy_minimum import NoBalance, minimum
 from bearingdyn.bearing.film_answer import AnswerUnderLoads, FilmAnswer
@@ -119,6 +119,7 @@ __all__ = [
     "catalogue",
     "check_bearing_pressure",
     "check_given",
+    "check_light",
     "clearance_range",
     "contact_modulus",
     "contamination_factor",

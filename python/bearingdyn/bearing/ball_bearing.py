@@ -605,7 +605,7 @@ class BallBearing:
         """
         f = vector("load", load, (6,), "(Fx, Fy, Fz, Mx, My, Mz) on the inner ring in N and N m")
         check_load("load", f)
-        angle = number("angle", angle, "it must be a finite angle in rad")
+        angle = plausible("turned angle", "angle", angle, "it must be a finite angle in rad")
         turn = self.angle0 + angle
         R = self.arm
         target = np.array([f[0], f[1], f[2], -f[4] / R, f[3] / R])
@@ -650,6 +650,7 @@ class BallBearing:
     def _checked(self, q: ArrayLike, angle: float, velocity: ArrayLike, speed: float) -> _Response:
         """`_evaluate` at a motion that a bearing can make."""
         check_motion("q", vector("q", q, (6,), _MOTION))
+        plausible("turned angle", "angle", angle, "it must be a finite angle in rad")
         return self._evaluate(q, angle, velocity, speed)
 
     def _evaluate(self, q: ArrayLike, angle: float, velocity: ArrayLike, speed: float) -> _Response:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.ball_inertia import Running
-from bearingdyn.checks import instance, require, vector
+from bearingdyn.checks import instance, reals, require, vector
 from bearingdyn.notice import UnloadedBearing, warn
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -98,6 +98,6 @@ def without_spin(stiffness: ArrayLike) -> Array:
     ValueError
         If the last two axes are not 6 long.
     """
-    K = np.asarray(stiffness, dtype=np.float64)
+    K = reals("stiffness", stiffness, "it must be real numbers, its last two axes 6 long")
     require(K.shape[-2:] == (6, 6), "stiffness", K.shape, "its last two axes must be 6 long")
     return K[..., :5, :5]

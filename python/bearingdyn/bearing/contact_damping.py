@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing.film_answer import FilmAnswer
 from bearingdyn.bearing.film_thickness import moes_groups
 from bearingdyn.bearing.hertz import PointContact, resultant_deflection_coefficient
-from bearingdyn.checks import nonnegative, number, positive, require, vector
+from bearingdyn.checks import nonnegative, number, positive, require, two, vector
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
@@ -38,6 +38,8 @@ def resultant_damping(inner: tuple[float, float], outer: tuple[float, float]) ->
     ValueError
         If κ is not positive or c negative.
     """
+    remedy = "it must be (κ, c) in N/m^1.5 and N s/m"
+    inner, outer = two("inner", inner, remedy), two("outer", outer, remedy)
     kappa = resultant_deflection_coefficient(inner[0], outer[0])
     return math.fsum(nonnegative("c", c) * math.pow(kappa / k, 4 / 3) for k, c in (inner, outer))
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.notice import BearingWarning, warn
-from bearingdyn.plausible_ranges import MAGNITUDES
+from bearingdyn.plausible_ranges import MAGNITUDES, plausible
 from bearingdyn.types import Array
 
 STATIC_PRESSURE = MAGNITUDES["pressure"].usual[1]
@@ -77,3 +77,29 @@ def check_bearing_pressure(bearing: Contacts, loads: Array, who: str = "") -> No
     p = peaks[race] * np.cbrt(loads)
     if not (p <= STATIC_PRESSURE).all():
         check_pressure(race, p, who, bearing.static_rating)
+
+
+def check_light(bearing: Contacts, loads: Array, what: str = "load") -> None:
+    """Check that loads of the balls, any shape, N, are no bearing's in kN.
+
+    Parameters
+    ----------
+    bearing
+        With its contacts and static rating.
+    loads
+        Of the balls, N.
+    what
+        What the message begins with.
+
+    Warns
+    -----
+    UnusualMagnitude
+        Where the most loaded ball bears less than 5e-4 of what the static rating allows.
+    """
+    Q = float(loads.max(initial=0.0))
+    if not Q > 0:
+        return
+    highest = max(bearing.inner_contact.pressure(Q), bearing.outer_contact.pressure(Q))
+    share = (highest / STATIC_PRESSURE) ** 3
+    text = f"{what}: the heaviest ball bears {Q:.3g} N; over what the static rating allows, that"
+    plausible("share of the static rating", text, share, hint="; is the load in kN?")

@@ -57,8 +57,9 @@ class Geometry:
     def __post_init__(self) -> None:
         n = number("Z", self.Z, "it must be a whole number of balls, at least 3")
         require(n >= 3 and n == int(n), "Z", self.Z, "it must be a whole number of balls, at least 3")
-        positive("Dw", self.Dw, "it must be positive and finite, in m")
-        positive("Dpw", self.Dpw, "it must be positive and finite, in m")
+        for name in ("Dw", "Dpw"):
+            size = positive(name, getattr(self, name), "it must be positive and finite, in m")
+            object.__setattr__(self, name, size)
         plausible("ball diameter", "Dw", self.Dw)
         plausible("pitch diameter", "Dpw", self.Dpw)
         require(

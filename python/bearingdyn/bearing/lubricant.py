@@ -9,7 +9,7 @@ from typing import Literal
 from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent
 from bearingdyn.checks import nonnegative, number, positive, require
 from bearingdyn.pictures import page
-from bearingdyn.plausible_ranges import plausible
+from bearingdyn.plausible_ranges import MAGNITUDES, plausible
 
 _ZERO_CELSIUS = 273.15
 # lg lg(ν + 0.7) at 2 and at 2e7 mm²/s, between which the constant 0.7 holds (ASTM D341)
@@ -109,6 +109,7 @@ class Walther:
                 f"{10 ** ((self.A - y) / self.B) - _ZERO_CELSIUS:.0f}" for y in (_MOST, _LEAST)
             )
             remedy = f"outside the viscosity law of this oil (2 to 2e7 mm²/s), which holds in {limits} °C"
+            remedy += MAGNITUDES["oil temperature"].guess(float(T))
             require(False, "T", T, remedy)
         return float((10 ** (10**double_log) - 0.7) * 1e-6)
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from bearingdyn.bearing import ehl
 from bearingdyn.bearing.ball_bearing import BallBearing
 from bearingdyn.bearing.contact_damping import FILM_NODES, FilmDamping
+from bearingdyn.bearing.contact_pressure import check_light
 from bearingdyn.bearing.film_answer import FilmAnswer, in_series
 from bearingdyn.bearing.film_thickness import YIELDING, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.hertz import PointContact
@@ -158,6 +159,7 @@ def lubricate(
     dry = dataclasses.replace(bearing, film=0.0, lubrication=None)
     state = load_distribution(dry, dry.displacement(load))
     require(state.loaded > 0, "load", load, "no ball is loaded: there is no contact to lubricate")
+    check_light(bearing, state.load_inner)
     Q = float(state.load_inner.sum() / state.loaded)
     angle = float(state.angle_inner[int(state.load_inner.argmax())])
     return lubricated(bearing, supply, Q, angle, law=law, method=method, roughness=sigma)

@@ -145,6 +145,13 @@ class Mounting:
         thermal = warm_o * race_o - warm_i * race_i - 2 * self.ball_expansion * self.balls * bearing.Dw
         return thermal - grown - shrunk
 
+    def _check_boundary(self, bearing: BallBearing) -> None:
+        """Raise ValueError for fits of another bearing, by its boundary dimensions where they are known."""
+        known = bearing.boundary or (self.bore, self.outside)
+        for name, own, its in zip(("bore", "outside"), (self.bore, self.outside), known, strict=False):
+            remedy = f"the bearing's is {its:.6g} m: give the bearing's own bore and outside"
+            require(math.isclose(own, its, rel_tol=0.01), name, own, remedy)
+
     def mounted(self, bearing: BallBearing) -> BallBearing:
         """The bearing with the clearance, or the free contact angle, that is left.
 
@@ -159,6 +166,7 @@ class Mounting:
             Where the clearance left is negative.
         """
         require(isinstance(bearing, BallBearing), "bearing", bearing, "give a BallBearing")
+        self._check_boundary(bearing)
         left = bearing.geometry.Pd + self.clearance_change(bearing)
         why = "fits and temperatures leave less than none; choose looser fits or a larger clearance"
         if bearing.clearance is not None:

@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import reals
 from bearingdyn.types import Array
 
 # Largest accepted |A_ij ∓ A_ji| over the largest |A|. The round-off of a congruence of 1e5 coordinates is
@@ -17,7 +18,7 @@ SYMMETRY = 1e-9
 
 def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     """A part's matrix or vector frozen, a read-only copy; ValueError for a wrong shape or entry."""
-    array = np.array(value, dtype=np.float64)
+    array = reals(name, value, f"it must be real numbers, {shape}")
     if array.shape != shape:
         raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
     if not np.isfinite(array).all():
@@ -28,8 +29,11 @@ def frozen(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 def frozen_sparse(name: str, value: Any, n: int, columns: int | None = None) -> scipy.sparse.csr_matrix:
     """A part's sparse matrix (csr), to be frozen; ValueError for another shape or a non-finite entry."""
-    matrix = scipy.sparse.csr_matrix(value, dtype=np.float64)
     shape = (n, n if columns is None else columns)
+    try:
+        matrix = scipy.sparse.csr_matrix(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} is {value!r}; it must be real numbers, {shape}") from None
     if matrix.shape != shape:
         raise ValueError(f"{name} has shape {matrix.shape}; it must be {shape}")
     if not np.isfinite(matrix.data).all():

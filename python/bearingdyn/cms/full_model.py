@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bearingdyn.checks import instance, items, named, truth
 from bearingdyn.cms.frozen_matrices import check_symmetry, frozen, frozen_sparse
 from bearingdyn.cms.superelement import Superelement
 from bearingdyn.cms.viscoelastic import Viscoelastic
@@ -107,7 +108,8 @@ class FullModel:
                 check_symmetry(name, A, sign)
                 object.__setattr__(self, name, A)
         owner: dict[int, str] = {}
-        for name, face in self.interfaces.items():
+        for name, face in named("interfaces", self.interfaces, "it must map names to RigidInterface").items():
+            instance(f"interfaces[{name!r}]", face, RigidInterface, "it must be a RigidInterface")
             for i in face.dofs.tolist():
                 if not 0 <= i < n:
                     raise ValueError(f"interfaces[{name!r}] holds index {i}; it must lie in 0...{n - 1}")
@@ -115,16 +117,19 @@ class FullModel:
                     raise ValueError(f"interfaces {owner[i]!r} and {name!r} share coordinate {i}; move one")
         object.__setattr__(self, "interfaces", dict(self.interfaces))
         outputs: dict[str, Any] = {}
-        for name, rows in self.outputs.items():
+        for name, rows in named("outputs", self.outputs, "it must map names to rows").items():
             if name in self.interfaces:
                 raise ValueError(f"outputs has {name!r}, the name of an interface; choose another")
-            count = rows.shape[0] if hasattr(rows, "shape") else len(rows)
+            count = (*np.shape(rows), 0)[0]
             if count not in (3, 6):
                 raise ValueError(f"outputs[{name!r}] has {count} rows; it must have 3 or 6")
             outputs[name] = frozen_sparse(f"outputs[{name!r}]", rows, count, n)
         object.__setattr__(self, "outputs", outputs)
-        object.__setattr__(self, "viscoelastic", tuple(self.viscoelastic))
+        listed = items("viscoelastic", self.viscoelastic, "it must be a list of Viscoelastic")
+        object.__setattr__(self, "viscoelastic", tuple(listed))
+        object.__setattr__(self, "grounded", truth("grounded", self.grounded))
         for i, part in enumerate(self.viscoelastic):
+            instance(f"viscoelastic[{i}]", part, Viscoelastic, "it must be a Viscoelastic")
             if part.H.shape != (n, n):
                 raise ValueError(f"viscoelastic[{i}].H has shape {part.H.shape}; it must be ({n}, {n})")
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import instance, numbers, require, whole
+from bearingdyn.checks import instance, name_list, number, numbers, require, truth, whole
 from bearingdyn.cms.basis import Basis, orthogonalise
 from bearingdyn.cms.dynamic_stiffness import Dynamics, Transfer
 from bearingdyn.cms.full_model import FullModel
@@ -120,7 +120,9 @@ def reduction_error(
     whole("solves", solves, 3, remedy="the estimate needs a whole number of 3 or more")
     instance("model", model, FullModel, "it must be the full model of a part, part.full_model()")
     instance("basis", basis, Basis, "it must be a bd.cms.Basis, as craig_bampton makes it")
+    damping = number("damping", damping, "it must be a damping ratio, 0 <= damping < 1")
     case = _Case(model, basis, loads, fixed, damping, held)
+    exact = truth("exact", exact)
     omega = 2.0 * np.pi * f
     reduced = [case.response(t) for t in case.reduced(basis, omega)]
     if exact:
@@ -129,16 +131,16 @@ def reduction_error(
 
     order = np.argsort(f)
     chosen = sorted({int(order[0]), int(order[-1]), int(order[f.size // 2])})
-    shapes, truth = [], {}
+    shapes, true = [], {}
     for i in chosen:
         transfer, *motion = case.dynamics.solve(omega[i])
         shapes.append(np.hstack(motion))
-        truth[i] = case.response(transfer)
+        true[i] = case.response(transfer)
     estimate: Array | None = None
     while True:
         larger = case.enlarged(basis, shapes, omega[chosen])
         full = [case.response(t) for t in case.reduced(larger, omega)]
-        for i, response in truth.items():
+        for i, response in true.items():
             full[i] = response
         last, estimate = estimate, _relative(reduced, full)
         if len(chosen) >= min(solves, f.size):
@@ -153,7 +155,7 @@ def reduction_error(
             new = _widest_gap(f, chosen)
         transfer, *motion = case.dynamics.solve(omega[new])
         shapes.append(np.hstack(motion))
-        truth[new] = case.response(transfer)
+        true[new] = case.response(transfer)
         chosen.append(new)
     return ReductionError(f, estimate, False, np.sort(f[chosen]))
 
@@ -187,6 +189,8 @@ class _Case:
         held: str | None,
     ) -> None:
         known = [*model.interfaces, *model.outputs]
+        fixed = name_list("fixed", fixed, "interfaces")
+        loads = None if loads is None else name_list("loads", loads, "interfaces and outputs")
         for name in [*(loads or ()), *fixed]:
             if name not in known or (name in fixed and name not in model.interfaces):
                 raise ValueError(f"loads or fixed has {name!r}; interfaces and outputs are {known}")

@@ -87,7 +87,10 @@ def check_held(held: str | None, interfaces: Iterable[str]) -> None:
     ValueError
         For an unknown name.
     """
-    known = sorted(interfaces)
+    try:
+        known = sorted(interfaces)
+    except TypeError:
+        raise ValueError(f"interfaces is {interfaces!r}; it must be a mapping of names") from None
     require(held is None or held in known, "held", held, f"the interfaces are {known}")
 
 
@@ -128,6 +131,9 @@ def check_moduli(moduli: Sequence[float]) -> tuple[float, ...]:
     """
     remedy = "it must hold one or more positive shear moduli, Pa"
     values = tuple(numbers("moduli", moduli, remedy).tolist())
+    for value in values:
+        if value > 0:
+            plausible("shear modulus", "moduli", value)
     good = bool(values) and all(0 < G < math.inf for G in values)
     require(good, "moduli", values, "it must hold one or more positive shear moduli, Pa")
     return values

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import NoneType
 
 import numpy as np
 
+from bearingdyn.checks import instance, items, named, reals
 from bearingdyn.cms.frozen_matrices import check_symmetry, frozen
 from bearingdyn.cms.raceway import Raceway
 from bearingdyn.cms.radiating_surface import Skin, Surface
@@ -86,7 +88,8 @@ class Superelement:
 
         taken: dict[int, str] = {}
         interfaces: dict[str, Index] = {}
-        for name, given in self.interfaces.items():
+        remedy = "it must be a mapping, name -> 6 integers"
+        for name, given in named("interfaces", self.interfaces, remedy).items():
             index = np.array(given)
             if index.shape != (6,) or not np.issubdtype(index.dtype, np.integer):
                 raise ValueError(
@@ -104,35 +107,44 @@ class Superelement:
         object.__setattr__(self, "interfaces", interfaces)
 
         outputs: dict[str, Array] = {}
-        for name, rows in self.outputs.items():
+        for name, given in named("outputs", self.outputs, "it must be a mapping, name -> rows").items():
             if name in interfaces:
-                raise ValueError(f"outputs has {name!r}, the name of an interface ; choose another")
-            count = np.shape(rows)[0] if np.ndim(rows) else 0
+                raise ValueError(f"outputs has {name!r}, the name of an interface; choose another")
+            rows = reals(f"outputs[{name!r}]", given, f"it must be real numbers, (3 or 6, {n})")
+            count = rows.shape[0] if rows.ndim else 0
             if count not in (3, 6):
-                raise ValueError(f"outputs[{name!r}] has shape {np.shape(rows)}; it must be (3 or 6, {n})")
+                raise ValueError(f"outputs[{name!r}] has shape {rows.shape}; it must be (3 or 6, {n})")
             outputs[name] = frozen(f"outputs[{name!r}]", rows, (count, n))
         object.__setattr__(self, "outputs", outputs)
 
-        object.__setattr__(self, "surfaces", dict(self.surfaces))
+        object.__setattr__(self, "surfaces", named("surfaces", self.surfaces, "it must map names to Surface"))
         for name, surface in self.surfaces.items():
+            instance(f"surfaces[{name!r}]", surface, Surface, "it must be a Surface")
             if surface.W.shape != (n, n):
                 raise ValueError(f"surfaces[{name!r}].W has shape {surface.W.shape}; it must be ({n}, {n})")
 
+        instance("skin", self.skin, (Skin, NoneType), "it must be a Skin, or None")
         if self.skin is not None and self.skin.rows.shape[1] != n:
             raise ValueError(f"skin.rows has {self.skin.rows.shape[1]} columns, not {n}")
 
-        object.__setattr__(self, "viscoelastic", tuple(self.viscoelastic))
+        listed = items("viscoelastic", self.viscoelastic, "it must be a list of Viscoelastic")
+        object.__setattr__(self, "viscoelastic", tuple(listed))
         for i, part in enumerate(self.viscoelastic):
+            instance(f"viscoelastic[{i}]", part, Viscoelastic, "it must be a Viscoelastic")
             if part.H.shape != (n, n):
                 raise ValueError(f"viscoelastic[{i}].H has shape {part.H.shape}; it must be ({n}, {n})")
 
-        for name, raceway in self.raceways.items():
+        for name, raceway in named("raceways", self.raceways, "it must map names to Raceway").items():
+            instance(f"raceways[{name!r}]", raceway, Raceway, "it must be a Raceway")
             if name in interfaces or name in outputs:
                 raise ValueError(f"raceways has {name!r}, the name of an interface or output; choose another")
             if raceway.rows.shape[1] != n:
                 raise ValueError(f"raceways[{name!r}].rows has {raceway.rows.shape[1]} columns, not {n}")
 
-        object.__setattr__(self, "faces", {name: tuple(found) for name, found in self.faces.items()})
+        remedy = "it must map names to lists of RoundFace"
+        given = named("faces", self.faces, remedy)
+        faces = {name: tuple(items(f"faces[{name!r}]", found, remedy)) for name, found in given.items()}
+        object.__setattr__(self, "faces", faces)
         for name in self.faces:
             if name not in interfaces and name not in self.raceways:
                 known = sorted([*interfaces, *self.raceways])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bearingdyn.checks import items, numbers, require
 from bearingdyn.types import Array
 
 
@@ -40,7 +41,10 @@ def group_isotherms(temperature: ArrayLike, run: ArrayLike | None = None) -> NDA
     Array
         (n,), 0 the coldest.
     """
-    T = np.asarray(temperature, dtype=float)
+    T = numbers("temperature", temperature, "it must be a list of temperatures, °C")
+    if run is not None:
+        names = np.asarray(items("run", run, "it must be a list of names"))
+        require(names.shape == T.shape, "run", run, f"it must be {T.size} names, one a temperature")
     if run is None:
         return _cut_at_gaps(T)
     labels = np.zeros(T.size, dtype=np.int64)

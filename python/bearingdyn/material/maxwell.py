@@ -33,13 +33,14 @@ from bearingdyn.material.reach_of_data import warn_before, warn_beyond
 from bearingdyn.material.retuning import Retunable
 from bearingdyn.material.shift_laws import Law, RhoT, law_from_dict, law_to_dict, moved_shift
 from bearingdyn.material.spread import Drawable, Spread
-from bearingdyn.notice import warn
+from bearingdyn.notice import UnusualMagnitude, warn
 from bearingdyn.pictures import picture
 from bearingdyn.plausible_ranges import check_bulk, check_density, check_waves, plausible
 from bearingdyn.types import Array, Complex
 from bearingdyn.units import takes
 
 _ROUNDING = 1.001  # of the edges of a band
+UNSEEN = 1e-5  # of G0: below what any measurement resolves, and what MPa for Pa leave of a branch
 
 
 def _branches(name: str, values: ArrayLike) -> Array:
@@ -238,6 +239,13 @@ class Maxwell(Retunable, Softening, Drawable):
             positive(f"Maxwell.tau[{i}]", tau, "it must be positive and finite, s")
             plausible("branch modulus", f"Maxwell.G[{i}]", G)
             plausible("relaxation time", f"Maxwell.tau[{i}]", tau)
+        branches = float(self.G.sum())
+        if 0 < branches < UNSEEN * self.G0:
+            warn(
+                f"Maxwell.G is {branches:.4g} Pa in all, {branches / self.G0:.2g} of G0, {self.G0:.4g} Pa: "
+                "such branches change nothing; is G in MPa?",
+                UnusualMagnitude,
+            )
         if not self.G0 + self.eta0 + self.G.sum() > 0:
             raise ValueError(
                 "Maxwell: G0, every G and eta0 are zero: the material would carry no shear at all"

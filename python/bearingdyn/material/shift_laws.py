@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from bearingdyn.checks import nonnegative, number, positive, reals, require, vector
 from bearingdyn.notice import OutsideIsotherms, warn
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
@@ -50,6 +51,7 @@ def _above_zero(field: str, T: float) -> None:
     """ValueError unless T is a finite temperature above absolute zero, °C."""
     remedy = f"it must lie above -{ZERO_CELSIUS} °C and be finite"
     require(number(field, T, remedy) > -ZERO_CELSIUS, field, T, remedy)
+    plausible("temperature", field, T)
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ class WLF:
         _check_range("WLF", self.measured)
         if self.covariance is not None:
             vector("WLF.covariance", self.covariance, (2, 2), "of C1 and C2")
-        number("WLF.T_ref", self.T_ref, "it must be a finite temperature, °C")
+        plausible("temperature", "WLF.T_ref", self.T_ref)
         positive("WLF.C1", self.C1)
         positive("WLF.C2", self.C2, "it must be positive and finite, K")
 
@@ -144,7 +146,8 @@ class Arrhenius:
         _check_range("Arrhenius", self.measured)
         if self.variance is not None:
             nonnegative("Arrhenius.variance", self.variance)
-        positive("Arrhenius.Ea", self.Ea, "it must be positive and finite, J/mol")
+        Ea = positive("Arrhenius.Ea", self.Ea, "it must be positive and finite, J/mol")
+        plausible("activation energy", "Arrhenius.Ea", Ea)
         _above_zero("Arrhenius.T_ref", self.T_ref)
 
     def log_shift(self, T: ArrayLike) -> Array:
@@ -195,8 +198,11 @@ class Joined:
 
     def __post_init__(self) -> None:
         _check_range("Joined", self.measured)
+        if self.covariance is not None:
+            vector("Joined.covariance", self.covariance, (4, 4), "of C1, C2, Tg and Ea")
         for name, unit in (("C1", ""), ("C2", ", K"), ("Ea", ", J/mol")):
             positive(f"Joined.{name}", getattr(self, name), f"it must be positive and finite{unit}")
+        plausible("activation energy", "Joined.Ea", self.Ea)
         _above_zero("Joined.Tg", self.Tg)
         _above_zero("Joined.T_ref", self.T_ref)
 
@@ -246,7 +252,7 @@ class ShiftTable:
             values = reals(f"ShiftTable.{name}", getattr(self, name), "it must be numbers, one a temperature")
             require(values.ndim == 1, f"ShiftTable.{name}", getattr(self, name), "give a list of numbers")
             object.__setattr__(self, name, tuple(values.tolist()))
-        object.__setattr__(self, "T_ref", number("ShiftTable.T_ref", self.T_ref))
+        object.__setattr__(self, "T_ref", plausible("temperature", "ShiftTable.T_ref", self.T_ref))
         if len(self.T) != len(self.log_aT) or len(self.T) < 2:
             raise ValueError(
                 f"ShiftTable: {len(self.T)} temperatures and {len(self.log_aT)} shifts; "
@@ -302,6 +308,7 @@ class RhoT:
 
     def __post_init__(self) -> None:
         _above_zero("RhoT.T_ref", self.T_ref)
+        number("RhoT.expansion", self.expansion)
         require(
             0 <= self.expansion < 1e-2,
             "RhoT.expansion",

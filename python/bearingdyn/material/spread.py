@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bearingdyn.checks import name_list, nonnegative, real, require
+from bearingdyn.checks import name_list, nonnegative, real, reals, require
 from bearingdyn.material.log_parameters import moved, place_of
 from bearingdyn.material.random_numbers import normals
 from bearingdyn.plausible_ranges import plausible
@@ -70,7 +70,7 @@ class Spread:
             require(
                 known and plain != name, "Spread.names", name, "it must be ln G0, ln G1, ln tau1 … or ln eta0"
             )
-        C = real(self.covariance)
+        C = reals("Spread.covariance", self.covariance, "it must be real numbers")
         p = len(names)
         require(C.shape == (p, p), "Spread.covariance", C.shape, f"its shape must be {(p, p)}, as the names")
         scale = float(np.abs(C).max(initial=0.0))

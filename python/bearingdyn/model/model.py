@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from bearingdyn import analysis
 from bearingdyn.analysis import Equilibrium, equilibrium
 from bearingdyn.application import Application
-from bearingdyn.checks import instance, items, meant
+from bearingdyn.checks import instance, items, meant, named, require
 from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 
@@ -59,7 +59,9 @@ class Analysis:
 
     def __post_init__(self) -> None:
         known = analyses()
-        if self.kind not in known:
+        require(isinstance(self.name, str) and bool(self.name), "name", self.name, "it must be a word")
+        named("arguments", self.arguments, "it must be a mapping, argument -> value")
+        if not isinstance(self.kind, str) or self.kind not in known:
             raise ValueError(f"type is {self.kind!r}; {meant(str(self.kind), known)}")
         wanted = inspect.signature(known[self.kind]).parameters
         allowed = list(wanted)[1:]
@@ -113,6 +115,9 @@ class Model:
 
     def __post_init__(self) -> None:
         instance("application", self.application, Application, "it must be an Application (bd.Application())")
+        instance("title", self.title, str, "it must be a text")
+        for name in ("state", "parameters", "materials", "places"):
+            named(name, getattr(self, name), "it must be a mapping with names as keys")
         for k, asked in enumerate(items("analyses", self.analyses, "it must be a list of bd.Analysis")):
             remedy = 'it must be a bd.Analysis(name, kind, arguments), as bd.Analysis("modes", "modes")'
             instance(f"analyses[{k}]", asked, Analysis, remedy)

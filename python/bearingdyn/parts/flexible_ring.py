@@ -15,6 +15,7 @@ from bearingdyn.bearing import BallBearing, Waviness
 from bearingdyn.checks import instance, one_of, positive, require, whole
 from bearingdyn.cms import RoundFace, Superelement
 from bearingdyn.material import STEEL, Elastic
+from bearingdyn.notice import FitWarning, warn
 from bearingdyn.parts.bore_shape import BoreShape
 from bearingdyn.parts.layer import Layer
 from bearingdyn.parts.outline import Outline
@@ -267,6 +268,34 @@ class FlexibleRing:
                 f"or state a smaller load"
             )
 
+    def check_bearing(self, name: str, bearing: BallBearing) -> None:
+        """Check a bearing that is hung in a ring made by its arm alone, which knew no balls.
+
+        Raises
+        ------
+        ValueError
+            Where the balls cannot run on the race.
+
+        Warns
+        -----
+        FitWarning
+            Where the contact is as large as the ring, or longer than its groove.
+        """
+        if self.bearing is not None:
+            return
+        try:
+            self._check_race(bearing)
+        except ValueError as error:
+            raise ValueError(f"bearing {name!r} in a FlexibleRing: {error}") from None
+        length = 2.0 * self._footprint_of(bearing).half_length
+        if not length < min(2.0 * self.wall, self.track):
+            warn(
+                f"bearing {name!r} in a FlexibleRing: its contact is {1e3 * length:.3g} mm long, the ring "
+                f"{1e3 * self.wall:.3g} mm thick under it and the groove {1e3 * self.track:.3g} mm wide: "
+                "Hertz's law is of thick bodies; make the ring thicker, or with bearing= and a load",
+                FitWarning,
+            )
+
     @classmethod
     def of(cls, bearing: BallBearing, **keywords: Any) -> FlexibleRing:
         """The outer ring of a bearing, or with race="inner" the inner one, with its groove, from its boundary
@@ -319,12 +348,13 @@ class FlexibleRing:
     @cached_property
     def footprint(self) -> Footprint | None:
         """Where the balls touch; None without a bearing."""
-        if self.bearing is None:
-            return None
-        angle = self.bearing.contact_angle or 0.0
+        return None if self.bearing is None else self._footprint_of(self.bearing)
+
+    def _footprint_of(self, bearing: BallBearing) -> Footprint:
+        angle = bearing.contact_angle or 0.0
         load = self.load
         if load is None:
-            load = 1.25 * self.bearing.static_rating / (self.bearing.Z * math.cos(angle))
+            load = 1.25 * bearing.static_rating / (bearing.Z * math.cos(angle))
         # from the groove's centre towards the ring
         away = -1.0 if self.inner else 1.0
         race = self.r_outer if self.inner else self.r_inner
@@ -334,8 +364,8 @@ class FlexibleRing:
             centre = race + away * (self.depth - self.groove_radius)
             reach = away * self.groove_radius
             at = (centre + reach * math.cos(angle), reach * math.sin(angle))
-        side = -1.0 if self.bearing.open_side == "+z" else 1.0
-        contact = self.bearing.inner_contact if self.inner else self.bearing.outer_contact
+        side = -1.0 if bearing.open_side == "+z" else 1.0
+        contact = bearing.inner_contact if self.inner else bearing.outer_contact
         return Footprint((at[0], side * at[1]), side * angle, contact.semi_axes(load)[0])
 
     @cached_property

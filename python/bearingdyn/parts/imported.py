@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse
 from scipy.sparse.csgraph import connected_components
 
+from bearingdyn.checks import instance, named
 from bearingdyn.cms import (
     F_MAX,
     FullModel,
@@ -24,6 +25,7 @@ from bearingdyn.cms import (
 from bearingdyn.fem import FEMatrices
 from bearingdyn.parts.node_set import NodeSet
 from bearingdyn.pictures import page
+from bearingdyn.plausible_ranges import check_reference
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array
 
@@ -66,6 +68,11 @@ class Imported:
     _repr_html_ = page
 
     def __post_init__(self) -> None:
+        instance("matrices", self.matrices, FEMatrices, "it must be of bd.read_matrices(…)")
+        remedy = "it must be a mapping, name -> NodeSet"
+        for name, face in named("interfaces", self.interfaces, remedy).items():
+            instance(f"interfaces[{name!r}]", face, NodeSet, "it must be a bd.NodeSet(…)")
+        named("outputs", self.outputs, "it must be a mapping, name -> node or (x, y, z)")
         if self.matrices.points is None:
             raise ValueError("matrices has no points; pass the nodes' positions when they are read")
         check_damping(self.damping)
@@ -142,8 +149,7 @@ class Imported:
                 raise ValueError(f"{where} has no nodes; the positions run from {p.min(0)} to {p.max(0)} m")
             given = p[rows].mean(axis=0) if chosen.reference is None else chosen.reference
             reference = np.asarray(given, dtype=np.float64)
-            if reference.shape != (3,) or not np.isfinite(reference).all():
-                raise ValueError(f"{where} has the reference {chosen.reference!r}; it must be (x, y, z), m")
+            check_reference(f"the reference of {where}", reference, p)
             dofs = np.flatnonzero(np.isin(place[:, 0], rows))
             T = self.matrices.rigid_motion(reference)[dofs]
             size = float(np.linalg.norm(T[:, 3:], axis=0).max())

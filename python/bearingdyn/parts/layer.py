@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import nonnegative, one_of, positive, require, vector
+from bearingdyn.checks import nonnegative, one_of, positive, reals, require, vector
 from bearingdyn.cms import RoundFace, Superelement, check_moduli
 from bearingdyn.fem import (
     NoBalance,
@@ -308,7 +308,7 @@ class Layer:
         relative
             (..., 6) motion of one interface against the other, m and rad. Returns (...,).
         """
-        q = np.asarray(relative, dtype=np.float64)
+        q = _motion(relative)
         ends = [
             np.hypot(q[..., 0] + s * q[..., 4], q[..., 1] - s * q[..., 3])
             for s in (-0.5 * self.width, 0.5 * self.width)
@@ -366,9 +366,7 @@ class Layer:
             the layer's middle surface (within 0.1 % in azimuth). Returns (...,). The strain at the bonded
             corners is higher.
         """
-        q = np.asarray(relative, dtype=np.float64)
-        if q.shape[-1:] != (6,):
-            raise ValueError(f"relative has shape {q.shape}; it must be (..., 6): x, y, z, θx, θy, θz")
+        q = _motion(relative)
         phi = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
         r = 0.5 * (self.r_inner + self.r_outer)
         edges = [
@@ -378,3 +376,11 @@ class Layer:
         rho = np.concatenate(edges)
         u = q[..., None, :3] + np.cross(q[..., None, 3:], rho)
         return np.asarray(np.linalg.norm(u, axis=-1).max(axis=-1) / self.thickness)
+
+
+def _motion(relative: ArrayLike) -> Array:
+    """(..., 6) motion of one interface against the other, m and rad."""
+    q = reals("relative", relative, "it must be real numbers, (..., 6): x, y, z, θx, θy, θz")
+    if q.shape[-1:] != (6,):
+        raise ValueError(f"relative has shape {q.shape}; it must be (..., 6): x, y, z, θx, θy, θz")
+    return q

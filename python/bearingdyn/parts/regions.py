@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from bearingdyn.checks import truth
 from bearingdyn.fem import Rectangle, RevolutionMesh
 from bearingdyn.material import Elastic
 from bearingdyn.plausible_ranges import plausible
@@ -68,6 +69,8 @@ class Region:
 
     def __post_init__(self) -> None:
         Rectangle(self.r, self.z)
+        if self.graded is not None:
+            truth("graded", self.graded)
         plausible("length", "r[1]", self.r[1])
         plausible("length", "z[1] - z[0]", self.z[1] - self.z[0])
         _check_material(self.material)

@@ -6,12 +6,13 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import NoneType
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import named, require, vector, whole
+from bearingdyn.checks import instance, items, named, require, vector, whole
 from bearingdyn.cms import (
     Basis,
     FullModel,
@@ -45,7 +46,7 @@ from bearingdyn.parts.quasi_static_modulus import quasi_static, quasi_static_bul
 from bearingdyn.parts.raceway_shapes import Order, PortShapes, port_shapes
 from bearingdyn.parts.regions import Patch, Region, is_rubber, soft_elements
 from bearingdyn.parts.revolved_drawing import section_profile, surface_outline
-from bearingdyn.parts.revolved_faces import Cylinder, EndFace, Face, Groove
+from bearingdyn.parts.revolved_faces import FACES, Cylinder, EndFace, Face, Groove
 from bearingdyn.parts.revolved_full import full_basis, full_model
 from bearingdyn.parts.revolved_joints import RIGID_SHAPES, Boundaries, find_boundaries
 from bearingdyn.parts.revolved_matrices import reduced
@@ -127,7 +128,16 @@ class Revolved:
     _repr_html_ = page
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "regions", tuple(self.regions))
+        object.__setattr__(
+            self, "regions", tuple(items("regions", self.regions, "it must be a list of Region"))
+        )
+        instance("prestress", self.prestress, (Prestress, NoneType), "it comes of assembled(…)")
+        instance("section", self.section, (RevolutionMesh, NoneType), "it must be of bd.quadrilaterals(…)")
+        for name, face in named("interfaces", self.interfaces, "it must be a mapping, name -> face").items():
+            remedy = "it must be a Cylinder, EndFace, Line, Where or MeshNodes"
+            instance(f"interfaces[{name!r}]", face, FACES, remedy)
+        for name, groove in named("grooves", self.grooves, "it must be a mapping, name -> Groove").items():
+            instance(f"grooves[{name!r}]", groove, Groove, "it must be a Groove")
         check_damping(self.damping)
         check_f_max(self.f_max)
         check_rounds(self.inertia)

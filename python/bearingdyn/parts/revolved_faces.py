@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import NoneType
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from bearingdyn.bearing import footprint_profile
-from bearingdyn.checks import positive, whole
+from bearingdyn.checks import indices, instance, positive, require, two, vector, whole
 from bearingdyn.fem import SAME, RevolutionMesh, lagrange
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array, Index
 
 HIGHEST = 64  # Fourier order of a raceway: far more than any number of balls asks for
@@ -27,6 +29,10 @@ class Cylinder:
     r: float
     z: tuple[float, float] | None = None
 
+    def __post_init__(self) -> None:
+        plausible("length", "r", positive("r", self.r, "it must be a positive radius in m"))
+        _check_span("z", self.z)
+
 
 @dataclass(frozen=True)
 class EndFace:
@@ -37,6 +43,10 @@ class EndFace:
 
     z: float
     r: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        plausible("place", "z", self.z)
+        _check_span("r", self.r)
 
 
 @dataclass(frozen=True)
@@ -53,6 +63,9 @@ class Line:
     end: tuple[float, float]
 
     def __post_init__(self) -> None:
+        for name in ("start", "end"):
+            point = vector(name, getattr(self, name), (2,), "a point (r, z) in m")
+            object.__setattr__(self, name, tuple(point.tolist()))
         if not math.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]) > 0:
             raise ValueError(f"start and end are both {self.start}; a line needs two points (r, z)")
 
@@ -63,6 +76,9 @@ class Where:
 
     inside: Callable[[Array, Array], Any]
 
+    def __post_init__(self) -> None:
+        require(callable(self.inside), "inside", self.inside, "it must be a function of r and z")
+
 
 @dataclass(frozen=True)
 class MeshNodes:
@@ -71,10 +87,18 @@ class MeshNodes:
     nodes: tuple[int, ...]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "nodes", tuple(int(k) for k in self.nodes))
+        nodes = indices("nodes", self.nodes, "it must be numbers of nodes, counted from 0")
+        object.__setattr__(self, "nodes", tuple(np.atleast_1d(nodes).tolist()))
 
 
 Face: TypeAlias = Cylinder | EndFace | Line | Where | MeshNodes
+FACES = (Cylinder, EndFace, Line, Where, MeshNodes)
+
+
+def _check_span(field: str, span: tuple[float, float] | None) -> None:
+    if span is not None:
+        low, high = two(field, span, "it must be (from, to), rising, m")
+        require(low < high, field, span, "it must be (from, to), rising, m")
 
 
 @dataclass(frozen=True)
@@ -142,7 +166,13 @@ class Groove:
     footprint: Footprint | None = None
 
     def __post_init__(self) -> None:
+        remedy = "it must be a Cylinder, EndFace, Line, Where or MeshNodes"
+        instance("surface", self.surface, FACES, remedy)
         positive("arm", self.arm, "it must be a positive radius in m, as BallBearing.arm")
+        plausible("length", "arm", self.arm)
+        if self.z is not None:
+            plausible("place", "z", self.z)
+        instance("footprint", self.footprint, (Footprint, NoneType), "it must be a Footprint, or None")
         whole("order", self.order, 1, HIGHEST)
 
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from bearingdyn.bearing import RacewaySeries
-from bearingdyn.checks import nonnegative, number, positive, two
+from bearingdyn.checks import items, nonnegative, number, positive, two
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
@@ -100,7 +100,8 @@ class RingPoints:
     damping: float = 0.0
 
     def __post_init__(self) -> None:
-        angles = tuple(number("azimuth", a, "it must hold angles in rad") for a in self.azimuth)
+        given = items("azimuth", self.azimuth, "it must be a list of angles in rad")
+        angles = tuple(number("azimuth", a, "it must hold angles in rad") for a in given)
         if not angles:
             raise ValueError("azimuth is empty; a ring needs a foot to stand on")
         object.__setattr__(self, "azimuth", angles)

@@ -6,13 +6,14 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import NoneType
 from typing import Any
 
 import numpy as np
 import scipy.linalg
 import scipy.sparse
 
-from bearingdyn.checks import instance, name_list, named, require
+from bearingdyn.checks import instance, name_list, named, require, vector
 from bearingdyn.cms import (
     F_MAX,
     Basis,
@@ -51,7 +52,7 @@ from bearingdyn.parts.solid_outline import solid_outline
 from bearingdyn.parts.solid_prestress import Move, SolidPrestress, deform
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.pictures import page
-from bearingdyn.plausible_ranges import plausible
+from bearingdyn.plausible_ranges import check_reference, plausible
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Complex, Index
 
@@ -77,11 +78,13 @@ class RigidSurface:
 
     def __post_init__(self) -> None:
         names = [self.surface] if isinstance(self.surface, str) else self.surface
-        name_list("surface", names, least=1)
+        name_list("surface", names, "surfaces", least=1)
         if isinstance(self.reference, str):
             good = self.reference in ("centroid", "axis")
         else:
-            good = np.shape(self.reference) == (3,) and bool(np.all(np.isfinite(self.reference)))
+            where = vector("reference", self.reference, (3,), "(x, y, z) in m, or 'centroid' or 'axis'")
+            object.__setattr__(self, "reference", tuple(where.tolist()))
+            good = True
         if not good:
             raise ValueError(
                 f"reference is {self.reference!r}; it must be (x, y, z) in m, 'centroid' or 'axis'"
@@ -96,7 +99,9 @@ class RigidSurface:
         """Its nodes and reference point (3,), m. Raises ValueError as SolidMesh.surface does."""
         nodes = np.unique(np.concatenate([mesh.surface(name) for name in self.surfaces]))
         if not isinstance(self.reference, str):
-            return nodes, np.array(self.reference, dtype=np.float64)
+            reference = np.array(self.reference, dtype=np.float64)
+            check_reference("reference", reference, mesh.points)
+            return nodes, reference
         area, moment = 0.0, np.zeros(3)
         for name in self.surfaces:
             if np.isin(mesh.boundary, mesh.surface(name)).all(axis=1).any():
@@ -185,6 +190,11 @@ class Solid:
         instance("mesh", self.mesh, SolidMesh, "it must be a bd.SolidMesh, as bd.read_mesh returns it")
         plausible("solid length", "the body's extent", float(np.ptp(self.mesh.points, axis=0).max()))
         self._check_materials()
+        instance("prestress", self.prestress, (SolidPrestress, NoneType), "it comes of assembled(…)")
+        for name, what in (("interfaces", "surfaces"), ("outputs", "points"), ("bores", "bd.FlexibleBore")):
+            named(name, getattr(self, name), f"it must be a mapping, name -> {what}")
+        for name in ("attach", "radiating"):
+            object.__setattr__(self, name, tuple(name_list(name, getattr(self, name), "names")))
         if not self.interfaces:
             raise ValueError("interfaces is empty; a part needs at least one to be joined by")
         check_held(self.held, self.interfaces)

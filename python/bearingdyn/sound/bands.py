@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import one_of, positive, reals, require
-from bearingdyn.sound.signal_check import signal
+from bearingdyn.sound.signal_check import sample_rate, signal
 from bearingdyn.types import Array
 
 Fraction = Literal[1, 3]
@@ -122,7 +122,7 @@ def band_filter(middle: float, rate: float, fraction: Fraction = 3) -> Any:
     import scipy.signal
 
     one_of("fraction", fraction, (1, 3))
-    middle, rate = positive("middle", middle), positive("rate", rate)
+    middle, rate = positive("middle", middle), sample_rate(rate)
     half = RATIO ** (0.5 / fraction)
     require(
         rate > 2.1 * middle * half,
@@ -165,7 +165,7 @@ def filtered_bands(
     """
     import scipy.signal
 
-    x, rate = signal("samples", samples), positive("rate", rate)
+    x, rate = signal("samples", samples), sample_rate(rate)
     most = rate / 2.6
     middle, _, nominal = bands(low, most if high is None else high, fraction)
     if high is None:

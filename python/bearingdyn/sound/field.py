@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.checks import instance, positive, real, require, vector, whole
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.sound.radiation import Radiation
 from bearingdyn.types import Array, Complex
 
@@ -186,6 +187,7 @@ def hemisphere_positions(radius: float, centre: ArrayLike = (0.0, 0.0, 0.0)) -> 
     ISO 3744:2010, annex B.
     """
     radius = positive("radius", radius, "it must be a positive radius in m")
+    plausible("microphone", "radius", radius)
     at = vector("centre", centre, (3,), "x, y and z in m")
     key = np.array(HEMISPHERE)
     key /= np.linalg.norm(key, axis=1)[:, None]  # the table's two digits lie up to .5 % off the sphere
@@ -215,6 +217,8 @@ def box_positions(low: ArrayLike, high: ArrayLike, distance: float = 1.0) -> tup
     a0, a1 = vector("low", low, (3,), "x, y and z in m"), vector("high", high, (3,), "x, y and z in m")
     require(bool((a1 > a0).all()), "high", a1.tolist(), f"it must exceed low, {a0.tolist()}, in x, y and z")
     d = positive("distance", distance, "it must be a positive distance in m")
+    plausible("microphone", "distance", d)
+    plausible("machine", "the side from low to high", float((a1 - a0).max()))
     a, b = 0.5 * (a1[0] - a0[0]) + d, 0.5 * (a1[2] - a0[2]) + d
     c = float(a1[1] - a0[1]) + d
     middle = np.array([0.5 * (a0[0] + a1[0]), a0[1], 0.5 * (a0[2] + a1[2])])

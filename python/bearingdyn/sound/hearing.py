@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import one_of, positive, require
-from bearingdyn.sound.signal_check import signal
+from bearingdyn.checks import one_of, reals, require
+from bearingdyn.sound.signal_check import sample_rate, signal
 from bearingdyn.sound.weighting import Weighting, weighting
 from bearingdyn.types import Array, Complex
 
@@ -31,7 +31,7 @@ def weighted_signal(samples: ArrayLike, rate: float, kind: Weighting = "A") -> A
     numpy.ndarray
         (n,), of the same unit, without phase shifts.
     """
-    x, rate = signal("samples", samples), positive("rate", rate)
+    x, rate = signal("samples", samples), sample_rate(rate)
     gain = 10.0 ** (weighting(np.fft.rfftfreq(x.size, 1.0 / rate), kind) / 20.0)
     return np.fft.irfft(np.fft.rfft(x) * gain, x.size)
 
@@ -63,11 +63,14 @@ def pressure_signal(force: ArrayLike, rate: float, frequency: ArrayLike, transfe
     ValueError
         For shapes that do not fit, and frequencies that the signal's step cannot carry.
     """
-    rate = positive("rate", rate)
-    x = np.asarray(force, dtype=np.float64)
+    rate = sample_rate(rate)
+    x = np.atleast_1d(reals("force", force, "it must be real numbers, N, evenly in time"))
     x = x[:, None] if x.ndim == 1 else x
-    f = np.asarray(frequency, dtype=np.float64)
-    H = np.asarray(transfer, dtype=np.complex128)
+    f = reals("frequency", frequency, "it must hold two or more, ascending, in Hz")
+    try:
+        H = np.asarray(transfer, dtype=np.complex128)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"transfer is {transfer!r}; it must be complex numbers, Pa/N") from None
     H = H[:, None] if H.ndim == 1 else H
     if f.ndim != 1 or f.size < 2 or not bool((np.diff(f) > 0).all()):
         raise ValueError("frequency must hold two or more, ascending, in Hz")
@@ -204,7 +207,7 @@ def roughness(pressure: ArrayLike, rate: float) -> float:
 
 def _audible(pressure: ArrayLike, rate: float, least: float) -> tuple[Array, float]:
     """A signal that lasts at least so many seconds, and whose rate carries most of what is heard."""
-    x, rate = signal("pressure", pressure), positive("rate", rate)
+    x, rate = signal("pressure", pressure), sample_rate(rate)
     require(
         rate >= 0.5 * AUDIBLE,
         "rate",

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import one_of, positive, reals, require
+from bearingdyn.checks import one_of, reals, require
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.sound.bands import Fraction, band_powers
-from bearingdyn.sound.signal_check import signal
+from bearingdyn.sound.signal_check import sample_rate, signal
 from bearingdyn.sound.weighting import Weighting, weighting
 from bearingdyn.types import Array
 
@@ -151,7 +152,7 @@ def mean_squares(samples: ArrayLike, rate: float) -> tuple[Array, Array]:
     ValueError
         For a signal of one sample or a rate that is not positive.
     """
-    x, rate = signal("samples", samples), positive("rate", rate)
+    x, rate = signal("samples", samples), sample_rate(rate)
     c = np.fft.rfft(x) / x.size
     power = 2.0 * np.abs(c) ** 2
     power[0] *= 0.5
@@ -184,10 +185,11 @@ def vibration_severity(velocity: ArrayLike, rate: float) -> float:
     ----------
     ISO 20816-1:2016.
     """
-    rate = positive("rate", rate)
+    rate = sample_rate(rate)
     low, high = SEVERITY
     require(rate >= 2 * high, "rate", rate, f"it must be {2 * high:g} samples a second or more")
     x = signal("velocity", velocity)
+    plausible("velocity of a housing", "velocity, rms,", float(np.std(x)))
     seconds = x.size / rate
     require(seconds * low >= 1.0, "velocity", f"{seconds:.3g} s", f"it must last {1 / low:g} s or more")
     f, power = mean_squares(x, rate)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn.checks import real
+from bearingdyn.checks import positive, real
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 
@@ -20,3 +21,8 @@ def signal(field: str, given: ArrayLike) -> Array:
         what = f"has shape {x.shape}" if x.ndim != 1 or x.size < 2 else "has a sample that is not finite"
         raise ValueError(f"{field} {what}; {remedy}")
     return x
+
+
+def sample_rate(rate: float) -> float:
+    """Check the rate of a signal: the value as a positive float; warns of what no sound is sampled at."""
+    return plausible("sample rate", "rate", positive("rate", rate, "it must be samples a second"))

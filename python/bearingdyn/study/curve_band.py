@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.analysis import Band, band_of
-from bearingdyn.checks import require
+from bearingdyn.checks import require, whole
 from bearingdyn.study.distributions import IMPOSSIBLE, draw, said_of
 
 
@@ -49,11 +49,14 @@ def band(
     ValueError
         For too few draws for the coverage; naming the draw, where one is impossible or gives NaN.
     """
-    band_of(np.zeros((max(int(n), 0), 1)), coverage)
+    require(callable(function), "function", function, "it must be a function of a draw's parameters, a dict")
+    n = whole("n", n, 1, 10**7)
+    band_of(np.zeros((n, 1)), coverage)
     curves = []
     for k, case in enumerate(draw(n, parameters, seed=seed)):
         try:
             y = np.asarray(function(dict(case)))
+            require(y.dtype.kind in "iufc", "function", y.tolist(), "it must give numbers, the curve")
         except (ValueError, ArithmeticError) as error:
             raise ValueError(f"draw {k} is {said_of(case)}; {IMPOSSIBLE}; {error}") from error
         y = np.abs(y) if np.iscomplexobj(y) else y

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from bearingdyn.checks import number, positive, require
+from bearingdyn.checks import number, positive, require, two
 from bearingdyn.material import Doubts, Maxwell, uniforms
 from bearingdyn.plausible_ranges import plausible
 from bearingdyn.short_repr import short
@@ -42,10 +42,13 @@ class Normal:
     high: float = math.inf
 
     def __post_init__(self) -> None:
-        number("Normal.mean", self.mean)
-        positive("Normal.sd", self.sd, "it must be a positive standard deviation")
-        ends = (self.low, self.high)
-        require(bool(self.low < self.high), "Normal.low, Normal.high", ends, "low must be below high")
+        sd = positive("Normal.sd", self.sd, "it must be a positive standard deviation")
+        ends = two("Normal.low, Normal.high", (self.low, self.high), "they must be numbers")
+        for name, value in (("mean", number("Normal.mean", self.mean)), ("sd", sd)):
+            object.__setattr__(self, name, value)
+        require(ends[0] < ends[1], "Normal.low, Normal.high", ends, "low must be below high")
+        for name, value in zip(("low", "high"), ends, strict=True):
+            object.__setattr__(self, name, value)
         share = np.diff(_normal_share(np.array(ends), self.mean, self.sd))[0]
         remedy = "they must leave more than a millionth of the distribution"
         require(bool(share > 1e-6), "Normal.low, Normal.high", ends, remedy)

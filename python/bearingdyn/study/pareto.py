@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bearingdyn.checks import name_list
+
 if TYPE_CHECKING:
     import xarray
 
@@ -38,6 +40,10 @@ def pareto(
     ValueError
         For no aims, an aim that is not in the table or not a number, or one named twice.
     """
+    if not (hasattr(study, "variables") and hasattr(study, "assign")):
+        raise ValueError(f"study is {study!r}; it must be the result of bd.study.table(…)")
+    minimise = name_list("minimise", minimise, "values")
+    maximise = name_list("maximise", maximise, "values")
     aims = [*minimise, *maximise]
     if not aims:
         raise ValueError("pareto needs at least one name in minimise or maximise")

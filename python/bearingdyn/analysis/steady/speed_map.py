@@ -44,8 +44,9 @@ from bearingdyn.units import takes
 if TYPE_CHECKING:
     import xarray
 
-# harmonics of a passage in a map, samples for each, points of a branch at most
+# harmonics of a passage in a map, samples for each, points of a branch at most; what may be asked
 HARMONICS, PER, MOST = 24, 16, 5000
+MOST_HARMONICS = 500
 # of the range, to which events are located
 LOCATED = 1e-6
 # of a made application's number, over which slopes are taken: its parts are meshed and reduced anew
@@ -235,8 +236,8 @@ def _task(
         tuple(record),
         low,
         high,
-        (high - low) / whole("points", points, 2),
-        whole("harmonics", harmonics, 1),
+        (high - low) / whole("points", points, 2, 100_000),
+        whole("harmonics", harmonics, 1, MOST_HARMONICS),
         PER,
         MOST,
         LOCATED * (high - low),

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 # harmonics where none are asked for: of the ball pass, or of the highest of several bases
 HARMONICS, SEVERAL = 40, 20
+# what may be asked: the waves of a ball pass are some tens; of one balance in memory
+MOST_HARMONICS, MOST_SUBHARMONIC, MOST_BYTES = 2000, 64, 8e9
 
 
 @takes(speed="rad/s")
@@ -153,10 +155,12 @@ def steady_state(
         "at rest nothing passes and the base frequency is zero; give the speed of the shaft in rad/s, or "
         "take bd.equilibrium",
     )
-    subharmonic = whole("subharmonic", subharmonic, 1)
+    subharmonic = whole("subharmonic", subharmonic, 1, MOST_SUBHARMONIC)
     positive("tolerance", tolerance)
+    remedy = "it is the residual of the balance over the largest force: at most 1e-3"
+    require(tolerance <= 1e-3, "tolerance", tolerance, remedy)
     if harmonics is not None:
-        harmonics = whole("harmonics", harmonics, 1)
+        harmonics = whole("harmonics", harmonics, 1, MOST_HARMONICS)
     one_of("contacts", contacts, ("film", "viscous"))
     problem = Problem.of(source, subharmonic, contacts)
     problem.system.check_speed(speed)
@@ -196,7 +200,12 @@ def _found(
     begun = None if start is None else motion_of("start", problem, start)
     if len(problem.bases.bases) > 1:
         return balanced(problem, speed, harmonics or SEVERAL, tolerance, begun)
-    lines = Lines.harmonics((harmonics or HARMONICS) * subharmonic)
+    count = (harmonics or HARMONICS) * subharmonic
+    n, unknowns = problem.system.n, (2 * count + 1) * len(problem.rest)
+    needed = max(8.0 * unknowns**2, 16.0 * count * n**2)
+    remedy = f"with {unknowns} unknowns the balance would take {1e-9 * needed:.3g} GB; give fewer"
+    require(needed <= MOST_BYTES, "harmonics times subharmonic", count, remedy)
+    lines = Lines.harmonics(count)
     # what all coordinates answer comes with what the bearings do
     balance = problem.balance(lines, speed, np.eye(problem.system.n))
     if begun is not None:

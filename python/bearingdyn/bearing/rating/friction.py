@@ -175,7 +175,7 @@ def friction(
     by_size = f"C0 is {static:.6g} N with an outside diameter of {D:.4g} mm; C0/outside²"
     plausible("rating by size", by_size, static / (D * 1e-3) ** 2)
     check_speed_value("speed", omega, (d + D) / 2 * 1e-3)
-    held = plausible("moment", "seals", nonnegative("seals", seals))
+    held = plausible("seal moment", "seals", nonnegative("seals", seals))
     churn = nonnegative("drag_factor", drag_factor)
     degrees = math.degrees(plausible("contact angle", "contact_angle", contact_angle))
     warn_of_overload(max(0.6 * Fr + 0.5 * Fa, Fr), static)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
+from bearingdyn.bearing.contact_pressure import check_light
 from bearingdyn.bearing.rating.iso_ratings import Ratings, check_given, iso_ratings
 from bearingdyn.checks import instance, one_of, positive, require, vector
 from bearingdyn.types import Array
@@ -175,7 +176,9 @@ def rating_life(
     >>> round(bd.bearing.rating_life(ball, (1000.0, 0, 0, 0, 0, 0), C=23400.0))  # a commercial code: 13163
     13163
     """
-    return life_of_loads(bearing, loads_under(bearing, load, arm=arm, angle=angle), C=C)
+    loads = loads_under(bearing, load, arm=arm, angle=angle)
+    check_light(bearing, loads)
+    return life_of_loads(bearing, loads, C=C)
 
 
 def with_arm(bearing: BallBearing, arm: Arm) -> BallBearing:

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bearingdyn.bearing.ball_bearing import BallBearing
-from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE
+from bearingdyn.bearing.contact_pressure import STATIC_PRESSURE, check_light
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY
 from bearingdyn.bearing.rating.iso_ratings import check_given
 from bearingdyn.bearing.rating.life import Arm, race_capacities, ratings_of, with_arm
-from bearingdyn.checks import instance, number, real
+from bearingdyn.checks import instance, real
 from bearingdyn.notice import BearingWarning, warn
+from bearingdyn.plausible_ranges import plausible
 from bearingdyn.types import Array
 
 
@@ -105,7 +106,7 @@ def load_cases(
     held = with_arm(bearing, arm)
     found = ratings_of(held).C
     rating = found if C is None else check_given("C", C, found)
-    turn = number("angle", angle, "it must be a finite angle in rad")
+    turn = plausible("turned angle", "angle", angle, "it must be a finite angle in rad")
     R = held.arm
     target = np.column_stack([f[:, 0], f[:, 1], f[:, 2], -f[:, 4] / R, f[:, 3] / R])
     size = np.linalg.norm(target, axis=1)
@@ -115,6 +116,7 @@ def load_cases(
     z, Q, ended = core.bearing_settle(
         kernel, target, np.where(radius > 0, radius, 1e-9), held.angle0 + turn, shaft
     )
+    check_light(bearing, Q, "loads")
     for word, error, what in (
         ("no equilibrium", ArithmeticError, "no equilibrium; is the load within what the bearing can carry?"),
         ("open side", ValueError, f"balls are pressed onto the open side; {OPEN_SIDE_REMEDY}"),

@@ -84,6 +84,7 @@ def contamination_factor(contamination: float | str, Dpw: float) -> float:
         require(known, "contamination", contamination, meant(contamination, CONTAMINATION))
         return CONTAMINATION[contamination][0 if nonnegative("Dpw", Dpw) < 0.1 else 1]
     remedy = "e_C must lie in 0..1 (ISO 281: 0 is very severe contamination, 1 extreme cleanliness)"
+    nonnegative("Dpw", Dpw)
     e = number("contamination", contamination, remedy)
     require(0 <= e <= 1, "contamination", contamination, remedy)
     return e

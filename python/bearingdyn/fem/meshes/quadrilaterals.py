@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from bearingdyn.checks import reals
 from bearingdyn.fem.meshes.quadrilateral_element import shape_functions
 from bearingdyn.fem.meshes.revolution_mesh import SAME, RevolutionMesh
 from bearingdyn.types import Array, Index
@@ -37,7 +38,7 @@ def quadrilaterals(points: ArrayLike, cells: ArrayLike, region: ArrayLike | None
         For shapes that do not fit, an r below zero, an element that is inverted or of no area (named, with
         its place), points that belong to no element, and pieces that are not joined.
     """
-    xy = np.array(points, dtype=np.float64)
+    xy = reals("points", points, "give finite (n, 2) coordinates r and z, m")
     if xy.ndim != 2 or xy.shape[1] not in (2, 3) or not np.isfinite(xy).all():
         raise ValueError(f"points has shape {xy.shape}; give finite (n, 2) coordinates r and z, m")
     if xy.shape[1] == 3 and xy[:, 2].any():

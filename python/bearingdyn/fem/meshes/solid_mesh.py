@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from bearingdyn.checks import meant
+from bearingdyn.checks import indices, instance, meant, named, reals
 from bearingdyn.fem.meshes.solid_element import (
     HEX20,
     HEX27,
@@ -136,7 +136,8 @@ class SolidMesh:
         return f"<SolidMesh of {size}, regions {list(self.regions)}, surfaces {list(self.surfaces)}>"
 
     def __post_init__(self) -> None:
-        p, e = np.array(self.points, dtype=np.float64), np.array(self.elements, dtype=np.intp)
+        p = reals("points", self.points, "it must be real numbers, (n, 3), in m")
+        e = indices("elements", self.elements, "it must be numbers of nodes, a row for each element")
         if p.ndim != 2 or p.shape[1] != 3 or not np.all(np.isfinite(p)):
             raise ValueError(f"points has shape {p.shape}; it must be (n, 3), finite")
         if e.ndim != 2 or e.shape[1] not in KINDS or not len(e):
@@ -144,7 +145,9 @@ class SolidMesh:
                 f"elements has shape {e.shape}; a row holds 20 or 27 nodes of a brick, 15 of a wedge, 13 of "
                 "a pyramid or 10 of a tetrahedron (second_order makes them of corners)"
             )
-        numbers = np.arange(len(e)) if self.numbers is None else np.asarray(self.numbers)
+        numbers = np.arange(len(e))
+        if self.numbers is not None:
+            numbers = indices("numbers", self.numbers, "it must be whole numbers, one for each element")
         object.__setattr__(self, "points", p)
         object.__setattr__(self, "elements", e)
         object.__setattr__(self, "numbers", numbers)
@@ -164,7 +167,7 @@ class SolidMesh:
             )
         self._check_connection()
         self._check_shapes()
-        regions = {name: np.unique(np.asarray(at, dtype=np.intp)) for name, at in self.regions.items()}
+        regions = _sets("regions", self.regions, "elements")
         regions = regions or {"body": np.arange(len(e))}
         uses = np.zeros(len(e), dtype=int)
         for name, at in regions.items():
@@ -178,7 +181,7 @@ class SolidMesh:
             where = f"in the regions {owners}" if owners else "in no region"
             raise ValueError(f"element {numbers[k]} is {where}; each must be in one of {sorted(regions)}")
         object.__setattr__(self, "regions", regions)
-        surfaces = {name: np.unique(np.asarray(at, dtype=np.intp)) for name, at in self.surfaces.items()}
+        surfaces = _sets("surfaces", self.surfaces, "nodes")
         for name, at in surfaces.items():
             if not at.size:
                 raise ValueError(f"surfaces[{name!r}] is empty; it must name nodes")
@@ -360,6 +363,7 @@ class SolidMesh:
 
     def surface(self, name: str) -> Index:
         """Nodes of a surface. Raises ValueError, listing the known, for a name the mesh does not have."""
+        instance("surface", name, str, f"it must be the name of one: {sorted(self.surfaces)}")
         if name not in self.surfaces:
             raise ValueError(f"the mesh has no surface {name!r}; {meant(name, self.surfaces)}")
         return self.surfaces[name]
@@ -557,3 +561,10 @@ def merged(points: ArrayLike, tolerance: float) -> tuple[Array, Index]:
     unique = np.zeros((count, p.shape[1]))
     unique[label[::-1]] = p[::-1]
     return unique, np.asarray(label, dtype=np.intp)
+
+
+def _sets(field: str, given: Mapping[str, ArrayLike], what: str) -> dict[str, Index]:
+    """Sets of a mesh by name, each ascending; ValueError for what is no mapping of numbers."""
+    found = named(field, given, f"it must be a mapping, name -> numbers of {what}")
+    remedy = f"it must be numbers of {what}"
+    return {name: np.unique(indices(f"{field}[{name!r}]", at, remedy)) for name, at in found.items()}

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bearingdyn.checks import named, positive, require, truth, two
+from bearingdyn.checks import named, positive, require, truth, two, whole
 from bearingdyn.material.dma import DMAData
 from bearingdyn.material.fit_report import FitReport, OutsideBand
 from bearingdyn.material.identification.bounds import Limits
@@ -137,6 +137,8 @@ def fit_maxwell(
     require(some or (isinstance(n, str) and n == "auto"), "n", n, remedy)
     K, density = positive("K", K), positive("density", density)
     positive("tolerance", tolerance)
+    remedy = "it is a share of the moduli, such as 0.02; was it in per cent?"
+    require(tolerance <= 0.5, "tolerance", tolerance, remedy)
     remedy = "the number of refits must be zero or a positive integer"
     require(isinstance(bootstrap, int) and 0 <= bootstrap <= 10_000, "bootstrap", bootstrap, remedy)
     if isinstance(master, RelaxationData):
@@ -208,8 +210,8 @@ def fit_dense(
     ValueError
         As :func:`fit_maxwell`.
     """
-    for name, value in (("K", K), ("density", density), ("per_decade", per_decade)):
-        positive(name, value)
+    K, density = positive("K", K), positive("density", density)
+    per_decade = whole("per_decade", per_decade, 1, 1000)
     master = one_curve(master)
     points = _inside(master, band, K, "dense")
     times, x = points.dense(per_decade)
@@ -310,7 +312,7 @@ def _pinned(master: MasterCurve, K: float, pin: float | Sequence[float] | None) 
     """Time, s, and modulus, Pa, of a pin; of a time alone by the best dense spectrum of the whole curve."""
     if pin is None:
         return None
-    given = list(pin) if isinstance(pin, Sequence) else [pin]
+    given = list(pin) if isinstance(pin, Sequence) and not isinstance(pin, bytes) else [pin]
     remedy = "it must be a time, or a time and a modulus, both positive and finite, s and Pa"
     require(len(given) in (1, 2) and not isinstance(pin, str), "pin", pin, remedy)
     time, *modulus = (positive("pin", value, remedy) for value in given)

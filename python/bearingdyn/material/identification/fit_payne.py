@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from bearingdyn.checks import positive
+from bearingdyn.checks import positive, require
 from bearingdyn.material.amplitude import Payne, PayneFit
 from bearingdyn.material.reading import StrainSweep, read_strain_sweep
 from bearingdyn.notice import TensionAsShear, warn
@@ -117,6 +117,8 @@ def fit_payne(
         )
 
     at = int(np.argmin(np.abs(np.log(gamma / gamma_r))))
+    p = positive("p", p, "it must be a positive exponent")
+    require(p <= 20, "p", p, "it must be at most 20; the law's usual is 2")
     loss = _loss(gamma, G.imag, p, at)
 
     def found(value: float) -> _Found:

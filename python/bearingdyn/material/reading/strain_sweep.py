@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from bearingdyn.checks import positive, require
+from bearingdyn.checks import instance, positive, reals, require
 from bearingdyn.material.dma import Mode
 from bearingdyn.material.reading.block import Block, cell_at
 from bearingdyn.material.reading.columns import is_number, number_of, title_of
@@ -79,12 +79,16 @@ class StrainSweep:
     _repr_html_ = page
 
     def __post_init__(self) -> None:
+        for name in ("source", "notes"):
+            what = str if name == "source" else (tuple, list)
+            instance(name, getattr(self, name), what, "it is a text" if name == "source" else "give a list")
+        numbers_asked = "it must be real numbers, one for each point"
         n = np.size(self.strain)
         require(n >= 3, f"{self.source}: number of points", n, "a strain sweep needs three or more")
         names = ["strain", "storage", "loss", *([] if self.force is None else ["force"])]
-        order = np.argsort(np.asarray(self.strain, dtype=np.float64), kind="stable")
+        order = np.argsort(reals(f"{self.source}: strain", self.strain, numbers_asked), kind="stable")
         for name in names:
-            values = np.array(getattr(self, name), dtype=np.float64)
+            values = reals(f"{self.source}: {name}", getattr(self, name), numbers_asked)
             if values.shape != (n,):
                 raise ValueError(
                     f"{self.source}: {name} has shape {values.shape}; it must be one-dimensional, with "
