@@ -66,7 +66,7 @@ def _steady() -> list[Row]:
 
 
 def _marched() -> list[Row]:
-    """A mass on a ring under two forces, on both flanks of its resonance, below and near it: march and balance."""
+    """A mass on a ring under two forces, about its resonance and on its flanks: march and balance."""
     cases = []
     for tones, periods, per_faster in (
         ([(6.0, 200.0), (6.0, 320.0)], 40, 100),
@@ -94,8 +94,8 @@ def _marched() -> list[Row]:
             line = int(abs(balanced["frequency"].values - hertz).argmin())
             own = 2e6 * abs(np.mean(z * np.exp(-2j * np.pi * hertz * t)))
             name = (
-                f"mass on a ring, {tones[0][0]:g} N at {base:g} and {tones[1][1]:g} Hz, {per_faster} steps of the "
-                f"faster: amplitude at {hertz:g} Hz (µm)"
+                f"mass on a ring, {tones[0][0]:g} N at {base:g} and {tones[1][1]:g} Hz, {per_faster} steps "
+                f"of the faster: amplitude at {hertz:g} Hz (µm)"
             )
             cases.append((name, 1e6 * abs(complex(balanced["amplitude"].values[line, 0])), own))
     return rows(SECTION, 2e-3, "asked for", "balance of harmonics, against the march", cases)
