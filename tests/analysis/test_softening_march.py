@@ -52,7 +52,7 @@ def peak_of(f, response):
 
 @pytest.mark.parametrize("size", [0.5, 5.0, 20.0])
 def test_both_domains_have_the_same_resonance(size):
-    """At 100 steps a period: .1 % in frequency, .2 % in height. Newmark's frequency errs by (ωΔt)²/12 = .03 %."""
+    """At 100 steps a period: .1 % in frequency, .2 % in height. Newmark errs by (ωΔt)²/12 = .03 %."""
     fine = np.linspace(230.0, 320.0, 901)
     top = fine[np.abs(answered(fine, size)).argmax()]
     f = [0.985 * top, top, 1.015 * top]
