@@ -184,9 +184,11 @@ void bd_softening_step(const bd_model *model, const bd_work *work, const bd_stat
         const double *rate = state->y_rate + layer->offset;
         double *d = state->softening + layer->memory, *numbers = numbers_of(layer, state);
         const double forget = work->forget[l], keep = 1.0 - forget;
+        /* what came in a step came, on average, in its middle */
+        const double came = half * sqrt(keep);
         double moved = 0.0, turned = 0.0;
         for (int r = 0; r < layer->rank; r++) {
-            d[r] = keep * (d[r] + half * (before[r] + rate[r]));
+            d[r] = keep * d[r] + came * (before[r] + rate[r]);
             moved += strain[r] * d[r] * d[r];
             turned += strain[r] * rate[r] * rate[r];
         }
