@@ -22,8 +22,9 @@ import rotors
 from bearingdyn import plot
 from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_state, transient
 from bearingdyn.analysis.steady import branches as tracing
+from bearingdyn.analysis.steady import searches
 from bearingdyn.analysis.steady.balance import flat, newton, unflat
-from bearingdyn.analysis.steady.continuation import follow
+from bearingdyn.analysis.steady.continuation import backwards, follow
 from bearingdyn.analysis.steady.event_accuracy import once, within
 from bearingdyn.analysis.steady.factored import Factored, jacobian
 from bearingdyn.analysis.steady.problem import Problem
@@ -200,7 +201,7 @@ def test_an_event_on_a_point_is_told_once(hysteresis: xarray.Dataset) -> None:
 def test_a_store_gives_the_same_map_again_without_work(tmp_path, monkeypatch, hysteresis) -> None:
     first = made(5250, 5300, points=3, store=tmp_path)
     assert list(tmp_path.iterdir())
-    monkeypatch.setattr(tracing, "newton", None)
+    monkeypatch.setattr(searches, "newton", None)
     again = made(5250, 5300, points=3, store=tmp_path)
     assert first.attrs.pop("made_at") <= again.attrs.pop("made_at")
     xarray.testing.assert_identical(first, again)
@@ -387,6 +388,26 @@ def test_multipliers_of_a_map_are_those_of_its_motions() -> None:
     alone = steady_state(rotors.held_jis_rotor(), rpm=8000, record=RECORD, harmonics=12)
     last = int(np.argmax(data["speed"].values))
     assert float(data["multiplier"][last]) == pytest.approx(alone.attrs["multiplier"], abs=3e-4)
+
+
+def test_searches_from_both_ends_meet_in_one_branch() -> None:
+    data = made(6000, 9000, points=8)
+    assert set(data["branch"].values) == {0}
+    rpm = data["speed"].values / RPM
+    assert np.ptp(rpm) == pytest.approx(3000.0)
+    # in order along the branch, the place where they met told once
+    assert (np.diff(rpm) < 0.0).all()
+    assert math.sqrt(6000 * 9000) == pytest.approx(rpm[np.abs(rpm - math.sqrt(6000 * 9000)).argmin()])
+
+
+def test_a_step_against_both_tangents_is_none() -> None:
+    def point(parameter: float, slope: float) -> SimpleNamespace:
+        return SimpleNamespace(parameter=parameter, slope=slope)
+
+    assert backwards(point(1.0, 0.1), point(0.9, 0.2))  # two folds were leapt over
+    assert not backwards(point(1.0, 0.1), point(1.1, 0.2))
+    assert not backwards(point(1.0, 0.1), point(0.9, -0.2))  # round a fold
+    assert not backwards(point(1.0, -0.1), point(0.9, -0.2))
 
 
 def test_bad_input_is_named_before_work() -> None:

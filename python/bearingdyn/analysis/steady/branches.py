@@ -28,7 +28,6 @@ from bearingdyn.analysis.steady.stability import (
 )
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
-from bearingdyn.notice import OutsideBand, untold
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 
@@ -36,11 +35,6 @@ from bearingdyn.types import Array, Complex
 DIFFERENT = 1e-3
 # amplitude of the doubled motion with which a branch begins at a flip, as a share of the motion there
 BEGIN = 0.02
-# places of the range where motions are looked for beside those of the two ends, and amplitudes, as shares of
-# the mean deflection, with which they begin: a motion that does not part from its balls is smaller than it
-PLACES, PUSHES = 5, (-0.3, 0.3)
-# of the range, by which a sweep that can go no further leaps on; and its most leaps
-LEAP, LEAPS = 0.01, 40
 # of a multiplier's size, within which an event lies on the unit circle
 ON_CIRCLE = 2e-3
 # times as many samples for the multipliers of a located point
@@ -100,6 +94,8 @@ class Task:
         Channels of motion whose rows are asked for.
     low, high, longest
         Range of the parameter and longest step in it.
+    middle
+        Where sweeps from both ends meet.
     harmonics, per
         Of a passage, and samples for each.
     most
@@ -114,6 +110,7 @@ class Task:
     places: tuple[str, ...]
     low: float
     high: float
+    middle: float
     longest: float
     harmonics: int
     per: int
@@ -231,8 +228,10 @@ class Tracer:
         passages: int,
         others: Sequence[Branch] = (),
         tell: Callable[[float], object] | None = None,
+        span: tuple[float, float] | None = None,
     ) -> None:
         self.task, self.passages, self.others, self.tell = task, passages, others, tell
+        self.low, self.high = span or (task.low, task.high)
         self.lines = task.lines(passages)
 
     def mark(self, curve: Curve, point: Point, event: str = "", fine: int = 1) -> Mark:
@@ -258,7 +257,7 @@ class Tracer:
         task = self.task
         prior, last = None, self.mark(curve, begin)
         met, ended, over = 0, begin, False
-        for point in follow(curve, begin, task.low, task.high, task.longest, task.most):
+        for point in follow(curve, begin, self.low, self.high, task.longest, task.most):
             if self.passages > 1 and _mirrored(ended.z, point.z):
                 over = (
                     True  # through the flip where the branch ends: what follows is the same, a passage later
@@ -276,7 +275,7 @@ class Tracer:
                 self.tell(new.point.parameter)
             prior, last, ended = last, new, point
             met = met + 1 if known(self.others, self.passages, point.parameter, point.z) else 0
-            over = met > 1 or not task.low < point.parameter < task.high
+            over = met > 1 or not self.low < point.parameter < self.high
             if over:
                 break
         yield last
@@ -289,10 +288,10 @@ class Tracer:
 
     def _cut(self, curve: Curve, last: Mark, new: Mark) -> Mark:
         """The point itself, or of one beyond the range the motion at its end."""
-        task, p = self.task, new.point.parameter
-        if task.low <= p <= task.high:
+        p = new.point.parameter
+        if self.low <= p <= self.high:
             return new
-        end = task.low if p < task.low else task.high
+        end = self.low if p < self.low else self.high
         a, b = last.point, new.point
         share = (end - a.parameter) / (b.parameter - a.parameter)
         found = newton(curve.at(end), a.z + share * (b.z - a.z), tolerance=curve.tolerance)
@@ -330,7 +329,7 @@ class Tracer:
         """The branch of twice the period that begins at a flip, or None where it is not found."""
         task, twice = self.task, 2 * self.passages
         tracer = Tracer(task, twice, self.others, self.tell)
-        curve = curve_of(task, self.lines, _found(flip.point), self.passages)
+        curve = curve_of(task, self.lines, found_at(flip.point), self.passages)
         balance = curve.at(flip.point.parameter)
         direction = task.stability(balance, flip.point.z, self.passages, FINER).antiperiodic(tracer.lines)
         if direction is None:
@@ -339,7 +338,7 @@ class Tracer:
         direction = np.pad(direction, ((0, 0), (0, flip.point.z.shape[1] - direction.shape[1])))
         z = self.lines.moved(flip.point.z, tracer.lines, 2)
         size = BEGIN * float(np.linalg.norm(flip.point.z[1:])) / max(float(np.linalg.norm(direction)), 1e-300)
-        grown = curve_of(task, tracer.lines, replace(_found(flip.point), z=z), twice)
+        grown = curve_of(task, tracer.lines, replace(found_at(flip.point), z=z), twice)
         border = flat(direction / grown.size)
         border /= np.linalg.norm(border)
         # near the flip the derivative is nearly singular: the tangent needs the point's own
@@ -365,7 +364,7 @@ def divided(balance: Balance, passages: int) -> Balance:
     return replace(balance, bases=repeated)
 
 
-def _found(point: Point) -> Found:
+def found_at(point: Point) -> Found:
     return Found(point.z, point.pressed, point.residual, 0, point.iterations, True)
 
 
@@ -408,97 +407,3 @@ def known(branches: Sequence[Branch], passages: int, parameter: float, z: Comple
             if float(np.linalg.norm(near - z)) <= DIFFERENT * size + 0.2 * gap:
                 return True
     return False
-
-
-@dataclass(frozen=True)
-class Job:
-    """One search for branches: "sweep" from a place in a direction, "state" begun by a push, or "flip"."""
-
-    kind: str
-    place: float
-    direction: float = 0.0
-    push: float = 0.0
-    origin: str = ""
-
-
-def sweeps(task: Task) -> list[Job]:
-    """Branches from both ends of the range: the jobs that search for them."""
-    return [
-        Job("sweep", task.high, -1.0, origin="coasting down"),
-        Job("sweep", task.low, 1.0, origin="running up"),
-    ]
-
-
-def states(task: Task) -> list[Job]:
-    """Branches from several states within the range: the jobs that search for them."""
-    places = np.linspace(task.low, task.high, PLACES + 2)[1:-1].tolist()
-    return [Job("state", p, push=push, origin="another state") for p in places for push in (0.0, *PUSHES)]
-
-
-def done(
-    task: Task, job: Job, others: Sequence[Branch], flip: tuple[int, Mark] | None = None, tell: Tell = None
-) -> list[Branch]:
-    """Branches that one job finds and that are not known from others."""
-    # what laws are asked beyond their bands the map has told, and a worker's own thread knows nothing of that
-    with untold(OutsideBand):
-        if job.kind == "sweep":
-            return _sweep(task, others, job, tell)
-        if job.kind == "state":
-            return _state(task, others, job, tell)
-        assert flip is not None
-        made = Tracer(task, flip[0], others, tell).doubled(flip[1])
-        return [] if made is None or _same_start(made, others) else [made]
-
-
-def _state(task: Task, others: Sequence[Branch], job: Job, tell: Tell) -> list[Branch]:
-    lines = task.lines(1)
-    rest = task.standing(job.place, lines)
-    z = rest.copy()
-    # a swing of its own size across the load, in the sense of rotation
-    size = job.push * float(np.abs(rest[0]).max(initial=0.0))
-    z[1] += size * np.where(np.arange(z.shape[1]) % 2 == 0, 1.0, -1j)
-    found = newton(task.at(job.place, lines), z, tolerance=1e-10, most=25)
-    if not found.converged or known(others, 1, job.place, found.z):
-        return []
-    made: list[Branch] = []
-    for direction in (-1.0, 1.0):
-        tracer = Tracer(task, 1, [*others, *made], tell)
-        made.append(tracer.trace(found, job.place, direction, job.origin))
-    return made
-
-
-def _same_start(branch: Branch, others: Sequence[Branch]) -> bool:
-    """Whether a branch is one that is known already, begun at its other end."""
-    middle = branch.marks[len(branch.marks) // 2].point
-    if known(others, branch.passages, middle.parameter, middle.z):
-        return True
-    # half a period later it is the same motion
-    odd = np.arange(len(middle.z)) % 2 == 1
-    z = middle.z.copy()
-    z[odd] *= -1.0
-    return known(others, branch.passages, middle.parameter, z)
-
-
-def _sweep(task: Task, others: Sequence[Branch], job: Job, tell: Tell) -> list[Branch]:
-    """Branches met from one end, leaping on where one can be followed no further."""
-    lines = task.lines(1)
-    found: list[Branch] = []
-    place = job.place
-    z = task.standing(place, lines)
-    for _ in range(LEAPS):
-        if not task.low <= place <= task.high:
-            break
-        motion = newton(task.at(place, lines), z, tolerance=1e-10)
-        if not motion.converged:
-            motion = newton(task.at(place, lines), task.standing(place, lines), tolerance=1e-10)
-        if motion.converged:
-            have = [*others, *found]
-            if known(have, 1, place, motion.z):
-                break
-            found.append(Tracer(task, 1, have, tell).trace(motion, place, job.direction, job.origin))
-            last = found[-1].marks[-1]
-            if last.event != "failed":
-                break
-            place, z = last.point.parameter, last.point.z
-        place += job.direction * LEAP * (task.high - task.low)
-    return found

@@ -210,6 +210,12 @@ def straight(before: float, after: float) -> bool:
     return before * after > 0.0 and min(abs(before), abs(after)) > max(STEADY * abs(before), LEVEL)
 
 
+def backwards(before: Point, after: Point) -> bool:
+    """Whether a continuation's parameter went against both tangents: the step leapt over folds, or off."""
+    moved = after.parameter - before.parameter
+    return moved * before.slope < 0.0 and moved * after.slope < 0.0
+
+
 class Solver(Protocol):
     """Solver of a continuation: for a correction (dz flat, dp) in a curve's measure."""
 
@@ -317,7 +323,7 @@ def follow(curve: Curve, start: Point, low: float, high: float, longest: float, 
         while True:
             turning = 0.0 if bend is None else length * float(np.linalg.norm(bend))
             new = curve.step(point, length, bend=bend if turning <= HARD_TURN else None)
-            if new is not None and curve.turn(point, new) <= LARGEST_TURN:
+            if new is not None and curve.turn(point, new) <= LARGEST_TURN and not backwards(point, new):
                 break
             if not own:
                 # a tangent by a neighbour's slope may point past the curve, and no shorter step mends that

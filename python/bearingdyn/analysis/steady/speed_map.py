@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -16,23 +16,12 @@ from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.softening import layer_names, warn_of_strain
 from bearingdyn.analysis.steady.borne import PUSH, Borne, pushed, warn_of_motions
 from bearingdyn.analysis.steady.branch_files import BranchFiles
-from bearingdyn.analysis.steady.branches import (
-    Branch,
-    Family,
-    Job,
-    Made,
-    Mark,
-    Speeds,
-    Task,
-    divided,
-    done,
-    states,
-    sweeps,
-)
+from bearingdyn.analysis.steady.branches import Branch, Family, Made, Mark, Speeds, Task, divided, known
 from bearingdyn.analysis.steady.cut_harmonics import CUT, cut_off, share_cut, warn_of_cut
 from bearingdyn.analysis.steady.event_accuracy import within
 from bearingdyn.analysis.steady.motion import MOTIONS
 from bearingdyn.analysis.steady.problem import Problem
+from bearingdyn.analysis.steady.searches import Job, done, joined, onward, states, sweeps
 from bearingdyn.application import Application
 from bearingdyn.checks import name_list, number, one_speed, require, vector, whole
 from bearingdyn.material import band_told_once
@@ -43,6 +32,9 @@ from bearingdyn.units import takes
 
 if TYPE_CHECKING:
     import xarray
+
+Search: TypeAlias = tuple[Job, tuple[int, Mark] | None]
+"""A job, and what it begins at if it begins at a mark: passages of its branch, and the mark."""
 
 # harmonics of a passage in a map, samples for each, points of a branch at most; what may be asked
 HARMONICS, PER, MOST = 24, 16, 5000
@@ -70,11 +62,12 @@ def speed_map(
 ) -> xarray.Dataset:
     """Follow all steady motions over a range of speeds, with their stability.
 
-    Branches are followed by the length of their arc, round folds, from both ends of the range: as a
-    coast-down and a run-up would meet them, and from several states between, for branches that hang
-    together with none of these. Folds, flips (period doublings) and Neimark–Sacker points are located; at
-    flips the branch of twice the period is followed as well. Where a branch can be followed no further a
-    point is marked "failed", and the search goes on beyond it.
+    Branches are followed by the length of their arc, round folds, from both ends of the range to its
+    geometric middle, and on from there where they do not meet: as a coast-down and a run-up would meet them;
+    and from several states between, for branches that hang together with none of these. Folds, flips (period
+    doublings) and Neimark–Sacker points are located; at flips the branch of twice the period is followed as
+    well. Where a branch can be followed no further a point is marked "failed", and the search goes on beyond
+    it.
 
     Parameters
     ----------
@@ -142,7 +135,7 @@ def speed_map(
     problem = Problem.of(source)
     problem.system.check_speed(high)
     family = Speeds(problem)
-    task = _task(family, record, low, high, harmonics, points, 1e-6)
+    task = _task(family, record, (low, math.sqrt(low * high), high), harmonics, points, 1e-6)
     with band_told_once(*_asked(task)):
         branches = _branches(task, doublings, several, store, executor, progress)
     cut = _cut_of_told(task, branches, "at {:.6g} rad/s")
@@ -200,7 +193,7 @@ def parameter_map(
     speed = number("speed", one_speed(speed, rpm), "it must be one finite speed in rad/s")
     require(speed != 0.0, "speed", speed, "at rest nothing passes; give the speed of the shaft in rad/s")
     family = Made(make, speed)
-    task = _task(family, record, low, high, harmonics, points, MADE_SLOPE)
+    task = _task(family, record, (low, 0.5 * (low + high), high), harmonics, points, MADE_SLOPE)
     with band_told_once(*_asked(task)):
         branches = _branches(task, doublings, several, store, executor, progress)
     cut = _cut_of_told(task, branches, "at the value {:.6g}")
@@ -214,8 +207,14 @@ def _range(field: str, value: object, meaning: str) -> tuple[float, float]:
 
 
 def _task(
-    family: Family, record: Sequence[str], low: float, high: float, harmonics: int, points: int, slope: float
+    family: Family,
+    record: Sequence[str],
+    span: tuple[float, float, float],
+    harmonics: int,
+    points: int,
+    slope: float,
 ) -> Task:
+    low, middle, high = span
     record = name_list("record", record)
     problem, _ = family.at(high)
     for name in record:
@@ -236,6 +235,7 @@ def _task(
         tuple(record),
         low,
         high,
+        middle,
         (high - low) / whole("points", points, 2, 100_000),
         whole("harmonics", harmonics, 1, MOST_HARMONICS),
         PER,
@@ -272,39 +272,43 @@ def _branches(
     executor: Executor | None,
     progress: Progress | bool | None,
 ) -> list[Branch]:
-    """All branches: sweeps, then states between, then what begins at flips."""
+    """All branches: sweeps, what goes on from them, states between, then what begins at flips."""
     doublings = whole("doublings", doublings, 0)
     files = None if store is None else BranchFiles.of(store, _about(task))
     branches: list[Branch] = []
     with told(progress, "search") as tell:
-        rounds: list[list[tuple[Job, tuple[int, Mark] | None]]] = [[(job, None) for job in sweeps(task)]]
-        if several:
-            rounds.append([(job, None) for job in states(task)])
-        at, seen = 0, 0
-        while at < len(rounds):
-            for made in _run(task, rounds[at], branches, files, executor):
-                branches += [b for b in made if not _known(b, branches)]
+        seen = 0
+
+        def search(jobs: Sequence[Search]) -> None:
+            nonlocal seen
+            total = seen + len(jobs)
+            for made in _run(task, jobs, branches, files, executor):
+                branches.extend(b for b in made if not _known(b, branches))
                 seen += 1
                 if tell is not None:
-                    tell(seen, sum(map(len, rounds)))
-            at += 1
-            if at == len(rounds):
-                level = 2 ** (at - (2 if several else 1))
-                flips = [
+                    tell(seen, total)
+
+        search([(job, None) for job in sweeps(task)])
+        search(onward(task, branches))
+        branches[:] = joined(task, branches)
+        if several:
+            search([(job, None) for job in states(task)])
+        for level in range(doublings):
+            search(
+                [
                     (Job("flip", m.point.parameter, origin=f"{k}.{i}"), (b.passages, m))
                     for k, b in enumerate(branches)
-                    if b.passages == level and level < 2**doublings
+                    if b.passages == 2**level
                     for i, m in enumerate(b.marks)
                     if m.event == "flip"
                 ]
-                if flips:
-                    rounds.append(list(flips))
+            )
     return branches
 
 
 def _run(
     task: Task,
-    jobs: Sequence[tuple[Job, tuple[int, Mark] | None]],
+    jobs: Sequence[Search],
     branches: list[Branch],
     files: BranchFiles | None,
     executor: Executor | None,
@@ -344,8 +348,6 @@ def _kept(
 
 def _known(branch: Branch, others: Sequence[Branch]) -> bool:
     """Whether nearly all of a branch is known: two searches at once may find the same."""
-    from bearingdyn.analysis.steady.branches import known
-
     points = [m.point for m in branch.marks if m.event != "failed"]
     hits = sum(known(others, branch.passages, p.parameter, p.z) for p in points)
     return bool(points) and hits > 0.9 * len(points)

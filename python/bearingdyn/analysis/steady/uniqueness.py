@@ -10,9 +10,10 @@ import numpy as np
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Found, newton
-from bearingdyn.analysis.steady.branches import Branch, Speeds, Task, done, sweeps
+from bearingdyn.analysis.steady.branches import Speeds, Task
 from bearingdyn.analysis.steady.motion import Motion
 from bearingdyn.analysis.steady.problem import Problem
+from bearingdyn.analysis.steady.searches import from_both_ends
 from bearingdyn.application import Application
 from bearingdyn.checks import require
 from bearingdyn.system import System
@@ -52,13 +53,10 @@ class Approaches:
         channels = [channel_of(self.problem.system, name)[0] for name in record]
         low, high = sorted((FROM * self.speed, TO * self.speed))
         step, tolerance = (high - low) / POINTS, 1e-6 * (high - low)
-        task = Task(Speeds(self.problem), (), low, high, step, HARMONICS, PER, MOST, tolerance)
-        branches: list[Branch] = []
-        for job in sweeps(task):
-            branches += done(task, job, branches)
+        task = Task(Speeds(self.problem), (), low, high, self.speed, step, HARMONICS, PER, MOST, tolerance)
         balance = self.problem.balance(task.lines(1), self.speed)
         found: list[Found] = []
-        for branch in branches:
+        for branch in from_both_ends(task):
             points = [m.point for m in branch.marks if m.event != "failed"]
             for a, b in pairwise(points):
                 p, q = a.parameter - self.speed, b.parameter - self.speed
