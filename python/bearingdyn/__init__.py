@@ -89,11 +89,13 @@ PUBLIC = {
             "Section",
             "Shaft",
             "Solid",
+            "SolidFamily",
             "Squeezed",
             "Where",
             "at_radius",
             "damping_sample",
             "quadrilaterals",
+            "solid_family",
             "specimen_factor",
         ),
         "fem": (

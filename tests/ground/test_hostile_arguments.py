@@ -69,6 +69,13 @@ CASES: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Section": (bd.Section, {"length": 0.1, "d_outer": 0.02}),
     "Shaft": (bd.Shaft, {"sections": [bd.Section(0.1, 0.02)], "seats": {"left": 0.02}}),
     "Housing": (bd.Housing, {**BLOCK, "f_max": 0.0, "element_size": 0.03}),
+    "solid_family": (
+        bd.solid_family,
+        {
+            "build": lambda d: bd.Housing(**BLOCK | {"bore_diameter": d}, f_max=0.0, element_size=0.06),
+            "low": 0.0295, "high": 0.0305, "frequency": [100.0], "tolerance": 0.5,
+        },
+    ),
     "Layer": (bd.Layer, {"r_inner": 0.026, "r_outer": 0.030, "width": 0.015, "material": RUBBER}),
     "ORing": (bd.ORing, {"radius": 0.02, "cord": 0.003, "material": RUBBER}),
     "FlexibleBore": (bd.FlexibleBore, {"surface": "bore", "order": 4}),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from bearingdyn.cms.basis import Basis, orthogonalise
 from bearingdyn.cms.dynamic_stiffness import Dynamics, Transfer
 from bearingdyn.cms.full_model import FullModel
 from bearingdyn.cms.reduction import project
+from bearingdyn.cms.superelement import Superelement
 from bearingdyn.fem import rigid_transfer
 from bearingdyn.material import answer_of
 from bearingdyn.pictures import page
@@ -71,6 +72,7 @@ def reduction_error(
     held: str | None = None,
     exact: bool = False,
     solves: int = 12,
+    element: Superelement | None = None,
 ) -> ReductionError:
     """Relative error of a reduction at given frequencies.
 
@@ -100,6 +102,9 @@ def reduction_error(
         changed most by the last ones, until it changes by less than a tenth.
     solves
         Most solves of the full model for an estimate.
+    element
+        The reduced matrices to be judged, in the coordinates of the basis, where they are interpolated ones;
+        None: the model's projections.
 
     Returns
     -------
@@ -123,8 +128,11 @@ def reduction_error(
     damping = number("damping", damping, "it must be a damping ratio, 0 <= damping < 1")
     case = _Case(model, basis, loads, fixed, damping, held)
     exact = truth("exact", exact)
+    judged = project(model, basis)
+    if element is not None:
+        judged = replace(element, C=judged.C)  # the case adds the dampers
     omega = 2.0 * np.pi * f
-    reduced = [case.response(t) for t in case.reduced(basis, omega)]
+    reduced = [case.response(t) for t in case.reduced(basis, judged, omega)]
     if exact:
         full = [case.response(case.dynamics.solve(w)[0]) for w in omega]
         return ReductionError(f, _relative(reduced, full), True, f)
@@ -139,7 +147,7 @@ def reduction_error(
     estimate: Array | None = None
     while True:
         larger = case.enlarged(basis, shapes, omega[chosen])
-        full = [case.response(t) for t in case.reduced(larger, omega)]
+        full = [case.response(t) for t in case.reduced(larger, project(model, larger), omega)]
         for i, response in true.items():
             full[i] = response
         last, estimate = estimate, _relative(reduced, full)
@@ -233,9 +241,9 @@ class _Case:
         scaled = t.receptance(self.free) * self.scale[:, None] / self.scale
         return np.asarray(scaled[:, self.columns])
 
-    def reduced(self, basis: Basis, omega: Array) -> list[Transfer]:
-        """Transfers of the model projected on a basis."""
-        small = FullModel.of(project(self.model, basis))
+    def reduced(self, basis: Basis, element: Superelement, omega: Array) -> list[Transfer]:
+        """Transfers of reduced matrices in the coordinates of a basis; the dampers are the case's own."""
+        small = FullModel.of(element)
         damper = None
         if self.damper is not None:
             B, c = self.damper

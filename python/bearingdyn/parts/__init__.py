@@ -27,6 +27,7 @@ from bearingdyn.parts.ring_support import RingBed, RingPoints
 from bearingdyn.parts.rubber_zones import RubberZone
 from bearingdyn.parts.shaft import Shaft
 from bearingdyn.parts.solid import RigidSurface, Solid
+from bearingdyn.parts.solid_family import SolidFamily, solid_family
 from bearingdyn.parts.solid_prestress import SolidPrestress
 from bearingdyn.parts.specimen import specimen_factor
 from bearingdyn.parts.squeezed import Squeezed
@@ -71,6 +72,7 @@ __all__ = [
     "Section",
     "Shaft",
     "Solid",
+    "SolidFamily",
     "SolidPrestress",
     "Squeezed",
     "Strain",
@@ -81,5 +83,6 @@ __all__ = [
     "damping_sample",
     "layer_slopes",
     "quadrilaterals",
+    "solid_family",
     "specimen_factor",
 ]
