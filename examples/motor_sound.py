@@ -72,9 +72,7 @@ def table(found: Mapping[str, xarray.Dataset]) -> None:
             f"{float(levels['equivalent_total']):>8.1f} dB(A)"
         )
     worst = max(float(levels["interpolation_error"]) for levels in found.values())
-    print(
-        f"  re 1 pW; interpolating the radiation over frequency leaves {worst:.2f} dB by its own estimate"
-    )
+    print(f"  re 1 pW; interpolating the radiation over frequency leaves {worst:.2f} dB by its own estimate")
     print(
         f"  above {BANDS[-1]:.0f} Hz nothing is said, though the pedestals are right to 10 kHz: they face "
         f"one another, and their echoes ask for five times as many frequencies"
