@@ -375,7 +375,7 @@ def main() -> int:
     sweeps = sweep_part(states, clock)
 
     with clock.stage("sound power of the pedestals"):
-        sounds = {label: motor_sound.heard(states[label].rest, kept) for label in IN_MOTION}
+        sounds = {label: motor_sound.heard(state.rest, kept) for label, state in states.items()}
     motor_sound.table(sounds)
 
     stored = {f"response/{label}": found.response for label, found in harmonics.items()}

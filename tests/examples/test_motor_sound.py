@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import motor
 import motor_sound
 import numpy as np
@@ -9,6 +11,9 @@ import pytest
 import xarray
 
 import bearingdyn as bd
+from bearingdyn.analysis import Input, linear, part_velocities
+from bearingdyn.sound import solve
+from bearingdyn.sound.radiating_parts import RadiatingParts
 
 
 def test_every_third_octave_holds_the_same_force() -> None:
@@ -62,10 +67,34 @@ def test_the_table_and_the_picture_show_every_design(capsys: pytest.CaptureFixtu
 
 
 @pytest.mark.slow
-def test_layers_make_the_demo_quieter_to_the_ear_and_the_plane_overstates_it() -> None:
+def test_every_layer_makes_the_demo_quieter_to_the_ear_and_the_plane_overstates_it(tmp_path: Path) -> None:
     rubber = motor.rubber()[0]
-    bare, _, lossy, _ = (motor_sound.heard(bd.equilibrium(motor.motor(d))) for d in motor.designs(rubber))
-    assert float(lossy["weighted_total"]) < float(bare["weighted_total"]) - 6.0
-    for one in (bare, lossy):
+    bare, *layered = (
+        motor_sound.heard(bd.equilibrium(motor.motor(d)), tmp_path) for d in motor.designs(rubber)
+    )
+    for one in layered:
+        assert float(one["weighted_total"]) < float(bare["weighted_total"]) - 4.0
+    for one in (bare, *layered):
         assert float(one["interpolation_error"]) < 0.05  # the figure that the issue of the radiation names
         assert float(one["equivalent_total"]) > float(one["weighted_total"])
+
+
+@pytest.mark.slow
+def test_the_demos_power_is_that_of_direct_solutions_at_random_frequencies() -> None:
+    """Two pedestals that echo, at 20 frequencies, within .05 dB; .006 seen.
+
+    The result's own estimate is .16 dB where the two cancel to 1e-5 of the loudest line.
+    """
+    state = linear(bd.equilibrium(motor.motor(motor.Design("no layer"))))
+    given = [Input.of(state.system, motor.INPUT)]
+    parts = RadiatingParts.of(
+        state.system, motor.SURFACES, highest=motor_sound.BANDS[-1], floor=None, density=1.204,
+        sound_speed=343.2, element_size=0.03,
+    )  # fmt: skip
+    f = np.sort(np.random.default_rng(20).choice(motor_sound.FREQUENCY, 20, replace=False))
+    velocity = np.hstack([v[:, :, 0] for v in part_velocities(state, parts.parts, f, given)])
+    surface, rows = parts.radiators.surface(0.03)
+    for at, octave in parts.octaves(f):
+        power, _ = octave.power(f[at], velocity[at])
+        direct = [solve(surface, rows, f[i], coarse=True).power(velocity[i]) for i in at]
+        assert 10 * np.log10(power / direct) == pytest.approx(0.0, abs=0.05)

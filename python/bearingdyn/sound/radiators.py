@@ -16,8 +16,9 @@ from bearingdyn.sound.skin_panels import SkinPanels, panelled
 from bearingdyn.sound.triangle_surface import TriangleSurface
 from bearingdyn.types import Array, Index
 
-PER_WAVELENGTH = 4.0  # sides of the program's panels; a sphere's power is then within .01 dB
-PER_BODY = 10.0  # sides along the longest extent of a body, at least
+# Sides of the program's panels, and along the longest extent of a body, at least. A sphere's power is within
+# .005 dB with fewer; a plate's, whose edges the panels resolve worst, asks for them: .07 dB and less.
+PER_WAVELENGTH, PER_BODY = 6.0, 16.0
 
 
 @dataclass(frozen=True, eq=False)
