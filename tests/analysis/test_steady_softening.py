@@ -9,10 +9,12 @@ from tests.analysis.test_steady_state import SPEED, fitted, preloaded
 import bearingdyn as bd
 import rotors
 from bearingdyn.analysis.steady.factored import jacobian
+from bearingdyn.analysis.steady.layer_lines import SoftLayers
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.torus import Lines
 from bearingdyn.material import held_at
 from bearingdyn.notice import BeyondSweep
+from bearingdyn.system import LayerTerm
 
 RECORD = ["shaft.end.y", "block.centre.y"]
 
@@ -158,6 +160,36 @@ def test_a_layer_held_at_its_amplitude_has_the_modulus_of_the_law():
             met = RUBBER.modulus_at(rate, gamma, rate)
             own = material.complex_modulus(rate)
             assert abs(own - met) < 3e-3 * abs(met)
+
+
+def test_what_strain_and_mean_frequency_add_is_the_derivative_of_the_force():
+    """Of each of two layers, on coordinates that weigh differently: against differences of the force itself.
+
+    Newton finds the motion with another slope too, only more slowly: the answer does not tell.
+    """
+    rng = np.random.default_rng(3)
+    terms = tuple(
+        LayerTerm("layer", RUBBER, rng.normal(size=(3, 2)), strain=rng.uniform(0.5, 2.0, 2)) for _ in range(2)
+    )
+    layers = SoftLayers(terms)
+    omega = 2 * np.pi * np.array([0.0, 130.0, 200.0, 320.0])
+    size = (len(omega), 4)
+    y, dy = (1e-3 * (rng.normal(size=size) + 1j * rng.normal(size=size)) for _ in range(2))
+    y[0], dy[0] = y[0].real, dy[0].real
+    standing = 1e-3 * rng.normal(size=4)
+
+    def force(step):
+        at = layers.along(y + step * dy, omega, standing)
+        return at.change * (y + step * dy) + at.lasting
+
+    here, step = layers.along(y, omega, standing), 1e-5
+    given = here.change * dy + here.forced(dy)
+    wanted = (force(step) - force(-step)) / (2 * step)
+    assert (here.strain > 1e-3).all()
+    # differences: step² of the third derivative, and round-off over the step
+    assert given == pytest.approx(wanted, abs=1e-8 * np.abs(wanted).max())
+    without = np.abs(here.forced(dy)).max(axis=1)
+    assert (without > 1e-2 * np.abs(wanted).max(axis=1)).all()
 
 
 def test_the_derivative_has_the_strain_in_it():

@@ -321,6 +321,10 @@ def test_deformations_that_cannot_be_are_named() -> None:
         ({"press": {"plate": -1e-4}, "slip": ("plate",)}, "a depth of 0 or more"),
         ({"press": {"plate": 1e-4}, "slip": "plate"}, "slip is 'plate'; give a list of interfaces"),
         ({"press": {"plate": 0.5}}, r"press\['plate'\] is 0\.5; the body is 0\.04 m large; is it in mm"),
+        (
+            {"press": {"plate": 0.05}},
+            r"press\['plate'\] is 0\.05; the body is 0\.01 m deep there; is it in mm",
+        ),
         ({"press": {"plate": (0, 0, 0, 0, 30.0, 0)}}, r"it turns by 30 rad; is it in degrees"),
         ({"press": {"plate": 1e-4}, "law": "rubber"}, "law is 'rubber'"),
         ({"press": {"plate": 1e-4}, "law": bd.NeoHooke}, "law is <class"),

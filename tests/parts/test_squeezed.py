@@ -184,6 +184,9 @@ def test_squeezes_that_cannot_be_are_named() -> None:
         layer(6 * MM)
     with pytest.raises(ValueError, match=r"press is 'middle'"):
         flat.body.assembled({"middle": 1e-4})
+    for motion, size in ((0.25, "0.004 m deep"), (0.005, "0.004 m deep"), ((0.25, 0.0), "0.012 m large")):
+        with pytest.raises(ValueError, match=rf"press\['outer'\] is .*; the body is {size}.*is it in mm"):
+            flat.body.assembled({"outer": motion})
     with pytest.raises(ValueError, match=r"slip is 'outer'; give a list of interfaces"):
         flat.body.assembled({"outer": 1e-4}, slip="outer")
     with pytest.raises(ValueError, match="no stiffness"):

@@ -30,6 +30,7 @@ from bearingdyn.types import Array, Index
 Travel = float | tuple[float, float]
 STABLE = 1e-3  # least modulus of a further change of shape, over the first, that counts as stable
 DOUBTFUL = 0.1  # below which the law is to blame where a search for balance ends
+FARTHEST = 10.0  # motion of a plate, over the size of the body, beyond which a length is taken to be in mm
 FOLDED = 1e-6  # how far past a rigid face, over the section's size, a free surface is folded over it
 
 FOLD = "the free surface folds over the edge of {name!r}, where it is bonded; {remedy}"
@@ -41,6 +42,19 @@ UNSTABLE = (
     "the law is not stable there (its least modulus is {least:.2g} of that at rest, at a stretch of "
     "{stretch:.3g}); take coefficients that suit such strains, or squeeze less"
 )
+
+
+def check_reach(field: str, given: object, length: float, size: float, along: float | None = None) -> None:
+    """Check how far a rigid face moves; ValueError for what is in mm, m.
+
+    size is that of the body; along, its depth where the face moves straight into it.
+    """
+    most, what = (
+        (FARTHEST * size, f"the body is {size:.3g} m large")
+        if along is None or length < 0.0
+        else (along, f"the body is {along:.3g} m deep there")
+    )
+    require(abs(length) < most, field, given, f"{what}; is it in mm? It must be in m")
 
 
 def check_law(law: object) -> Hyperelastic:
@@ -312,6 +326,10 @@ def squeeze(
                 raise ValueError(
                     f"press[{name!r}] is {given}; a face that slips cannot be pulled: 0 or more, m"
                 )
+            if name in sides:
+                along = float(np.ptp((mesh.r, mesh.z)[sides[name].axis]))
+                check_reach(f"press[{name!r}]", given, depth, mesh.size, along)
+        check_reach(f"press[{name!r}]", given, float(np.linalg.norm(move)), mesh.size)
         travel[name] = move
         if (
             name not in slip

@@ -13,7 +13,7 @@ import scipy
 from bearingdyn.checks import meant, name_list, require, vector
 from bearingdyn.cms import RigidInterface
 from bearingdyn.fem import SAME, NoBalance, SolidElements, SolidMesh, SolidState, Wall, balance, rigid_motion
-from bearingdyn.parts.prestress import FOLD, FOLDED, blame_the_law, unstable
+from bearingdyn.parts.prestress import FOLD, FOLDED, blame_the_law, check_reach, unstable
 from bearingdyn.parts.squeezed import Squeezed
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
@@ -22,7 +22,6 @@ Move = float | Sequence[float]
 """A depth along the inward normal, m; (x, y, z), m; or (x, y, z, θx, θy, θz) of the reference, m and rad."""
 MOVE = "it must be a depth into the body, m, or its motion (x, y, z) or (x, y, z, θx, θy, θz), m and rad"
 BALANCED = 1e-8  # resultant on a face, over the sum of its nodal forces, that counts as none
-FARTHEST = 10.0  # motion of a plate, over the size of the body, beyond which a length is taken to be in mm
 PUSHED = 1e-6  # reaction, over the largest nodal force, with which nothing may be pushed aside
 ROUND_EDGE = "round off or recess the free surface there, or let the plate slip (slip=...)"
 
@@ -237,10 +236,9 @@ def _travel(name: str, given: Any, mesh: SolidMesh, plate: Plate) -> _Travel:
     """A plate's motion as it is given."""
     points, field = mesh.points[plate.nodes], f"press[{name!r}]"
     size = float(np.ptp(mesh.points, axis=0).max())
-    far = f"the body is {size:.3g} m large; is it in mm? It must be in m"
     if np.ndim(given) == 0:
         depth = float(vector(field, [given], (1,), MOVE)[0])
-        require(abs(depth) <= FARTHEST * size, field, given, far)
+        check_reach(field, given, depth, size)
         normal = node_normals(mesh, _faces_of(mesh, plate.nodes))[plate.nodes]
         require(
             bool(np.all(np.linalg.norm(normal, axis=1) > 0.5)),
@@ -250,11 +248,12 @@ def _travel(name: str, given: Any, mesh: SolidMesh, plate: Plate) -> _Travel:
         )
         flat = float(np.abs(normal - normal[0]).max()) < 1e-9
         if flat:
+            check_reach(field, given, depth, size, float(np.ptp(mesh.points @ normal[0])))
             return _Travel(plate, points, np.concatenate([-depth * normal[0], np.zeros(3)]), None)
         return _Travel(plate, points, None, -depth * normal)
     count = 6 if np.size(given) == 6 else 3
     move = vector(field, given, (count,), MOVE)
-    require(float(np.linalg.norm(move[:3])) <= FARTHEST * size, field, given, far)
+    check_reach(field, given, float(np.linalg.norm(move[:3])), size)
     turn = float(np.linalg.norm(move[3:]))
     require(turn <= np.pi, field, given, f"it turns by {turn:.3g} rad; is it in degrees? At most π, in rad")
     return _Travel(plate, points, np.concatenate([move, np.zeros(6 - count)]), None)
