@@ -25,7 +25,7 @@ from bearingdyn.analysis.steady import branches as tracing
 from bearingdyn.analysis.steady import searches
 from bearingdyn.analysis.steady.balance import flat, newton, unflat
 from bearingdyn.analysis.steady.continuation import Point, backwards, follow, locate
-from bearingdyn.analysis.steady.event_accuracy import once, within
+from bearingdyn.analysis.steady.event_accuracy import half_turn, once, within
 from bearingdyn.analysis.steady.factored import Factored, jacobian
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.reaching import curve_of
@@ -196,6 +196,22 @@ def test_an_event_on_a_point_is_told_once(hysteresis: xarray.Dataset) -> None:
     located = hysteresis["event"].values != ""
     assert np.isfinite(hysteresis["located_within"].values[located]).all()
     assert np.isnan(hysteresis["located_within"].values[~located]).all()
+
+
+def test_a_pair_that_turns_through_minus_one_between_points_is_seen() -> None:
+    def pair(size: float, left: float) -> list[complex]:
+        m = size * np.exp(1j * (math.pi - left))
+        return [m, m.conjugate(), 0.5 * m, 0.3 + 0.0j]
+
+    places = [10.0, 9.0, 8.0]
+    # 0.5, 0.3 and 0.1 beyond what is left of the half turn: the crossing lies three quarters of the way
+    found = half_turn([pair(0.99, 0.5), pair(0.99, 0.3), pair(0.99, 0.1)], places)
+    assert found is None
+    turned = half_turn([pair(0.99, 0.7), pair(0.99, 0.3), pair(0.99, 0.1)], places)
+    assert turned == pytest.approx(0.75)
+    # another mode, or one that dies away at once
+    assert half_turn([pair(0.99, 0.7), pair(0.99, 0.3), pair(0.95, 0.1)], places) is None
+    assert half_turn([pair(0.8, 0.7), pair(0.8, 0.3), pair(0.8, 0.1)], places) is None
 
 
 def test_a_store_gives_the_same_map_again_without_work(tmp_path, monkeypatch, hysteresis) -> None:

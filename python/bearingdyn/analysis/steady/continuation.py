@@ -361,7 +361,7 @@ def locate(
     Between brackets (R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4): a
     multiplier is none before it meets another on the real axis, so that a test may leap, and secants rest.
     """
-    end = _distance(curve, before, after)
+    end = distance(curve, before, after)
     known = {0.0: test(before), end: test(after)}
     if not known[0.0] * known[end] < 0.0:
         return None
@@ -382,7 +382,7 @@ def locate(
     return tried[min(tried, key=lambda s: abs(known[s]))]
 
 
-def _distance(curve: Curve, a: Point, b: Point) -> float:
-    """How far along the tangent of a point another lies."""
+def distance(curve: Curve, a: Point, b: Point) -> float:
+    """How far along the tangent of a continuation's point another lies."""
     dz = flat((b.z - a.z) / curve.size)
     return float(a.tangent @ dz) + a.slope * (b.parameter - a.parameter) / curve.scale
