@@ -24,8 +24,8 @@ from bearingdyn.analysis import equilibrium, parameter_map, speed_map, steady_st
 from bearingdyn.analysis.steady import branches as tracing
 from bearingdyn.analysis.steady import searches
 from bearingdyn.analysis.steady.balance import flat, newton, unflat
-from bearingdyn.analysis.steady.continuation import backwards, follow
-from bearingdyn.analysis.steady.event_accuracy import once, within
+from bearingdyn.analysis.steady.continuation import Point, backwards, follow, locate
+from bearingdyn.analysis.steady.event_accuracy import half_turn, once, within
 from bearingdyn.analysis.steady.factored import Factored, jacobian
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.reaching import curve_of
@@ -196,6 +196,22 @@ def test_an_event_on_a_point_is_told_once(hysteresis: xarray.Dataset) -> None:
     located = hysteresis["event"].values != ""
     assert np.isfinite(hysteresis["located_within"].values[located]).all()
     assert np.isnan(hysteresis["located_within"].values[~located]).all()
+
+
+def test_a_pair_that_turns_through_minus_one_between_points_is_seen() -> None:
+    def pair(size: float, left: float) -> list[complex]:
+        m = size * np.exp(1j * (math.pi - left))
+        return [m, m.conjugate(), 0.5 * m, 0.3 + 0.0j]
+
+    places = [10.0, 9.0, 8.0]
+    # 0.5, 0.3 and 0.1 beyond what is left of the half turn: the crossing lies three quarters of the way
+    found = half_turn([pair(0.99, 0.5), pair(0.99, 0.3), pair(0.99, 0.1)], places)
+    assert found is None
+    turned = half_turn([pair(0.99, 0.7), pair(0.99, 0.3), pair(0.99, 0.1)], places)
+    assert turned == pytest.approx(0.75)
+    # another mode, or one that dies away at once
+    assert half_turn([pair(0.99, 0.7), pair(0.99, 0.3), pair(0.95, 0.1)], places) is None
+    assert half_turn([pair(0.8, 0.7), pair(0.8, 0.3), pair(0.8, 0.1)], places) is None
 
 
 def test_a_store_gives_the_same_map_again_without_work(tmp_path, monkeypatch, hysteresis) -> None:
@@ -408,6 +424,38 @@ def test_a_step_against_both_tangents_is_none() -> None:
     assert not backwards(point(1.0, 0.1), point(1.1, 0.2))
     assert not backwards(point(1.0, 0.1), point(0.9, -0.2))  # round a fold
     assert not backwards(point(1.0, -0.1), point(0.9, -0.2))
+
+
+@pytest.mark.parametrize("end", [1.0, -2.0])
+def test_an_event_is_located_where_its_test_leaps_before_it(end: float) -> None:
+    """A multiplier that is none up to 0.3, and crosses at 0.37: secants from −1 come to rest beside it."""
+
+    def point(s: float) -> Point:
+        return Point(np.array([[0j]]), s, None, 0.0, 0, np.zeros(2), 1.0)  # type: ignore[arg-type]
+
+    tried = []
+
+    def step(_: Point, s: float, exact: bool) -> Point:
+        assert exact
+        tried.append(s)
+        return point(s)
+
+    curve = SimpleNamespace(step=step, scale=1.0, size=1.0)
+    sign = math.copysign(1.0, end)
+    found = locate(
+        curve,  # type: ignore[arg-type]
+        point(0.0),
+        point(end),
+        lambda p: (
+            -1.0
+            if sign * p.parameter < 0.3
+            else (sign * p.parameter - 0.37) ** 3 + 0.01 * (sign * p.parameter - 0.37)
+        ),
+        1e-6,
+    )
+    assert found is not None
+    assert found.parameter == pytest.approx(sign * 0.37, abs=1e-6)
+    assert len(tried) < 40
 
 
 def test_bad_input_is_named_before_work() -> None:

@@ -12,8 +12,8 @@ import numpy as np
 
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
-from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, follow, locate
-from bearingdyn.analysis.steady.event_accuracy import once
+from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, distance, follow, locate
+from bearingdyn.analysis.steady.event_accuracy import half_turn, once
 from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.analysis.steady.layer_lines import Softened, frozen
 from bearingdyn.analysis.steady.problem import Problem
@@ -37,6 +37,8 @@ DIFFERENT = 1e-3
 BEGIN = 0.02
 # of a multiplier's size, within which an event lies on the unit circle
 ON_CIRCLE = 2e-3
+# of a multiplier's size, within which it may be beyond the circle by finer samples
+NEAR_FLIP = 0.02
 # times as many samples for the multipliers of a located point
 FINER = 12
 # what crosses the circle beside a fold, which the arc tells
@@ -255,13 +257,13 @@ class Tracer:
 
     def _marks(self, curve: Curve, begin: Point) -> Iterator[Mark]:
         task = self.task
-        prior, last = None, self.mark(curve, begin)
+        prior: Mark | None = None
+        last = self.mark(curve, begin)
         met, ended, over = 0, begin, False
         for point in follow(curve, begin, self.low, self.high, task.longest, task.most):
             if self.passages > 1 and _mirrored(ended.z, point.z):
-                over = (
-                    True  # through the flip where the branch ends: what follows is the same, a passage later
-                )
+                # through the flip where the branch ends: what follows is the same, a passage later
+                over = True
                 break
             new = self._cut(curve, last, self.mark(curve, point))
             if _crosses(last, new):
@@ -270,6 +272,11 @@ class Tracer:
                 if prior is not None:
                     yield from self._events(curve, prior, last, folds=False)
             yield last
+            between = None if prior is None else self._half_turn(curve, prior, last, new)
+            if between is not None:
+                yield from self._events(curve, last, between)
+                yield between
+                last = between
             yield from self._events(curve, last, new)
             if self.tell is not None:
                 self.tell(new.point.parameter)
@@ -281,6 +288,20 @@ class Tracer:
         yield last
         if not over:
             yield Mark(ended, None, np.full_like(last.moved, np.nan), "failed")
+
+    def _half_turn(self, curve: Curve, prior: Mark, last: Mark, new: Mark) -> Mark | None:
+        """A mark where a pair of multipliers turned through −1 between two others."""
+        states = [mark.stability for mark in (prior, last, new)]
+        known = [state.multipliers for state in states if state is not None]
+        share = half_turn(known, [m.point.parameter for m in (prior, last, new)]) if len(known) == 3 else None
+        if share is None:
+            return None
+        point = curve.step(last.point, share * distance(curve, last.point, new.point))
+        if point is None:
+            return None
+        mark = self.mark(curve, point)
+        near = mark.stability is not None and _beyond(mark.stability, "flip") > -NEAR_FLIP
+        return self._finer(curve, mark) if near else mark
 
     def _finer(self, curve: Curve, mark: Mark) -> Mark:
         """A mark with its multipliers as an event is located with."""

@@ -1,18 +1,19 @@
 """Following a steady motion through a parameter by the length of its arc, round folds.
 
 Predictor along the tangent, corrector on the plane across it (E. L. Allgower and K. Georg, Introduction to
-Numerical Continuation Methods, SIAM 2003, chapters 2 and 4); what happens on the way is located by secants on
-the arc.
+Numerical Continuation Methods, SIAM 2003, chapters 2 and 4); what happens on the way is located on the arc.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
+import scipy
 
 from bearingdyn.analysis.steady.balance import Balance, Found, Linearised, Pressed, flat, measure
 from bearingdyn.analysis.steady.factored import Factored, few, jacobian
@@ -353,40 +354,35 @@ def locate(
     after: Point,
     test: Callable[[Point], float],
     tolerance: float,
-    most: int = 30,
+    most: int = 60,
 ) -> Point | None:
-    """The point of a continuation between two where a test is zero, by secants on the arc (Illinois)."""
-    a, b = 0.0, _distance(curve, before, after)
-    fa, fb = test(before), test(after)
-    if not fa * fb < 0.0:
+    """The point of a continuation between two where a test is zero, on the arc; None where it has one sign.
+
+    Between brackets (R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4): a
+    multiplier is none before it meets another on the real axis, so that a test may leap, and secants rest.
+    """
+    end = distance(curve, before, after)
+    known = {0.0: test(before), end: test(after)}
+    if not known[0.0] * known[end] < 0.0:
         return None
-    best, side = after, 0
-    for _ in range(most):
-        s = (a * fb - b * fa) / (fb - fa)
-        new = curve.step(before, s, True)
-        if new is None:
-            s = 0.5 * (a + b)
-            new = curve.step(before, s, True)
-            if new is None:
-                return best
-        f = test(new)
-        moved = abs(new.parameter - best.parameter)
-        best = new
-        if abs(f) == 0.0 or (moved <= tolerance and abs(b - a) < 1e6):
-            if moved <= tolerance:
-                break
-        if f * fb < 0.0:
-            a, fa = b, fb
-            b, fb = s, f
-            side = 0
-        else:
-            b, fb = s, f
-            fa *= 0.5 if side else 1.0
-            side = 1
-    return best
+    tried = {end: after}
+
+    def at(s: float) -> float:
+        if s not in known:
+            point = curve.step(before, s, True)
+            if point is None:
+                raise ArithmeticError
+            tried[s], known[s] = point, test(point)
+        return known[s]
+
+    steepest = curve.scale * max(abs(before.slope), abs(after.slope), SHORTEST)
+    # where the corrector fails the best so far is given
+    with suppress(ArithmeticError):
+        scipy.optimize.brentq(at, 0.0, end, xtol=tolerance / steepest, maxiter=most, disp=False)
+    return tried[min(tried, key=lambda s: abs(known[s]))]
 
 
-def _distance(curve: Curve, a: Point, b: Point) -> float:
-    """How far along the tangent of a point another lies."""
+def distance(curve: Curve, a: Point, b: Point) -> float:
+    """How far along the tangent of a continuation's point another lies."""
     dz = flat((b.z - a.z) / curve.size)
     return float(a.tangent @ dz) + a.slope * (b.parameter - a.parameter) / curve.scale

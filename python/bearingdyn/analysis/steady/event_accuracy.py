@@ -30,6 +30,11 @@ class _Marked(Protocol):
     def event(self) -> str: ...
 
 
+# size of multipliers of what rings on: what dies away sooner loses no stability in a narrow range
+RINGS = 0.9
+# sizes of a pair on either side of −1 differ less, and its phase is where the last turn leads, within rad
+ALIKE, TURNED = 0.01, 0.1
+
 _Mark = TypeVar("_Mark", bound=_Marked)
 
 
@@ -80,3 +85,38 @@ def within(events: Sequence[str], parameters: Sequence[float], tolerance: float)
         for i in tip:
             found[i] = max(tolerance, max(places) - min(places))
     return found
+
+
+def half_turn(multipliers: Sequence[Iterable[complex]], places: Sequence[float]) -> float | None:
+    """Of three points, for events' accuracy: where a pair of multipliers turns through −1 behind the second.
+
+    A mode that rings half as often as its balls pass may lose its stability there, in a range of the
+    parameter narrower than a step, and have it again at the next point: a pair on either side, which met at
+    −1 between them.
+
+    Parameters
+    ----------
+    multipliers
+        Of the three points.
+    places
+        Their places along the branch, in order.
+
+    Returns
+    -------
+    float or None
+        The share of the way from the second to the third; None where no pair does.
+    """
+    before, last, new = ([m for m in each if m.imag > 0.0 and abs(m) > RINGS] for each in multipliers)
+    way = places[2] - places[1]
+    for m in last:
+        first = min(before, key=lambda other: abs(other - m), default=None)
+        if first is None or places[1] == places[0]:
+            continue
+        left, was = np.pi - np.angle(m), np.pi - np.angle(first)
+        expected = left + (left - was) / (places[1] - places[0]) * way
+        for end in new:
+            past = np.pi - np.angle(end)
+            turned = abs(expected + past) < abs(expected - past) and abs(expected + past) < TURNED
+            if turned and abs(abs(end) - abs(m)) < ALIKE:
+                return float(left / (left + past))
+    return None
