@@ -20,7 +20,7 @@ import sys
 import tempfile
 import threading
 import time
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +60,7 @@ def one_cluster(cases: list[Any], store: Path, workers: int, every: float, until
     import distributed
 
     # on a busy machine a successor takes longer to start than the 15 s after which it is given up
-    dask.config.set({"distributed.deploy.lost-worker-timeout": "10 min"})
+    dask.config.set({"distributed.deploy.lost-worker-timeout": "600 s"})
     cluster = distributed.LocalCluster(
         n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
     )
@@ -70,7 +70,8 @@ def one_cluster(cases: list[Any], store: Path, workers: int, every: float, until
     def leave(done: int, total: int) -> None:
         if until is not None and done >= until and not gone.is_set():
             gone.set()
-            cluster.close()
+            with suppress(TimeoutError):
+                cluster.close(timeout=30)
 
     killer.start()
     try:
@@ -81,8 +82,11 @@ def one_cluster(cases: list[Any], store: Path, workers: int, every: float, until
         print(f"the first cluster's study ended with {type(error).__name__}", file=sys.stderr)
     finally:
         killer.stop.set()
-        client.close()
-        cluster.close()
+        # a worker killed while it starts is waited for without end by the cluster that closes
+        with suppress(TimeoutError):
+            client.close(timeout=30)
+        with suppress(TimeoutError):
+            cluster.close(timeout=30)
     return found, killer.killed
 
 

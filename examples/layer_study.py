@@ -174,6 +174,17 @@ def slopes(case: Mapping[str, float]) -> dict[str, tuple[float, dict[str, float]
     }
 
 
+def plainly(case: Mapping[str, float]) -> dict[str, float]:
+    """isolation, sag and strain of one layer of the search, without slopes."""
+    app = motor.motor(searched(case))
+    H, loaded = receptance(app), under_load(app)
+    return {
+        "isolation": isolation(FREQUENCY, H[:, 1:3], without_layer()[:, 1:3]),
+        "sag": float(-loaded.displacement("shaft.middle")[1]),
+        "strain": float(bd.static_summary(loaded)["strain"].max()),
+    }
+
+
 def best(starts: int = 3) -> study.Optimum:
     """The layer that isolates best within LIMITS."""
     return study.optimise(slopes, RANGES, maximise="isolation", limits=LIMITS, starts=starts)

@@ -240,6 +240,22 @@ def test_a_ball_that_just_touches_has_a_derivative_to_one_side_only():
     assert slope[0] == pytest.approx((4 * (moved[0] - sag) - (moved[1] - sag)) / (2 * h), rel=1e-5)
 
 
+def test_a_motion_that_nothing_resists_has_no_derivative():
+    """One ball alone carries, and nothing holds the ring across it: a load there has no small answer."""
+    app = bd.Application()
+    app.add("rotor", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
+    app.ground("rotor.centre", stiffness=[0, 0, 1e7, 1e4, 1e4, 1e4])
+    ball = bd.BallBearing(Z=8, Dw=8e-3, Dpw=40e-3, fi=0.52, fo=0.53, kappa=8e9, clearance=1e-4)
+    app.bearing("b", ball, inner="rotor.centre", outer="ground")
+    app.load("rotor.centre", (0, -50.0, 0, 0, 0, 0))
+    eq = bd.equilibrium(app)
+    _, by = bd.gradient(eq, ["b.clearance"]).displacement("rotor.centre.y")
+    # the clearance opens downwards: half of the diametral one, as the ball stands in the load's line
+    assert by[0] == pytest.approx(-0.5, rel=1e-2)  # the contact angle of 4° changes a little
+    with pytest.raises(ValueError, match=r"'load.rotor.centre.x' pushes rotor.centre along .* fold"):
+        bd.gradient(eq, ["b.clearance", "load.rotor.centre.x"])
+
+
 def test_modes_that_coincide_are_named_where_a_parameter_parts_them():
     app = bd.Application()
     app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from concurrent.futures import ThreadPoolExecutor
 
+import layer_study
 import numpy as np
+import scipy.optimize
 
 import bearingdyn as bd
 from bearingdyn import study
@@ -13,8 +16,8 @@ from verified.row import Row
 
 
 def designs() -> list[Row]:
-    """Indices of Ishigami's function, a can of least surface, and an oscillator's derivatives."""
-    return _indices() + _can() + _oscillator()
+    """Indices of Ishigami's function, a can, the demo's best layer, and an oscillator's derivatives."""
+    return _indices() + _can() + _layer() + _oscillator()
 
 
 def _ishigami(case: dict[str, float]) -> dict[str, float]:
@@ -67,6 +70,42 @@ def _can() -> list[Row]:
             1e-4,
             "first order in the place, found to 1e-5",
         ),
+    ]
+
+
+def _layer() -> list[Row]:
+    """Four parameters and two limits: by gradients, and by a search of the values of machines built anew."""
+    best = layer_study.best(3)
+    low, width = (
+        np.array(x) for x in zip(*((a, b - a) for a, b in layer_study.RANGES.values()), strict=True)
+    )
+
+    @functools.cache
+    def values(*u: float) -> dict[str, float]:
+        return layer_study.plainly(dict(zip(layer_study.RANGES, low + width * np.clip(u, 0, 1), strict=True)))
+
+    kept = [
+        {"type": "ineq", "fun": lambda u, n=name, most=most: 1.0 - values(*u)[n] / most}
+        for name, most in layer_study.LIMITS.items()
+    ]
+    found = scipy.optimize.minimize(
+        lambda u: -values(*u)["isolation"],
+        np.full(4, 0.5),
+        method="COBYLA",
+        bounds=[(0, 1)] * 4,
+        constraints=kept,
+        options={"rhobeg": 0.25, "tol": 1e-5, "maxiter": 600},
+    )
+    return [
+        Row(
+            "best layer of the demo's motor, isolation, dB",
+            "linear approximations without slopes, of machines built anew (M. J. D. Powell's COBYLA)",
+            -float(found.fun),
+            best.objective[1],
+            1e-3,
+            f"asked for; {best.evaluations} designs from three starts, KKT residual {best.kkt:.0e}, "
+            f"against {found.nfev} from one",
+        )
     ]
 
 

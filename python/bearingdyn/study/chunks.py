@@ -129,27 +129,27 @@ def run(
     try:
         while traffic.submit():
             try:
-                future = traffic.finished.get(timeout=PATIENCE)
+                indices, outcome, failure = traffic.finished.get(timeout=PATIENCE)
             except Empty:
                 if getattr(getattr(pool, "_client", None), "status", None) == "closed":
                     # dask never ends the futures whose results were about to be handed over
                     raise CancelledError("the cluster's client is closed: its scheduler is gone") from None
                 continue
-            indices = traffic.futures.pop(future, None)
-            if indices is None:
+            traffic.away -= 1
+            # cancelled: a cluster whose scheduler is gone
+            if isinstance(failure, BrokenExecutor | CancelledError):
+                traffic.ended = traffic.ended or failure
                 continue
-            try:
-                results, seconds = future.result()
-            except OtherVersion:
-                raise
-            except (BrokenExecutor, CancelledError) as broken:  # cancelled: a cluster whose scheduler is gone
-                traffic.ended = traffic.ended or broken
-                continue
-            except Exception as lost:  # the executor's own, as dask's KilledWorker
+            if isinstance(failure, OtherVersion) or not isinstance(failure, Exception | None):
+                raise failure
+            if failure is None:
+                assert outcome is not None
+                results, seconds = outcome
+            else:  # the executor's own, as dask's KilledWorker
                 if len(indices) > 1:  # one of them may have killed the others' worker
                     traffic.alone.extend(indices)
                     continue
-                results, seconds = [Result({}, f"{type(lost).__name__}: {lost}")], 0.0
+                results, seconds = [Result({}, f"{type(failure).__name__}: {failure}")], 0.0
             traffic.note(len(indices), seconds)
             for index, result in zip(indices, results, strict=True):
                 yield index, Case(todo[index], result.values, result.error), result.meant
@@ -172,7 +172,8 @@ class _Traffic:
         self.pool, self.function, self.todo = pool, function, todo
         self.waiting, self.alone = deque(ahead), deque[int]()
         self.futures: dict[Future[Any], list[int]] = {}
-        self.finished: SimpleQueue[Future[Any]] = SimpleQueue()
+        self.finished: SimpleQueue[tuple[list[int], Any, BaseException | None]] = SimpleQueue()
+        self.away = 0  # chunks handed out, and not taken in again
         self.ended: BaseException | None = None
         self.seconds, self.cases = 0.0, 0
         self.meant = Meant.here(function)
@@ -180,7 +181,7 @@ class _Traffic:
     def submit(self) -> bool:
         """Fill the window; False where nothing is on its way any more."""
         with _worker_environment():  # a worker may be started with every submission
-            while self.ended is None and (self.waiting or self.alone) and len(self.futures) < self.window:
+            while self.ended is None and (self.waiting or self.alone) and self.away < self.window:
                 queue, size = (self.alone, 1) if self.alone else (self.waiting, self.chunk())
                 indices = [queue.popleft() for _ in range(min(size, len(queue)))]
                 chunk = [self.todo[index] for index in indices]
@@ -190,8 +191,21 @@ class _Traffic:
                     self.ended = broken
                     break
                 self.futures[future] = indices
-                future.add_done_callback(self.finished.put)
-        return bool(self.futures)
+                self.away += 1
+                future.add_done_callback(self._come_back)
+        return self.away > 0
+
+    def _come_back(self, future: Future[Any]) -> None:
+        """Take the results out of a future and let go of it.
+
+        While it lives, a cluster holds its results on a worker, and makes them anew where that dies.
+        """
+        indices = self.futures.pop(future)
+        try:
+            outcome, failure = future.result(), None
+        except BaseException as error:
+            outcome, failure = None, error
+        self.finished.put((indices, outcome, failure))
 
     @property
     def window(self) -> int:

@@ -18,6 +18,9 @@ from bearingdyn.material import Maxwell
 from bearingdyn.system import System, natural
 from bearingdyn.types import Array
 
+# of a push, along a free motion: more than round-off
+RESISTED = 1e-6
+
 
 def coefficient_slope(system: System, change: Change) -> Array:
     """For implicit slopes, derivative of B (coefs, n) with the clearances: the arm of the tilts changes.
@@ -85,7 +88,8 @@ def implicit_slopes(
     Raises
     ------
     ValueError
-        Where a ball just touches, and no side is asked for.
+        Where a ball just touches, and no side is asked for; at a fold, and where a contact is lost, so that
+        nothing resists the motion a parameter would cause.
     """
     system, B = eq.system, eq.system.B
     when: str | float = eq.modulus if eq.after is None else float(eq.after)
@@ -113,7 +117,13 @@ def implicit_slopes(
     force = np.concatenate([np.zeros(0), *(eq.bearings[t.name].g for t in system.bearings)])
     free = T[:, squares <= 0.0]
     held = system.M @ free
-    factors = scipy.linalg.cho_factor(Kt + HOLD * (held @ held.T))
+    try:
+        factors = scipy.linalg.cho_factor(Kt + HOLD * (held @ held.T))
+    except np.linalg.LinAlgError:
+        raise ValueError(
+            f"the equilibrium is at a fold or beyond it (its lowest ω² is {squares[0]:.3g} 1/s²), and has no "
+            f"derivative; take it on the side where the machine still stands, at a smaller load"
+        ) from None
     x = np.zeros((len(changes), system.n))
     K, C = (np.zeros((len(changes), ends[-1], ends[-1])) for _ in range(2))
     for p, change in enumerate(changes.values()):
@@ -140,12 +150,29 @@ def implicit_slopes(
         turned = slopes[p] @ eq.x if p in slopes else np.zeros(ends[-1])
         if p in slopes:
             push -= slopes[p].T @ force + B.T @ (stiff @ turned)
+        _check_resisted(system, list(changes)[p], push, free)
         x[p] = scipy.linalg.cho_solve(factors, push)
         for i, kernel in enumerate(kernels):
             own = slice(ends[i], ends[i + 1])
             moved = tangent(kernel, z[i] + 1j * STEP * (B[own] @ x[p] + turned[own]), fields[i], carrying[i])
             K[p, own, own], C[p, own, own] = moved.K.imag / STEP, moved.C.imag / STEP
     return x, K, C
+
+
+def _check_resisted(system: System, name: str, push: Array, free: Array) -> None:
+    """Refuse a parameter that pushes along a motion that nothing resists; free (n, modes)."""
+    if not free.shape[1]:
+        return
+    driven = np.abs(push @ free)
+    worst = int(np.argmax(driven))
+    if not driven[worst] > RESISTED * np.abs(push).max() * np.abs(free[:, worst]).max():
+        return
+    places = [(float(np.abs(rows @ free[:, worst]).max()), place) for place, rows in system.outputs.items()]
+    raise ValueError(
+        f"{name!r} pushes {max(places)[1]} along a motion that no ball or support resists here (a contact is "
+        f"lost, or the state is a fold): the equilibrium has no derivative by it; press the balls more, hold "
+        f"that motion by a spring, or take differences to the side on which a ball comes to carry"
+    )
 
 
 def _gravity(system: System, inertia: Array) -> Array:
