@@ -6,7 +6,8 @@ import importlib.util
 
 import pytest
 
-from fuzz_readers import READERS, XLS, fuzz
+from damaged.measurements import XLS
+from fuzz_readers import READERS, fuzz
 
 pytest.importorskip("resource")
 NEEDED = {"op4": "pyyeti", "xlsx": "openpyxl", "xls": "xlrd", "mesh_vtk": "meshio", "mesh_vtu": "meshio"}
