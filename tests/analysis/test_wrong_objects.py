@@ -104,6 +104,32 @@ def test_transients_tell_of_the_marches_that_are_done():
     assert told == [(1, 3), (2, 3), (3, 3)]
     with pytest.raises(ValueError, match=r"cases\[1\] is 5; it must be a list of mappings"):
         bd.transients([case, 5])
+    with pytest.raises(
+        ValueError, match=r"cases\[1\] is 'step'; it is no argument of transient; did you mean"
+    ):
+        bd.transients([case, {**case, "step": 5}])
+    with pytest.raises(ValueError, match=r"cases\[0\] is .*; it lacks dt"):
+        bd.transients([{"source": STATE, "steps": 5, "record": []}])
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"harmonics": 10**9}, r"harmonics is 1000000000; it must be a whole number in 1\.\.\.2000"),
+        ({"harmonics": 2000, "subharmonic": 64}, r"harmonics times subharmonic is 128000; .* GB; give fewer"),
+        ({"tolerance": 0.5}, r"tolerance is 0\.5; .* at most 1e-3"),
+        ({"record": []}, r"record is \[\]; it must be a list of channels, of at least 1"),
+    ],
+)
+def test_a_steady_motion_that_no_memory_holds_is_refused(given, message):
+    pair = bd.Application()
+    pair.add("r", bd.RigidBody(4.0, (0.02, 0.02, 0.004), rotating=True))
+    pair.add("g", bd.RigidBody(4.0, (0.02, 0.02, 0.004)))
+    pair.ground("g.centre", stiffness=[1e6] * 6, damping=[10.0] * 6)
+    pair.bearing("b", bd.catalogue.bearing("6205", clearance=1e-5), inner="r.centre", outer="g.centre")
+    pair.load("r.centre", (0, -200.0, 50.0, 0, 0, 0))
+    with pytest.raises(ValueError, match=message):
+        bd.steady_state(pair, **{"speed": 100.0, "record": ["r.centre.y"], **given})
 
 
 @pytest.mark.parametrize("name", ["filter", "audit", "check_step", "check_unique"])

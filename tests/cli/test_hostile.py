@@ -49,6 +49,11 @@ OPTIONS = [
     (["show", "s3://bucket/x"], "no such file"),
     (["bearing", "NU205"], "designation is 'NU205'"),
     (["bearing", "6205", "--temperature", "nan"], "temperature is nan"),
+    (["bearing", "6205", "--clearance", "0.012"], "it is in micrometres; is it in mm? give 12"),
+    (
+        ["bearing", "6205", "--radial", "9", "--rpm", "9", "--oil", "VG32", "--temperature", "343"],
+        "in kelvin? give",
+    ),
     (["bearing", "6205", "--temperature", "1e9"], "temperature is 1"),
     (["bearing", "6205", "--contamination", "mud"], "contamination is 'mud'"),
     (["bearing", "6205", "--reliability", "0.9"], "reliability is 0.9"),

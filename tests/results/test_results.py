@@ -124,6 +124,8 @@ def test_a_file_of_several_results_asks_which(response, tmp_path):
 
 def test_missing_group_is_named(response, tmp_path):
     results.save({"layer": response}, tmp_path / "r.nc")
+    with pytest.raises(ValueError, match="group is 3; it must be the name of a result"):
+        results.open_result(tmp_path / "r.nc", 3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"r\.nc has no result 'no layer'; did you mean 'layer'"):
         results.open_result(tmp_path / "r.nc", "no layer")
 

@@ -821,3 +821,25 @@ def test_a_script_that_calls_its_own_functions_is_the_same_in_its_workers(tmp_pa
     )
     assert done.returncode == 0, done.stderr
     assert len(kept_rows(tmp_path / "kept")) == 2
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: study.sweep(len, "abc"), "cases is 'abc'; it must be a list of cases"),
+        (lambda: study.sweep(len, {"v": 1}), "cases is {'v': 1}; it must be a list of cases"),
+        (
+            lambda: study.sweep(len, [{"v": 1}, 5]),
+            r"cases\[1\] is 5; it must be a list of cases",
+        ),
+        (lambda: study.sweep(5, [{"v": 1}]), "function is 5; it must be a function of a case"),
+        (lambda: study.optimise(5, {"v": (0, 1)}, minimise="y"), "function is 5; it must be a function"),
+        (
+            lambda: study.optimise(lambda d: d["v"], {"v": (0, 1)}, minimise="y", starts=1),
+            "function is 0.*; it must return {name: value",
+        ),
+    ],
+)
+def test_a_study_of_what_is_no_function_or_no_case_is_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()

@@ -206,6 +206,7 @@ def equilibrium(
     Returns
     -------
     Equilibrium
+        Of the application as it is now: what is added afterwards is not in it, nor in what starts from it.
 
     Raises
     ------
@@ -219,6 +220,9 @@ def equilibrium(
     -----
     BearingWarning
         Where a contact pressure exceeds 4.2 GPa (ISO 76); the bearing and the ball are named.
+    UnusualMagnitude
+        Where a place goes farther than 0.05 m, or the most loaded ball bears less than 5e-4 of what its
+        static rating allows: a stiffness in N/µm, a load in kN.
     BeyondData
         Where the data of a layer's material do not speak of the time asked for, and show no plateau.
     StrainedLayer

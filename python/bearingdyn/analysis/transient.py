@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -20,7 +21,18 @@ from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.step_size import step_error_made
 from bearingdyn.application import Application
-from bearingdyn.checks import instance, items, name_list, named, number, one_speed, truth, whole
+from bearingdyn.checks import (
+    instance,
+    items,
+    meant,
+    name_list,
+    named,
+    number,
+    one_speed,
+    require,
+    truth,
+    whole,
+)
 from bearingdyn.progress import Progress, told
 from bearingdyn.results import march_dataset
 from bearingdyn.system import Contacts, System
@@ -336,6 +348,14 @@ def transients(
         threads = whole("threads", threads, 1)
     remedy = "it must be a list of mappings, each the arguments of `transient` by name"
     asked = [named(f"cases[{k}]", case, remedy) for k, case in enumerate(items("cases", cases, remedy))]
+    known = inspect.signature(transient).parameters
+    for k, case in enumerate(asked):
+        for name in case:
+            require(
+                name in known, f"cases[{k}]", name, f"it is no argument of transient; {meant(name, known)}"
+            )
+        for name in ("source", "dt", "steps", "record"):
+            require(name in case, f"cases[{k}]", sorted(case), f"it lacks {name}")
     gathering = Gathering(len(asked), threads or os.cpu_count() or 1)
     with (
         told(progress, "march") as tell,

@@ -155,6 +155,8 @@ class Application:
                 f"app.bearing({name!r}, …, inner=…, outer=…)"
             )
         remedy = "it must be a part, such as bd.Shaft(…), bd.RigidBody(…) or bd.Layer(…)"
+        if not isinstance(part, type) and callable(getattr(part, "assembled", None)):
+            remedy = "as it lies it holds nothing: give what it is squeezed to, part.assembled(…)"
         ready = not isinstance(part, type) and callable(getattr(part, "superelement", None))
         require(ready, f"part {name!r}", part, remedy)
         if cache is not None:

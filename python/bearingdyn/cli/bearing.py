@@ -10,8 +10,11 @@ from typing import Any
 
 from bearingdyn.analysis import bearing_sheet, sheet_html, sheet_text, single_bearing
 from bearingdyn.bearing import Lubricant, Walther, catalogue, read_designation
+from bearingdyn.checks import require
 from bearingdyn.cli.outcome import GOOD
 from bearingdyn.writing import write_whole
+
+LEAST_CLEARANCE = 0.1e-6  # m: no class of clearance is that small, and no gauge measures it
 
 
 def run_bearing(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -20,6 +23,10 @@ def run_bearing(arguments: argparse.Namespace) -> tuple[str, int]:
     entry, read = catalogue.entry(designation), read_designation(designation)
     name = read.number + read.letter
     clearance = None if arguments.clearance is None else arguments.clearance * 1e-6
+    if clearance is not None and 0 < abs(clearance) < LEAST_CLEARANCE:
+        given = arguments.clearance
+        remedy = f"it is in micrometres; is it in mm? give {1e3 * given:.4g}"
+        require(False, "--clearance", given, remedy)
     ball = catalogue.bearing(designation, clearance=clearance)
     state = single_bearing(ball, radial=arguments.radial, axial=arguments.axial, name=name)
     printed = entry.printed

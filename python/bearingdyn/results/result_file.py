@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bearingdyn import run_file
-from bearingdyn.checks import existing, meant
+from bearingdyn.checks import existing, instance, meant
 from bearingdyn.results.file_seal import check_seal, seal
 from bearingdyn.results.global_heaps import check_global_heaps
 from bearingdyn.results.march_record import march_dataset
@@ -119,6 +119,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
     import xarray
 
     existing(path, "result")
+    instance("group", group, str, "it must be the name of a result in the file")
     if run_file.is_run(path):
         return _run_dataset(path)
     _check_content(path)

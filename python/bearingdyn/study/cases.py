@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bearingdyn import fingerprint
+from bearingdyn.checks import items, named
 from bearingdyn.short_repr import short
 
 Parameters: TypeAlias = Mapping[str, Any]
@@ -129,7 +130,9 @@ def checked(cases: Iterable[Parameters]) -> list[dict[str, Any]]:
         For no cases, unequal names, a parameter that is not a number, a text or something told by its
         content, or of another kind than in the first case.
     """
-    found = [{name: _plain(i, name, v) for name, v in case.items()} for i, case in enumerate(cases)]
+    remedy = "it must be a list of cases, each a mapping, parameter -> value"
+    given = [named(f"cases[{i}]", case, remedy) for i, case in enumerate(items("cases", cases, remedy))]
+    found = [{name: _plain(i, name, v) for name, v in case.items()} for i, case in enumerate(given)]
     if not found:
         raise ValueError("a study needs at least one case")
     first = found[0]

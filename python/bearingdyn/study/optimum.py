@@ -130,9 +130,12 @@ class _Problem:
         said = ", ".join(f"{k} = {v:.6g}" for k, v in design.items())
         self.count += 1
         try:
-            given = dict(self.function(design))
+            answer = self.function(design)
         except (ValueError, ArithmeticError) as error:
             raise _Impossible(f"the design {said} cannot be computed: {error}") from error
+        given = named(
+            "function", answer, "it must return {name: value, or (value, slopes)} for a design, a dict"
+        )
         for name in self._names:
             require(name in given, "function", name, f"it is not returned; {meant(name, given)}")
             value = given[name][0] if isinstance(given[name], tuple) else given[name]
@@ -258,6 +261,7 @@ def _problem(
     maximise: str | None,
     limits: Mapping[str, Sequence[float | None] | float] | None,
 ) -> _Problem:
+    require(callable(function), "function", function, "it must be a function of a design, a dict")
     one = f"with maximise={maximise!r}; give exactly one of the two"
     require((minimise is None) != (maximise is None), "minimise", minimise, one)
     boxes: dict[str, tuple[float, float]] = {}

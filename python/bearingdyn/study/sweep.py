@@ -89,6 +89,8 @@ def sweep(
     ChangedFunction
         Where the processes that compute have another function by that name.
     """
+    if not callable(function):
+        raise ValueError(f"function is {function!r}; it must be a function of a case, a dict")
     todo = checked(cases)
     kept = Store(Path(store), function) if store is not None else None
     try:

@@ -142,7 +142,7 @@ def steady_state(
     >>> f"{abs(ss['amplitude'].values[1, 0]):.4e}"  # m: Ω² u/|k − Ω² m + iΩc|
     '3.3330e-07'
     """
-    record = name_list("record", record)
+    record = name_list("record", record, least=1)
     speed = number(
         "speed",
         one_speed(speed, rpm),
