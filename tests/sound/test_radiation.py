@@ -6,11 +6,13 @@ import math
 
 import numpy as np
 import pytest
+import scipy.optimize
 
 import bearingdyn as bd
 from bearingdyn import core
 from bearingdyn.notice import CoarsePanels
 from bearingdyn.sound import Radiation, TriangleSurface
+from bearingdyn.sound.radiation import SAFE, SAFE_ON_FLOOR, below_resonances
 from spheres import DENSITY, SPEED, decibels, impedance, power, shapes, sphere
 from twins.radiation_twin import operators
 
@@ -130,6 +132,27 @@ def test_a_floor_at_any_height_sends_the_power_far_away() -> None:
     """The image's phase counts from the floor; the far field has the error of the pressure, not squared."""
     found = solved(4, 1.0, floor=0.7, height=2.0)
     assert bd.sound.far_power(found, [1, 0, 0]) == pytest.approx(found.power([1, 0, 0]), rel=0.02)
+
+
+def test_pressure_above_a_floor_does_not_depend_on_its_height() -> None:
+    """Sphere, floor and place moved up together; the image's own place counts from the floor."""
+    at = np.array([[1.5, 2.0, 0.4], [-3.0, 0.1, 1.0]])
+    low, high = (solved(3, 0.5, floor=y, height=1.3 + y) for y in (0.0, 0.7))
+    here, there = (bd.sound.pressure_at(one, at + [0.0, y, 0.0]) for one, y in ((low, 0.0), (high, 0.7)))
+    assert there == pytest.approx(here, rel=1e-9)
+
+
+@pytest.mark.parametrize(("volume", "limit"), [(1.0, SAFE), (2.0, SAFE_ON_FLOOR)])
+def test_a_real_factor_ends_below_the_first_resonance_of_a_ball(volume: float, limit: float) -> None:
+    """Among insides of a volume, of L³ or with the image 2 L³, the ball's is lowest: x cot x = 1 − a/L."""
+    a = (0.75 * volume / math.pi) ** (1 / 3)  # over L
+    x = scipy.optimize.brentq(lambda x: x / math.tan(x) - 1.0 + a, 0.1, 3.0)
+    assert 0.9 * x / a < limit < x / a
+    points, faces = sphere(2)
+    surface = TriangleSurface(points, faces, None if volume == 1.0 else -1.5)
+    f = limit / surface.extent * SPEED / (2 * math.pi)
+    assert below_resonances(surface, 0.999 * f, SPEED)
+    assert not below_resonances(surface, 1.001 * f, SPEED)
 
 
 @pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarsePanels")
