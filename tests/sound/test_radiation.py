@@ -243,6 +243,28 @@ def test_a_surface_inside_out_is_named() -> None:
         TriangleSurface(points, faces)
 
 
+@pytest.mark.parametrize("floor", [None, -2.0])
+def test_a_body_inside_another_is_named(floor: float | None) -> None:
+    """Both anticlockwise from outside; two bodies beside or above one another are none of it."""
+    points, faces = sphere(2)
+    other, more = sphere(2, 0.3, (0.1, 0.2, 0.0))
+    both = np.vstack([faces, more + len(points)])
+    with pytest.raises(ValueError, match="body 1 of the surface, 32 triangles, reaches into body 0 near"):
+        TriangleSurface(np.vstack([points, other]), both, floor)
+    for apart in ([2.0, 0.0, 0.0], [0.0, 3.0, 0.0]):
+        assert len(TriangleSurface(np.vstack([points, other + apart]), both, floor).bodies) == 2
+
+
+def test_a_half_ball_on_the_floor_hides_what_lies_in_it() -> None:
+    points, faces = sphere(4)
+    above = (points[faces][:, :, 1] > -1e-12).all(axis=1)
+    other, more = sphere(2, 0.3, (0.0, 0.35, 0.0))
+    both = np.vstack([faces[above], more + len(points)])
+    with pytest.raises(ValueError, match="reaches into body"):
+        TriangleSurface(np.vstack([points, other]), both, 0.0)
+    TriangleSurface(np.vstack([points, other + [0.0, 2.0, 0.0]]), both, 0.0)
+
+
 def test_a_surface_below_its_floor_is_named() -> None:
     points, faces = sphere(2)
     with pytest.raises(ValueError, match=r"floor is 0\.5; the surface reaches down to y = -1\."):
