@@ -100,8 +100,9 @@ def sound(path: Path) -> None:
 def sound_paths(path: Path) -> None:
     """The guide's page on sound: two plates, one with a layer, and the bearings their sound takes."""
     found = bd.sound_contributions(
-        _two_plates(), np.geomspace(250.0, 1200.0, 300), "shaft.middle.y", ["left.outside", "right.outside"]
-    )
+        _two_plates(), np.geomspace(250.0, 1200.0, 300), "shaft.middle.y", ["left.outside", "right.outside"],
+        element_size=0.02,
+    )  # fmt: skip
     ax = bd.plot.sound_contributions(found)
     ax.figure.savefig(path, dpi=110)
     plt.close(ax.figure)
