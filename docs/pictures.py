@@ -86,7 +86,7 @@ def sound(path: Path) -> None:
     app.ground("housing.feet")
     app.free("housing.bore")
     f = np.geomspace(100.0, 2000.0, 300)
-    found = bd.sound_power(app, f, ["housing.bore.z"], ["housing.outside"])
+    found = bd.sound_power(app, f, ["housing.bore.z"], ["housing.outside"], element_size=0.019)
     figure, ax = plt.subplots(figsize=(7, 3.4), layout="constrained")
     for name, label in (("equivalent_radiated_power", "equivalent radiated power"), ("power", "sound power")):
         ax.semilogx(f, bd.sound.level(found[name].values[:, 0], "power"), label=label)
@@ -100,8 +100,9 @@ def sound(path: Path) -> None:
 def sound_paths(path: Path) -> None:
     """The guide's page on sound: two plates, one with a layer, and the bearings their sound takes."""
     found = bd.sound_contributions(
-        _two_plates(), np.geomspace(250.0, 1200.0, 300), "shaft.middle.y", ["left.outside", "right.outside"]
-    )
+        _two_plates(), np.geomspace(250.0, 1200.0, 300), "shaft.middle.y", ["left.outside", "right.outside"],
+        element_size=0.02,
+    )  # fmt: skip
     ax = bd.plot.sound_contributions(found)
     ax.figure.savefig(path, dpi=110)
     plt.close(ax.figure)

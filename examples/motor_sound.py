@@ -84,7 +84,7 @@ def picture(found: Mapping[str, xarray.Dataset]) -> Any:
     from bearingdyn.plot.frame import colour, finish, new_axes, style
 
     with style():
-        ax = new_axes(width=7.4, height=3.6)
+        ax = new_axes(width=7.4, height=4.8)
         labels = list(found)
         wide = 0.8 / len(labels)
         # below the lowest, so that every band of every design has its bar

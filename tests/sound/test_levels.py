@@ -46,6 +46,7 @@ def test_bands_have_their_names() -> None:
     assert nominal.tolist()[-4:] == [10000, 12500, 16000, 20000]
     assert middle[nominal == 1000] == pytest.approx(1000.0)
     assert edges[1:] / edges[:-1] == pytest.approx(10**0.1)
+    assert np.sqrt(edges[1:] * edges[:-1]) == pytest.approx(middle)
     assert sound.bands(31.5, 8000.0, 1)[2].tolist() == [31.5, 63, 125, 250, 500, 1000, 2000, 4000, 8000]
 
 
@@ -95,6 +96,15 @@ def test_bands_add_up_to_the_total() -> None:
             )
     rms = float(np.sqrt(np.mean(x**2)))
     assert float(found["total"]) == pytest.approx(20 * math.log10(rms / 20e-6), abs=0.01)
+
+
+@pytest.mark.parametrize("n", [1000, 1001])
+def test_mean_squares_hold_a_constant_and_the_highest_line(n: int) -> None:
+    """Each once; of an even number of samples half the rate has a line of its own."""
+    x = 3.0 + 2.0 * (-1.0) ** np.arange(n) + noise(n)
+    _, power = sound.mean_squares(x, RATE)
+    assert power.sum() == pytest.approx(np.mean(x**2), rel=1e-12)
+    assert power[0] == pytest.approx(x.mean() ** 2, rel=1e-12)
 
 
 def test_bands_by_filters_are_bands_by_lines() -> None:
@@ -183,6 +193,20 @@ def test_another_program_reads_the_file(tmp_path: Path, bits: int) -> None:
     assert value * full == pytest.approx(x, abs=full * (2e-5 if bits == 16 else 1e-7))
 
 
+@pytest.mark.parametrize("bits", [16, 32])
+def test_a_file_of_any_full_scale_holds_pascals(tmp_path: Path, bits: int) -> None:
+    """What is read back is what was written, and the numbers in the file are shares of the full scale."""
+    import scipy.io.wavfile
+
+    x = two_tone()
+    assert sound.write_wav(tmp_path / "a.wav", x, RATE, bits=bits, full_scale=2.5) == 2.5
+    back, _ = sound.read_wav(tmp_path / "a.wav")
+    assert back == pytest.approx(x, abs=2.5 * (2e-5 if bits == 16 else 1e-7))
+    data = scipy.io.wavfile.read(tmp_path / "a.wav")[1]
+    share = np.abs(data).max() / (32767.0 if bits == 16 else 1.0)
+    assert share == pytest.approx(np.abs(x).max() / 2.5, rel=1e-3)
+
+
 def test_before_and_after_stand_in_one_file_with_a_pause(tmp_path: Path) -> None:
     x = two_tone()
     sound.write_wav(tmp_path / "b.wav", [x, 0.1 * x], RATE, pause=0.25)
@@ -215,6 +239,17 @@ def test_a_force_becomes_its_pressure() -> None:
     f = np.linspace(0.0, 5000.0, 2001)
     t = np.arange(12000) / 12000.0
     x = np.sin(2 * np.pi * 440 * t) + 0.3 * np.sin(2 * np.pi * 1200 * t)
+    p = sound.pressure_signal(x, 12000.0, f, 3.0 * np.exp(-2j * np.pi * f * 0.01))
+    assert p == pytest.approx(3.0 * np.roll(x, 120), abs=1e-9)
+
+
+def test_a_delay_is_kept_between_the_frequencies_of_the_transfer() -> None:
+    """Of noise, whose lines lie where the phase passes ±π too."""
+    f = np.linspace(0.0, 5000.0, 2001)
+    x = noise(12000)
+    C = np.fft.rfft(x)
+    C[0] = C[5001:] = 0.0
+    x = np.fft.irfft(C, 12000)
     p = sound.pressure_signal(x, 12000.0, f, 3.0 * np.exp(-2j * np.pi * f * 0.01))
     assert p == pytest.approx(3.0 * np.roll(x, 120), abs=1e-9)
 

@@ -6,11 +6,13 @@ import math
 
 import numpy as np
 import pytest
+import scipy.optimize
 
 import bearingdyn as bd
 from bearingdyn import core
 from bearingdyn.notice import CoarsePanels
 from bearingdyn.sound import Radiation, TriangleSurface
+from bearingdyn.sound.radiation import SAFE, SAFE_ON_FLOOR, below_resonances
 from spheres import DENSITY, SPEED, decibels, impedance, power, shapes, sphere
 from twins.radiation_twin import operators
 
@@ -132,6 +134,27 @@ def test_a_floor_at_any_height_sends_the_power_far_away() -> None:
     assert bd.sound.far_power(found, [1, 0, 0]) == pytest.approx(found.power([1, 0, 0]), rel=0.02)
 
 
+def test_pressure_above_a_floor_does_not_depend_on_its_height() -> None:
+    """Sphere, floor and place moved up together; the image's own place counts from the floor."""
+    at = np.array([[1.5, 2.0, 0.4], [-3.0, 0.1, 1.0]])
+    low, high = (solved(3, 0.5, floor=y, height=1.3 + y) for y in (0.0, 0.7))
+    here, there = (bd.sound.pressure_at(one, at + [0.0, y, 0.0]) for one, y in ((low, 0.0), (high, 0.7)))
+    assert there == pytest.approx(here, rel=1e-9)
+
+
+@pytest.mark.parametrize(("volume", "limit"), [(1.0, SAFE), (2.0, SAFE_ON_FLOOR)])
+def test_a_real_factor_ends_below_the_first_resonance_of_a_ball(volume: float, limit: float) -> None:
+    """Among insides of a volume, of L³ or with the image 2 L³, the ball's is lowest: x cot x = 1 − a/L."""
+    a = (0.75 * volume / math.pi) ** (1 / 3)  # over L
+    x = scipy.optimize.brentq(lambda x: x / math.tan(x) - 1.0 + a, 0.1, 3.0)
+    assert 0.9 * x / a < limit < x / a
+    points, faces = sphere(2)
+    surface = TriangleSurface(points, faces, None if volume == 1.0 else -1.5)
+    f = limit / surface.extent * SPEED / (2 * math.pi)
+    assert below_resonances(surface, 0.999 * f, SPEED)
+    assert not below_resonances(surface, 1.001 * f, SPEED)
+
+
 @pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarsePanels")
 def test_half_a_sphere_on_a_floor_radiates_half_of_the_sphere() -> None:
     """Triangles that meet their own images; the mesh is symmetric, so that only the quadrature differs."""
@@ -218,6 +241,28 @@ def test_a_surface_inside_out_is_named() -> None:
     faces[3] = faces[3, ::-1]
     with pytest.raises(ValueError, match="numbered against one another"):
         TriangleSurface(points, faces)
+
+
+@pytest.mark.parametrize("floor", [None, -2.0])
+def test_a_body_inside_another_is_named(floor: float | None) -> None:
+    """Both anticlockwise from outside; two bodies beside or above one another are none of it."""
+    points, faces = sphere(2)
+    other, more = sphere(2, 0.3, (0.1, 0.2, 0.0))
+    both = np.vstack([faces, more + len(points)])
+    with pytest.raises(ValueError, match="body 1 of the surface, 32 triangles, reaches into body 0 near"):
+        TriangleSurface(np.vstack([points, other]), both, floor)
+    for apart in ([2.0, 0.0, 0.0], [0.0, 3.0, 0.0]):
+        assert len(TriangleSurface(np.vstack([points, other + apart]), both, floor).bodies) == 2
+
+
+def test_a_half_ball_on_the_floor_hides_what_lies_in_it() -> None:
+    points, faces = sphere(4)
+    above = (points[faces][:, :, 1] > -1e-12).all(axis=1)
+    other, more = sphere(2, 0.3, (0.0, 0.35, 0.0))
+    both = np.vstack([faces[above], more + len(points)])
+    with pytest.raises(ValueError, match="reaches into body"):
+        TriangleSurface(np.vstack([points, other]), both, 0.0)
+    TriangleSurface(np.vstack([points, other + [0.0, 2.0, 0.0]]), both, 0.0)
 
 
 def test_a_surface_below_its_floor_is_named() -> None:

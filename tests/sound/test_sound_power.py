@@ -128,6 +128,31 @@ def test_pressure_at_microphones_is_that_of_the_power_far_away(app) -> None:
     assert 10 * np.log10(power / heard.power.values[:, 0]) == pytest.approx(np.zeros(3), abs=0.1)
 
 
+def test_pressure_at_microphones_has_the_phase_of_a_direct_solution(app) -> None:
+    """Between the frequencies solved at, complex, to the .05 dB of the interpolation."""
+    from bearingdyn.analysis import Input, linear, part_velocities
+
+    at, f = np.array([[1.0, 0.3, 0.4], [-0.2, -2.0, 5.0]]), 830.0
+    heard = bd.sound_power(
+        app, [f, 1000.0], ["housing.bore.z"], ["housing.outside"], element_size=0.05, microphones=at
+    )
+    state = linear(app)
+    given = [Input.of(state.system, "housing.bore.z")]
+    (v,) = part_velocities(state, state.system.parts, np.array([f]), given)
+    bodies = radiators.Radiators([state.system.parts[0].element.skin], np.zeros((1, 3)))
+    surface, rows = bodies.surface(0.05)
+    p = bd.sound.pressure_at(solve(surface, rows, f, coarse=True), at) @ v[0, :, 0]
+    assert heard.pressure.values[0, :, 0] == pytest.approx(p, rel=0.006)
+
+
+def test_bodies_stand_at_their_places() -> None:
+    bodies = facing(0.1)
+    surface, _ = bodies.surface(0.05)
+    low, high = (surface.points[np.unique(surface.faces[at])][:, 2] for at in sorted(surface.bodies, key=min))
+    assert high.mean() - low.mean() == pytest.approx(0.13, abs=1e-3)
+    assert high.min() - low.max() == pytest.approx(0.1, abs=2e-3)  # faces fitted to .3 mm
+
+
 def test_on_a_floor_a_housing_stands_on_its_feet(app) -> None:
     """The base lies on the floor and is left out; interpolated and direct agree."""
     on = bd.sound_power(

@@ -35,7 +35,7 @@ class TriangleSurface:
     ------
     ValueError
         For a surface that is open, has an edge of more than two triangles, is turned inside out or reaches
-        below the floor, and for triangles without area.
+        below the floor, for triangles without area, and for a body that begins inside another.
     """
 
     points: Array
@@ -69,6 +69,7 @@ class TriangleSurface:
         self._check_area()
         self._check_closed()
         self._check_outside()
+        self._check_apart()
 
     def _check_area(self) -> None:
         flat = np.flatnonzero(~(self.areas > 1e-14 * self.extent**2))
@@ -110,6 +111,24 @@ class TriangleSurface:
                     f"{volume:.3g} m³; number the corners the other way round"
                 )
 
+    def _check_apart(self) -> None:
+        """No body may lie in another: seen from there the other fills all directions."""
+        for k, at in enumerate(self.bodies):
+            x = self.middles[at[0]]
+            for j, around in enumerate(self.bodies):
+                if j == k:
+                    continue
+                corners = self.points[self.faces[around]]
+                seen = _solid_angle(corners - x)
+                if self.floor is not None:  # with its image a body that is open below is closed
+                    image = (corners * [1.0, -1.0, 1.0] + [0.0, 2.0 * self.floor, 0.0])[:, ::-1]
+                    seen += _solid_angle(image - x)
+                if abs(seen) > 2.0 * np.pi:
+                    raise ValueError(
+                        f"body {k} of the surface, {at.size} triangles, reaches into body {j} near "
+                        f"{x.tolist()} m; leave out what lies inside, or move them apart"
+                    )
+
     @cached_property
     def bodies(self) -> tuple[Index, ...]:
         """Triangles of each body that hangs together."""
@@ -149,6 +168,16 @@ class TriangleSurface:
         """Longest side of a triangle, m."""
         p = self.points[self.faces]
         return float(np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max())
+
+
+def _solid_angle(corners: Array) -> float:
+    """Under which triangles (m, 3, 3) are seen from the origin (Van Oosterom and Strackee, 1983)."""
+    r = np.linalg.norm(corners, axis=2)
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    up = np.einsum("fi,fi->f", a, np.cross(b, c))
+    along = [np.einsum("fi,fi->f", p, q) for p, q in ((a, b), (b, c), (c, a))]
+    down = r[:, 0] * r[:, 1] * r[:, 2] + along[0] * r[:, 2] + along[1] * r[:, 0] + along[2] * r[:, 1]
+    return float(2.0 * np.arctan2(up, down).sum())
 
 
 def _points(given: ArrayLike) -> Array:
