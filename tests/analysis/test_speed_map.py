@@ -337,11 +337,11 @@ def test_the_derivative_as_one_matrix_is_that_of_products_and_of_differences() -
     kept = J.copy()
     solved = Factored.of(J).solve(vector)
     np.testing.assert_allclose(kept @ solved, vector, rtol=0, atol=1e-9 * np.abs(vector).max())
-    # corrections take half the digits: of single numbers in sums of a hundred products, six
-    half = jacobian(balance, pressed, half=True)
-    assert half.dtype == np.float32
-    np.testing.assert_allclose(half, kept, rtol=0, atol=1e-6 * np.abs(kept).max())
-    rough = Factored.of(half).solve(vector)
+    # corrections are in single precision: six digits after sums of a hundred products
+    single = jacobian(balance, pressed, single=True)
+    assert single.dtype == np.float32
+    np.testing.assert_allclose(single, kept, rtol=0, atol=1e-6 * np.abs(kept).max())
+    rough = Factored.of(single).solve(vector)
     np.testing.assert_allclose(rough, solved, rtol=0, atol=1e-3 * np.abs(solved).max())
 
 

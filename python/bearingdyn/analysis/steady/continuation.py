@@ -86,14 +86,14 @@ class Curve:
         pressed: Pressed,
         column: Complex,
         border: tuple[Array, float],
-        half: bool = True,
+        single: bool = True,
     ) -> Solver:
         """What solves J dz + F_p dp = right, border · (dz, dp) = across, in the curve's measure.
 
-        With `half`, to half the digits.
+        With `single`, in single precision.
         """
         if few(column):
-            return Triangles.of(self, balance, pressed, column, border, half)
+            return Triangles.of(self, balance, pressed, column, border, single)
         linear = balance.linearised(pressed)
         return Products(self, linear, linear.prepared(column) * self.scale, border)
 
@@ -121,7 +121,7 @@ class Curve:
             r = balance.residual(point.z, point.pressed)
             column = self.column(point.z, point.parameter, r)
             pressed = point.pressed if point.pressed.has_tangents else balance.press(point.z)
-            solver = self.solver(balance, pressed, column, (border, slope), half=False)
+            solver = self.solver(balance, pressed, column, (border, slope), single=False)
         dz, dp = solver.solve(None, 1.0, 1e-8)
         length = math.sqrt(float(dz @ dz) + dp * dp)
         return replace(point, tangent=dz / length, slope=dp / length)
@@ -260,7 +260,7 @@ class Products:
 class Triangles:
     """Continuation, its solver for few lines: the derivative with its border in triangles.
 
-    Half the digits are enough for corrections, whose residuals have them all; tangents by which events are
+    Single precision is enough for corrections, whose residuals have all digits; tangents by which events are
     located need more.
     """
 
@@ -276,11 +276,11 @@ class Triangles:
         pressed: Pressed,
         column: Complex,
         border: tuple[Array, float],
-        half: bool,
+        single: bool,
     ) -> Triangles:
         """At a motion."""
         n = 2 * column.size
-        J = jacobian(balance, pressed, half=half)
+        J = jacobian(balance, pressed, single=single)
         A = np.empty((n + 1, n + 1), dtype=J.dtype)
         A[:n, :n] = J
         A[:n, n] = flat(column) * (curve.scale / curve.size)

@@ -26,12 +26,12 @@ def few(z: Complex) -> bool:
     return 0 < 2 * z.size <= LARGEST
 
 
-def jacobian(balance: Balance, pressed: Pressed, *, half: bool = False) -> Array:
+def jacobian(balance: Balance, pressed: Pressed, *, single: bool = False) -> Array:
     """Derivative of a balance's residual (2Lm, 2Lm), to be factored: amplitudes (L, m) as real numbers.
 
-    In half as many digits, with `half`: enough for corrections, whose residual has them all.
+    In single precision with `single`: enough for corrections, whose residual has all digits.
     """
-    number = np.complex64 if half else np.complex128
+    number = np.complex64 if single else np.complex128
     lines, omega, R = balance.lines, balance.omega, balance.R.astype(number)
     count, m = R.shape[:2]
     away = (lines.place[:, None] - lines.place) % lines.samples
@@ -96,7 +96,7 @@ class Factored:
 
     def solve(self, right: Array) -> Array:
         """A⁻¹ right (n,)."""
-        half = self.triangles.dtype == np.float32
-        solve = scipy.linalg.lapack.sgetrs if half else scipy.linalg.lapack.dgetrs
+        single = self.triangles.dtype == np.float32
+        solve = scipy.linalg.lapack.sgetrs if single else scipy.linalg.lapack.dgetrs
         x, _ = solve(self.triangles, self.pivots, right, trans=1)
         return np.asarray(x, dtype=np.float64)
