@@ -166,7 +166,7 @@ class Task:
 
 
 @kept_by_system
-def _rows(_: System) -> dict[tuple[str, ...], Array]:
+def _rows(system: System) -> dict[tuple[str, ...], Array]:
     """Branches' rows of motions (k, n), by the names of their channels: filled as they are asked for."""
     return {}
 
