@@ -130,6 +130,13 @@ def reduction_error(
     exact = truth("exact", exact)
     judged = project(model, basis)
     if element is not None:
+        instance("element", element, Superelement, "it must be a bd.Superelement, or None: the model's own")
+        require(
+            element.K.shape == judged.K.shape,
+            "element",
+            element,
+            f"it must have the {len(judged.K)} coordinates of the basis",
+        )
         judged = replace(element, C=judged.C)  # the case adds the dampers
     omega = 2.0 * np.pi * f
     reduced = [case.response(t) for t in case.reduced(basis, judged, omega)]

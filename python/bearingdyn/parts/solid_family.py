@@ -37,6 +37,7 @@ from bearingdyn.cms import (
 from bearingdyn.fem import rigid_transfer
 from bearingdyn.parts.housing import Housing
 from bearingdyn.parts.solid import Solid
+from bearingdyn.pictures import page
 from bearingdyn.short_repr import short
 from bearingdyn.types import Array, Index
 from bearingdyn.units import takes
@@ -90,6 +91,7 @@ class SolidFamily:
     errors: Mapping[float, ReductionError]
 
     __repr__ = short
+    _repr_html_ = page
 
     @property
     def worst(self) -> float:
