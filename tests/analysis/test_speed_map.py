@@ -214,6 +214,32 @@ def test_a_pair_that_turns_through_minus_one_between_points_is_seen() -> None:
     assert half_turn([pair(0.8, 0.7), pair(0.8, 0.3), pair(0.8, 0.1)], places) is None
 
 
+def doubled(parameters: list[float], odd: float) -> tracing.Branch:
+    """A branch of doubled period whose odd lines have the size `odd` where the parameter is 1, none at 0."""
+
+    def mark(parameter: float) -> tracing.Mark:
+        z = np.zeros((5, 2), dtype=complex)
+        z[0::2], z[1::2] = 1.0, odd * parameter
+        return tracing.Mark(SimpleNamespace(parameter=parameter, z=z, pressed=None, tangent=None), None, z)
+
+    return tracing.Branch(2, tuple(mark(p) for p in parameters), "")
+
+
+def test_a_doubled_motion_is_the_same_a_passage_later() -> None:
+    own = doubled([0.0, 0.5, 1.0], 0.4)
+    z = doubled([0.75], 0.4).marks[0].point.z
+    # a passage is half a period: lines of odd multiples of its frequency turn by π, the others by whole turns
+    later = z * (-1.0) ** np.arange(5)[:, None]
+    assert tracing.known([own], 2, 0.75, z)
+    assert tracing.known([own], 2, 0.75, later)
+    assert not tracing.known([own], 2, 0.75, z * np.exp(0.5j * np.pi * np.arange(5))[:, None])
+    # from its other flip the branch is met again, though nothing lies between that flip and its last point
+    back = doubled([1.0002, 1.0001, 0.9, 0.7, 0.4], -0.4)
+    assert searches._met(back, [own], 1e-3)
+    assert not searches._met(back, [own], 5e-5)
+    assert not searches._met(doubled([1.0001, 0.9, 0.7], 0.2), [own], 1e-3)
+
+
 def test_a_store_gives_the_same_map_again_without_work(tmp_path, monkeypatch, hysteresis) -> None:
     first = made(5250, 5300, points=3, store=tmp_path)
     assert list(tmp_path.iterdir())

@@ -18,7 +18,7 @@ import numpy as np
 from bearingdyn import core
 from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.analysis.steady.krylov import gmres
-from bearingdyn.analysis.steady.layer_lines import Softened
+from bearingdyn.analysis.steady.layer_lines import Softened, SoftLayers
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines, body_angles, load_lines
 from bearingdyn.system import System
@@ -61,9 +61,16 @@ class Pressed:
         return all(a.K.size for a in self.bearings)
 
     def without_tangents(self) -> Pressed:
-        """The same, to be kept of many motions: the bearings' tangents sample by sample are most of it."""
-        none = np.zeros((0, 0, 0))
-        return replace(self, bearings=tuple(replace(a, K=none, C=none) for a in self.bearings))
+        """The same without tangents and powers, to be kept of many motions: loads and forces along it."""
+        none, powers = np.zeros((0, 0, 0)), dict.fromkeys(("heat", "pressing", "turning"), np.zeros(0))
+        return replace(self, bearings=tuple(replace(a, K=none, C=none, **powers) for a in self.bearings))
+
+    @classmethod
+    def unknown(cls) -> Pressed:
+        """Of a motion of which only the amplitudes are kept."""
+        none = np.zeros((0, 0), dtype=np.complex128)
+        softened = SoftLayers(()).along(none, np.zeros(0), np.zeros(0))
+        return cls((), none, np.zeros((0, 0)), np.zeros((0, 0)), softened)
 
 
 @dataclass(frozen=True, eq=False)

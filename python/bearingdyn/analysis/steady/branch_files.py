@@ -12,7 +12,6 @@ import numpy as np
 from bearingdyn.analysis.steady.balance import Pressed
 from bearingdyn.analysis.steady.branches import Branch, Mark
 from bearingdyn.analysis.steady.continuation import Point
-from bearingdyn.analysis.steady.layer_lines import SoftLayers
 from bearingdyn.analysis.steady.stability import Stability
 from bearingdyn.fingerprint import fingerprint
 from bearingdyn.kept_arrays import read_arrays, write_arrays
@@ -88,9 +87,7 @@ def _arrays(branch: Branch) -> dict[str, Array]:
 def _branch(arrays: dict[str, Array], head: tuple[int, str, list[str]]) -> Branch:
     passages, origin, events = head
     marks = []
-    empty = np.zeros((0, 0), dtype=np.complex128)
-    softened = SoftLayers(()).along(empty, np.zeros(0), np.zeros(0))
-    nothing = Pressed((), empty, np.zeros((0, 0)), np.zeros((0, 0)), softened)
+    nothing = Pressed.unknown()
     for i, event in enumerate(events):
         p, residual, iterations, slope = arrays["numbers"][i].tolist()
         z = np.ascontiguousarray(arrays["z"][i])

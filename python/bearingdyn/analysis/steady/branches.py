@@ -11,7 +11,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 
 from bearingdyn.analysis.recordable_channels import channel_of
-from bearingdyn.analysis.steady.balance import Balance, Found, flat, newton
+from bearingdyn.analysis.steady.balance import Balance, Found, Pressed, flat, newton
 from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, distance, follow, locate
 from bearingdyn.analysis.steady.event_accuracy import half_turn, once
 from bearingdyn.analysis.steady.kept_by_system import kept_by_system
@@ -35,6 +35,8 @@ from bearingdyn.types import Array, Complex
 DIFFERENT = 1e-3
 # amplitude of the doubled motion with which a branch begins at a flip, as a share of the motion there
 BEGIN = 0.02
+# of the last step of a doubled branch, with which its rest is followed to the flip where it ends
+REST = 0.125
 # of a multiplier's size, within which an event lies on the unit circle
 ON_CIRCLE = 2e-3
 # of a multiplier's size, within which it may be beyond the circle by finer samples
@@ -203,6 +205,16 @@ class Branch:
         values = [m.point.parameter for m in self.marks if m.event != "failed"]
         return min(values, default=math.nan), max(values, default=math.nan)
 
+    def motions_alone(self) -> Branch:
+        """The same as far as other searches ask, whether they have met it: what is sent to them."""
+        none, unknown = np.zeros(0), Pressed.unknown()
+
+        def alone(mark: Mark) -> Mark:
+            point = replace(mark.point, pressed=unknown, tangent=none)
+            return replace(mark, point=point, stability=None, moved=mark.moved[:0])
+
+        return replace(self, marks=tuple(alone(m) for m in self.marks))
+
 
 def curve_of(task: Task, lines: Lines, found: Found, passages: int) -> Curve:
     """The curve of a branch, in the measure of what moves: a motion's size, and a tenth of the range."""
@@ -260,11 +272,17 @@ class Tracer:
         prior: Mark | None = None
         last = self.mark(curve, begin)
         met, ended, over = 0, begin, False
-        for point in follow(curve, begin, self.low, self.high, task.longest, task.most):
+        points, near_end = follow(curve, begin, self.low, self.high, task.longest, task.most), False
+        while (point := next(points, None)) is not None:
             if self.passages > 1 and _mirrored(ended.z, point.z):
                 # through the flip where the branch ends: what follows is the same, a passage later
-                over = True
-                break
+                over = near_end
+                if over:
+                    break
+                # folds hide in the last step, as the slope turns at the flip too
+                near_end, rest = True, REST * curve.scale * distance(curve, ended, point)
+                points = follow(curve, ended, self.low, self.high, rest, task.most)
+                continue
             new = self._cut(curve, last, self.mark(curve, point))
             if _crosses(last, new):
                 # of a few samples a multiplier may cross a point too late, or too early
@@ -369,7 +387,10 @@ class Tracer:
         if float(point.tangent @ border) < 0.0:  # away from the flip
             point = replace(point, tangent=-point.tangent, slope=-point.slope)
         marks = tuple(once(tracer._marks(grown, point), task.tolerance))
-        return Branch(twice, marks, f"flip at {flip.point.parameter:.6g}")
+        # at the flips where it begins and ends its slope is none, and round-off may turn it
+        ends = [m.point.parameter for m in (marks[0], marks[-1])]
+        real = [m for m in marks if m.event != "fold" or not _near(m.point.parameter, ends, task.tolerance)]
+        return Branch(twice, tuple(real), f"flip at {flip.point.parameter:.6g}")
 
 
 def divided(balance: Balance, passages: int) -> Balance:
@@ -387,6 +408,10 @@ def divided(balance: Balance, passages: int) -> Balance:
 
 def found_at(point: Point) -> Found:
     return Found(point.z, point.pressed, point.residual, 0, point.iterations, True)
+
+
+def _near(parameter: float, places: Sequence[float], tolerance: float) -> bool:
+    return any(abs(parameter - place) <= tolerance for place in places)
 
 
 def _crossing(mark: Mark) -> float:
@@ -413,8 +438,10 @@ def _beyond(state: Stability, name: str) -> float:
 
 
 def known(branches: Sequence[Branch], passages: int, parameter: float, z: Complex) -> bool:
-    """Whether one of the branches already has a motion, between two of its points."""
+    """Whether one of the branches already has a motion, between two of its points, or some passages later."""
     size = float(np.linalg.norm(z[1:])) + 1e-4 * float(np.linalg.norm(z[0]))
+    turn = np.exp(2j * np.pi / passages * np.arange(len(z)))[:, None]
+    shifted = [z * turn**later for later in range(passages)]
     for branch in branches:
         if branch.passages != passages:
             continue
@@ -425,6 +452,6 @@ def known(branches: Sequence[Branch], passages: int, parameter: float, z: Comple
             share = (parameter - a.parameter) / (b.parameter - a.parameter)
             near = a.z + share * (b.z - a.z)
             gap = float(np.linalg.norm(b.z - a.z))
-            if float(np.linalg.norm(near - z)) <= DIFFERENT * size + 0.2 * gap:
+            if any(float(np.linalg.norm(near - s)) <= DIFFERENT * size + 0.2 * gap for s in shifted):
                 return True
     return False

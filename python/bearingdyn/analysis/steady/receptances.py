@@ -8,7 +8,7 @@ harmonic response of the core, what stands a solve with G*(0).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -23,6 +23,8 @@ from bearingdyn.types import Array, Complex, Index
 
 # reference stiffnesses of a system of which its answer at 0 Hz is kept
 REFERENCES = 4
+# sets of forces whose answer at rest is kept
+FORCES = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +40,7 @@ class AtRest:
     turning: Array
     gives: Array
     felt: Array
+    free: dict[bytes, tuple[Array, Array]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, D: Array, N: Array) -> AtRest:
@@ -49,11 +52,21 @@ class AtRest:
 
     def solve(self, speed: float, forces: Array) -> Array:
         """Motions (n, i) under forces (n, i) at a speed, rad/s."""
-        X, _ = scipy.linalg.lapack.dgetrs(*self.triangles, forces)
+        X, turned = self._without_speed(forces)
         if not len(self.turning):
-            return np.asarray(X)
-        share = np.linalg.solve(np.eye(len(self.felt)) + speed * self.felt, speed * (self.turning @ X))
+            return X
+        share = np.linalg.solve(np.eye(len(self.felt)) + speed * self.felt, speed * turned)
         return np.asarray(X - self.gives @ share)
+
+    def _without_speed(self, forces: Array) -> tuple[Array, Array]:
+        """X and n X; those of the last few forces are kept, as every speed asks them anew."""
+        key = forces.tobytes()
+        if key not in self.free:
+            if len(self.free) >= FORCES:
+                self.free.clear()
+            X, _ = scipy.linalg.lapack.dgetrs(*self.triangles, forces)
+            self.free[key] = np.asarray(X), self.turning @ X
+        return self.free[key]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,12 +115,12 @@ class Receptances:
         """All bearings' coefficients, and the coordinates of layers that soften (m, n)."""
         return np.vstack([self.system.B, self.soft.rows(self.system.n)])
 
-    @property
+    @cached_property
     def soft(self) -> SoftLayers:
         """The layers that soften."""
         return soft_layers(self.system)
 
-    @property
+    @cached_property
     def of_layers(self) -> slice:
         """The coordinates of layers that soften among all."""
         return slice(len(self.system.B), len(self.K))

@@ -120,7 +120,7 @@ def done(
         if job.kind == "onward":
             return _onward(task, others, job, flip[1], tell)
         made = Tracer(task, flip[0], others, tell).doubled(flip[1])
-        return [] if made is None or _same_start(made, others) else [made]
+        return [] if made is None or _met(made, others, task.tolerance) else [made]
 
 
 def _state(task: Task, others: Sequence[Branch], job: Job, tell: Tell) -> list[Branch]:
@@ -146,16 +146,11 @@ def _onward(task: Task, others: Sequence[Branch], job: Job, mark: Mark, tell: Te
     return [Tracer(task, 1, others, tell).trace(motion, job.place, job.direction, job.origin)]
 
 
-def _same_start(branch: Branch, others: Sequence[Branch]) -> bool:
-    """Whether a branch is one that is known already, begun at its other end."""
-    middle = branch.marks[len(branch.marks) // 2].point
-    if known(others, branch.passages, middle.parameter, middle.z):
-        return True
-    # half a period later it is the same motion
-    odd = np.arange(len(middle.z)) % 2 == 1
-    z = middle.z.copy()
-    z[odd] *= -1.0
-    return known(others, branch.passages, middle.parameter, z)
+def _met(branch: Branch, others: Sequence[Branch], tolerance: float) -> bool:
+    """Whether a branch is known already, begun at its other end, but for what is near its flip."""
+    begin = branch.marks[0].point.parameter
+    away = [m.point for m in branch.marks if abs(m.point.parameter - begin) > tolerance]
+    return bool(away) and all(known(others, branch.passages, p.parameter, p.z) for p in away)
 
 
 def _sweep(task: Task, others: Sequence[Branch], job: Job, tell: Tell) -> list[Branch]:

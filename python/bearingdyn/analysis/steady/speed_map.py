@@ -294,15 +294,15 @@ def _branches(
         if several:
             search([(job, None) for job in states(task)])
         for level in range(doublings):
-            search(
-                [
-                    (Job("flip", m.point.parameter, origin=f"{k}.{i}"), (b.passages, m))
-                    for k, b in enumerate(branches)
-                    if b.passages == 2**level
-                    for i, m in enumerate(b.marks)
-                    if m.event == "flip"
-                ]
-            )
+            flips: tuple[list[Search], list[Search]] = ([], [])
+            for k, b in enumerate(branches):
+                own = [i for i, m in enumerate(b.marks) if m.event == "flip" and b.passages == 2**level]
+                for n, i in enumerate(own):
+                    job = Job("flip", b.marks[i].point.parameter, origin=f"{k}.{i}")
+                    flips[n % 2].append((job, (b.passages, b.marks[i])))
+            # what begins at a flip often ends at the next one, which is then known
+            search(flips[0])
+            search(flips[1])
     return branches
 
 
@@ -316,7 +316,7 @@ def _run(
     """What each job finds, in their order; those that a folder holds are read."""
     if executor is None:
         return (_kept(task, job, list(branches), flip, files) for job, flip in jobs)
-    known = tuple(branches)
+    known = tuple(b.motions_alone() for b in branches)
     running = [
         (files.read(job) if files else None) or executor.submit(done, task, job, known, flip)
         for job, flip in jobs

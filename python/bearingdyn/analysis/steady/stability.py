@@ -280,7 +280,8 @@ class Propagator:
         later[:, :m, : 2 * m], later[:, m:, 2 * m :] = T[1::2], T[2::2]
         felt = later @ self.felt
         right = np.concatenate([-(felt[:, :, :m] @ T[:-1:2]), later], axis=2)
-        S[:, m:] = np.linalg.solve(np.eye(2 * m) + felt[:, :, m:], right)
+        # near the unit matrix, and with fewer columns than what stands on the right
+        S[:, m:] = np.linalg.inv(np.eye(2 * m) + felt[:, :, m:]) @ right
         return S
 
     def over(self, S: Array) -> Array:
