@@ -111,6 +111,12 @@ def test_an_unknown_bearing_is_named_with_the_nearest(unknown):
         bearing(unknown)
 
 
+@pytest.mark.parametrize("unknown", ["NU205", "QJ 206", "63214-2RS", "22205"])
+def test_a_bearing_of_another_series_is_named_with_the_nearest(unknown):
+    with pytest.raises(ValueError, match=f"^designation is '{unknown}'; it must hold .*the nearest are [67]"):
+        bearing(unknown)
+
+
 @pytest.mark.parametrize("nonsense", ["", "ball", "62/22", "-2RS", None])
 def test_what_holds_no_number_is_refused(nonsense):
     with pytest.raises(ValueError, match=r"^designation is .*must hold a number of the series"):
