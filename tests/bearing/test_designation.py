@@ -22,6 +22,7 @@ from bearingdyn.notice import PassedOver
         ("6205 C4", "6205", None, "C4", ()),
         ("6305-2Z/C3WT", "6305", None, "C3", ("2Z", "WT")),
         ("6208/P63", "6208", None, "C3", ("P6",)),
+        ("6205 P54", "6205", None, "C4", ("P5",)),
         ("fag 6310-c3", "6310", None, "C3", ("FAG",)),
         ("6805", "61805", None, "", ()),
         ("16008 CN", "16008", None, "CN", ()),
@@ -107,6 +108,12 @@ def test_a_bare_number_has_the_usual_angle():
 @pytest.mark.parametrize("unknown", ["6299", "6421", "7099C"])
 def test_an_unknown_bearing_is_named_with_the_nearest(unknown):
     with pytest.raises(ValueError, match=rf"^designation is '{unknown}'; the nearest are \w+, \w+, \w+; "):
+        bearing(unknown)
+
+
+@pytest.mark.parametrize("unknown", ["NU205", "QJ 206", "63214-2RS", "22205"])
+def test_a_bearing_of_another_series_is_named_with_the_nearest(unknown):
+    with pytest.raises(ValueError, match=f"^designation is '{unknown}'; it must hold .*the nearest are [67]"):
         bearing(unknown)
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import csv
 import difflib
 import math
+import re
 from importlib.resources import files
 from typing import Any, Literal, NamedTuple
 
@@ -246,9 +247,13 @@ def _read(designation: str | int) -> Designation:
     except ValueError as error:
         typed = str(designation).upper().replace(" ", "").replace("O", "0")
         near = difflib.get_close_matches(typed, CATALOGUE, n=1, cutoff=0.7)
-        if not near:
-            raise
-        raise ValueError(f"designation is {designation!r}; did you mean {near[0]!r}?") from error
+        if near:
+            raise ValueError(f"designation is {designation!r}; did you mean {near[0]!r}?") from error
+        number = re.search(r"[0-9]{3,}", typed)  # of a series that is not listed: "205" of NU205
+        near = difflib.get_close_matches(number[0], CATALOGUE, n=3, cutoff=0.6) if number else []
+        if near and "ceramic" not in str(error):
+            raise ValueError(f"{error}; the nearest are {', '.join(near)}") from error
+        raise
 
 
 def _listed(designation: str | int, read: Designation, balls: int | None) -> Entry:

@@ -108,11 +108,11 @@ def read_designation(designation: str | int) -> Designation:
         if letter:
             angle = math.radians(_ANGLES[letter])
             rest = bare[len(letter) :]
-    tolerance = re.search(r"P6([2-5])(?![0-9])", rest)
+    tolerance = re.search(r"P[4-6]([2-5])(?![0-9])", rest)  # P63: of class P6, with the clearance C3
     group = tolerance or re.search(r"C([2-5N])(?![0-9A-MO-Z]*[0-9])", rest) or re.search(r"C([2-5N])", rest)
     clearance = f"C{group[1]}" if group else ""
     if group:
-        rest = rest[: group.start()] + (" P6 " if tolerance else " ") + rest[group.end() :]
+        rest = rest[: group.start()] + (f" {tolerance[0][:2]} " if tolerance else " ") + rest[group.end() :]
     pieces = re.split(r"[\s/,.\-]+", text[: found.start()] + " " + rest)
     return Designation(series + found[2], letter, angle, clearance, tuple(p for p in pieces if p))
 

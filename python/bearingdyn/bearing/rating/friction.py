@@ -2,9 +2,12 @@
 
 "palmgren": a moment of the oil and one of the load (A. Palmgren; Harris' form). For usual loads (P0/C0 up to
 some .5) and speeds up to the bearing's rated one; within a factor of 1.5. The form of M0, 160e-7 f0 dm³ below
-νn = 2000, was read in a public program that cites it (axle box bearings, Vehicle System Dynamics 58, 2019),
-f0 = 1 of oil mist and 2 of grease in another; f0 of oil bath and jet and f1 rest on no source that was read.
-UNVERIFIED: f1 and these f0.
+νn = 2000, was read in a public program that cites it (axle box bearings, Vehicle System Dynamics 58, 2019).
+f0 were read in Thermca (thermca/lib/bearing.py, after its [Jun10]): oil bath 2 of deep groove and 3.3 of
+angular contact, half of it in oil and air, twice in an oil jet; grease 1 and 2 (2 of both in another program;
+this one takes 2). Its f1, given for a tenth of C, are .00022 and .00046; here .00029 (6205) and .00054
+(7205B). UNVERIFIED: the exponents .55 and .33 of f1, and its factors, .0006 to .0009 by the series (here
+.00075 for all).
 
 "four-term": rolling, sliding, seals and drag, as SKF's catalogues have it since 2003. For the minimum load or
 more, a constant load, normal clearance in operation, κ from .1; its constants are by series. The forms of
@@ -17,8 +20,9 @@ motion instead of .15.
 
 What another maker prints holds both: Koyo's friction coefficients, M = μPd/2, are .0010 to .0015 of deep
 groove and .0012 to .0020 of angular contact bearings (www.koyousa.com/koyocatalog/technical/05/5_5main.htm).
-At a tenth of C, 20 mm²/s and 3000 rpm, a full film, "palmgren" gives .0019 and .0026, "four-term" .0016 and
-.0029. In thin oil, κ well below 1, "four-term" of 40° gives up to .0058, as its sliding goes with μ_bl.
+At a tenth of C, 20 mm²/s and 3000 rpm, a full film, "palmgren" gives .0019 and .0026 with grease (.0032 in an
+oil bath), "four-term" .0016 and .0029. In thin oil, κ well below 1, "four-term" of 40° gives up to .0058, as
+its sliding goes with μ_bl.
 """
 
 from __future__ import annotations
@@ -58,11 +62,12 @@ _ANGULAR = ("70", "72", "73")
 # single row angular contact bearings of 40°; the third are of the load by centrifugal forces, R3 and S3
 _STEEP = _Constants(5.03e-7, 1.97, 1.30e-2, 0.68)
 _STEEP_CENTRIFUGAL = (1.90e-12, 1.91e-12)
+_ANGULAR_FROM = 5.0  # °, of the nominal contact angle: angular contact from here
 _CROWDING = {"deep": 3.1, "angular": 4.4}  # K_Z
 _BOUNDARY, _FULL_FILM = 0.15, 0.05  # μ_bl, "generally"; μ_EHL of mineral oil (catalogue of 2013, page 105)
 
-# Palmgren's f0 (Harris): deep groove and single row angular contact alike within its range
-_SUPPLY = {"oil mist": 1.0, "oil bath": 2.0, "oil jet": 4.0, "grease": 2.0}
+# Palmgren's f0: of deep groove, of single row angular contact bearings
+_SUPPLY = {"oil mist": (1.0, 1.65), "oil bath": (2.0, 3.3), "oil jet": (4.0, 6.6), "grease": (2.0, 2.0)}
 _STARVING = {"oil mist": 6e-8, "grease": 6e-8, "oil bath": 3e-8, "oil jet": 3e-8}  # K_rs
 
 
@@ -183,7 +188,8 @@ def friction(
     if n == 0:
         return Friction(model, 0.0, 0.0, 0.0, 0.0, 0.0)
     if model == "palmgren":
-        rolling, sliding = _palmgren(Fr, Fa, n, nu, dm, static, degrees, _SUPPLY[supply])
+        f0 = _SUPPLY[supply][0 if degrees < _ANGULAR_FROM else 1]
+        rolling, sliding = _palmgren(Fr, Fa, n, nu, dm, static, degrees, f0)
         drag = 0.0
     else:
         rolling, sliding, drag = _four_term(
@@ -198,7 +204,7 @@ def _palmgren(
     """M0 and M1, N mm."""
     product = nu * n
     M0 = 1e-7 * f0 * product ** (2 / 3) * dm**3 if product >= 2000 else 160e-7 * f0 * dm**3
-    if degrees < 5:
+    if degrees < _ANGULAR_FROM:
         factor, exponent = 0.00075, 0.55  # .0006 (light series) to .0009 (heavy)
         P0, P1 = max(0.6 * Fr + 0.5 * Fa, Fr), max(3 * Fa - 0.1 * Fr, Fr)
     else:
@@ -222,7 +228,7 @@ def _four_term(
 ) -> tuple[float, float, float]:
     """M_rr, M_sl and M_drag, N mm."""
     dm = (d + D) / 2
-    if degrees < 5:
+    if degrees < _ANGULAR_FROM:
         known = ", ".join(_DEEP)
         require(series in _DEEP, "series", series, f"the four-term model has constants of {known}")
         R1, R2, S1, S2 = _DEEP[series]
