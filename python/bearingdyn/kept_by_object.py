@@ -1,4 +1,4 @@
-"""What is found of a system once, and kept as long as that system lives: a decorator for functions of one."""
+"""What is found of an object once, and kept as long as that object lives: a decorator of functions."""
 
 from __future__ import annotations
 
@@ -7,23 +7,24 @@ from functools import wraps
 from typing import TypeVar
 from weakref import WeakKeyDictionary
 
-from bearingdyn.system import System
-
+_A = TypeVar("_A")
 _T = TypeVar("_T")
 
 
-def kept_by_system(find: Callable[[System], _T]) -> Callable[[System], _T]:
-    """Keep what a function finds of a system until the system itself is gone.
+def kept_by_object(find: Callable[[_A], _T]) -> Callable[[_A], _T]:
+    """Keep what a function finds of an object that nobody changes until that object itself is gone.
 
-    What is found must not hold the system, or neither ever goes. Two threads may find it twice.
+    What is found must not hold the object, or neither ever goes; and nobody may write into it. Two threads
+    may find it twice.
     """
-    held: WeakKeyDictionary[System, _T] = WeakKeyDictionary()
+    held: WeakKeyDictionary[_A, _T] = WeakKeyDictionary()
 
     @wraps(find)
-    def found(system: System) -> _T:
-        known = held.get(system)
-        if known is None:
-            known = held[system] = find(system)
-        return known
+    def found(of: _A) -> _T:
+        try:
+            return held[of]
+        except KeyError:
+            known = held[of] = find(of)
+            return known
 
     return found
