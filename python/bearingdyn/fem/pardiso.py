@@ -42,9 +42,9 @@ class Cholesky:
         if not np.array_equal(first, np.arange(A.shape[0])):  # the library asks for every diagonal entry
             raise np.linalg.LinAlgError("the matrix is not positive definite: its diagonal has gaps")
         starts, columns = (np.asarray(x + 1, dtype=np.int32) for x in (upper.indptr, upper.indices))
-        self._call, error = _analysed(starts, columns), 0
-        if self._call is None:
-            self._call = _Call(starts, columns)
+        known, error = _analysed(starts, columns), 0
+        self._call = _Call(starts, columns) if known is None else known
+        if known is None:
             error = self._call(ANALYSE)
         # the factors are the library's, outside of what Python counts
         weakref.finalize(self, _rest, self._call)

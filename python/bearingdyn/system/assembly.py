@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from bearingdyn.application import GRAVITY, GROUND, Application, Load, LooseJoint, Place, Plan
 from bearingdyn.bearing import RIGID
@@ -57,7 +56,7 @@ def assemble(app: Application) -> System:
     for part, element in plan.parts.items():
         own = (element.M, element.C, element.G, element.K, element.N)
         for total, A in zip((M, C, G, K, N), own, strict=True):
-            _place(total, A, index[part])
+            _place(total, np.asarray(A), index[part])
         R = plan.rigid_shapes(part)
         rigid = np.full((element.n, 6), np.nan) if R is None else R
         inertia += select[part].T @ (element.M @ rigid[:, :3])
@@ -137,10 +136,10 @@ def assemble(app: Application) -> System:
     return noted(system, app)
 
 
-def _place(total: Array, A: ArrayLike, place: Index) -> None:
+def _place(total: Array, A: Array, place: Index) -> None:
     """Add a part's matrix to the system's, at the places of its coordinates; -1 are held by the ground."""
     moving = np.flatnonzero(place >= 0)
-    inside, own = np.ix_(place[moving], place[moving]), np.asarray(A)[np.ix_(moving, moving)]
+    inside, own = np.ix_(place[moving], place[moving]), A[np.ix_(moving, moving)]
     if np.unique(place[moving]).size == moving.size:
         total[inside] += own
     else:  # two interfaces of a part that are joined to each other share their places
