@@ -16,9 +16,10 @@
 #include "lanes.h"
 
 enum {
-    PAIR = 2 * BD_WIDTH,
-    TILE = 4
-}; /* doubles of a complex number of lanes; columns at a time */
+    PAIR = 2 * BD_WIDTH,               /* doubles of a complex number of lanes */
+    TILE = 4,                          /* columns at a time */
+    PAIR_TILE = BD_WIDTH == 8 ? 4 : 2, /* of two rows: as many as the registers hold */
+};
 
 /* (re, im) -= a b */
 #define MINUS_PRODUCT(re, im, a_re, a_im, b_re, b_im)                                              \
@@ -47,32 +48,38 @@ BD_INLINE void entry(const bd_receptance *block, const pencil *at, const double 
     }
 }
 
-/* TILE (or fewer: `count`) numbers row[j] = a[j] - sum_(k < i) left[k] right[k][j]; `right` goes down a column. */
-#define DEFINE_TILE(NAME, COUNT)                                                                   \
-    BD_INLINE void NAME(int i, const double *restrict left, size_t left_stride,                    \
-                        const double *restrict right, size_t stride, double *restrict row)         \
+/* COUNT numbers of each of ROWS rows one below the other (`apart`), row[j] -= sum_(k < i) left[k] right[k][j]; `left`
+ * has the rows' factors side by side, `right` goes down a column. Two rows take what is loaded twice as far. */
+#define DEFINE_TILE(NAME, ROWS, COUNT)                                                             \
+    BD_INLINE void NAME(int i, const double *restrict left, const double *restrict right,          \
+                        size_t stride, double *restrict row, size_t apart)                         \
     {                                                                                              \
-        lanes re[COUNT], im[COUNT];                                                                \
-        for (int c = 0; c < COUNT; c++) {                                                          \
-            re[c] = RE(row + c * PAIR);                                                            \
-            im[c] = IM(row + c * PAIR);                                                            \
-        }                                                                                          \
-        for (int k = 0; k < i; k++, left += left_stride, right += stride) {                        \
-            const lanes l_re = RE(left), l_im = IM(left);                                          \
-            for (int c = 0; c < COUNT; c++)                                                        \
-                MINUS_PRODUCT(re[c], im[c], l_re, l_im, RE(right + c * PAIR),                      \
-                              IM(right + c * PAIR));                                               \
-        }                                                                                          \
-        for (int c = 0; c < COUNT; c++) {                                                          \
-            LANES_AT(row + c * PAIR) = re[c];                                                      \
-            LANES_AT(row + c * PAIR + BD_WIDTH) = im[c];                                           \
-        }                                                                                          \
+        lanes re[ROWS][COUNT], im[ROWS][COUNT];                                                    \
+        for (int r = 0; r < (ROWS); r++)                                                           \
+            for (int c = 0; c < (COUNT); c++) {                                                    \
+                re[r][c] = RE(row + (size_t)r * apart + c * PAIR);                                 \
+                im[r][c] = IM(row + (size_t)r * apart + c * PAIR);                                 \
+            }                                                                                      \
+        for (int k = 0; k < i; k++, left += stride, right += stride)                               \
+            for (int r = 0; r < (ROWS); r++) {                                                     \
+                const lanes l_re = RE(left + r * PAIR), l_im = IM(left + r * PAIR);                \
+                for (int c = 0; c < (COUNT); c++)                                                  \
+                    MINUS_PRODUCT(re[r][c], im[r][c], l_re, l_im, RE(right + c * PAIR),            \
+                                  IM(right + c * PAIR));                                           \
+            }                                                                                      \
+        for (int r = 0; r < (ROWS); r++)                                                           \
+            for (int c = 0; c < (COUNT); c++) {                                                    \
+                LANES_AT(row + (size_t)r * apart + c * PAIR) = re[r][c];                           \
+                LANES_AT(row + (size_t)r * apart + c * PAIR + BD_WIDTH) = im[r][c];                \
+            }                                                                                      \
     }
 
-DEFINE_TILE(tile_whole, TILE)
-DEFINE_TILE(tile_three, 3)
-DEFINE_TILE(tile_two, 2)
-DEFINE_TILE(tile_one, 1)
+DEFINE_TILE(tile_whole, 1, TILE)
+DEFINE_TILE(tile_three, 1, 3)
+DEFINE_TILE(tile_two, 1, 2)
+DEFINE_TILE(tile_one, 1, 1)
+DEFINE_TILE(pair_tile, 2, PAIR_TILE)
+DEFINE_TILE(pair_tile_one, 2, 1)
 
 /* row[from ... to) -= sum over the i rows above it */
 BD_INLINE void eliminate(int i, int from, int to, const double *left, const double *right,
@@ -80,93 +87,168 @@ BD_INLINE void eliminate(int i, int from, int to, const double *left, const doub
 {
     int j = from;
     for (; j + TILE <= to; j += TILE)
-        tile_whole(i, left, stride, right + (size_t)j * PAIR, stride, row + (size_t)j * PAIR);
+        tile_whole(i, left, right + (size_t)j * PAIR, stride, row + (size_t)j * PAIR, 0);
     right += (size_t)j * PAIR;
     row += (size_t)j * PAIR;
     if (to - j == 3)
-        tile_three(i, left, stride, right, stride, row);
+        tile_three(i, left, right, stride, row, 0);
     else if (to - j == 2)
-        tile_two(i, left, stride, right, stride, row);
+        tile_two(i, left, right, stride, row, 0);
     else if (to - j == 1)
-        tile_one(i, left, stride, right, stride, row);
+        tile_one(i, left, right, stride, row, 0);
+}
+
+/* The same of two rows, `apart` from each other. */
+BD_INLINE void eliminate_pair(int i, int from, int to, const double *left, const double *right,
+                              size_t stride, double *row, size_t apart)
+{
+    int j = from;
+    for (; j + PAIR_TILE <= to; j += PAIR_TILE)
+        pair_tile(i, left, right + (size_t)j * PAIR, stride, row + (size_t)j * PAIR, apart);
+    for (; j < to; j++)
+        pair_tile_one(i, left, right + (size_t)j * PAIR, stride, row + (size_t)j * PAIR, apart);
+}
+
+/* What the elimination of a block at the lanes' frequencies works on. Rows of U have Q behind them; columns of L, kept
+ * as rows too, have P. */
+typedef struct elimination {
+    const bd_receptance *block;
+    pencil at;
+    const double *moduli;
+    double *U, *L;
+    size_t stride; /* of a row */
+} elimination;
+
+/* Row i of U and, unless it is that of U over the pivot, column i of L, before anything is taken from them. */
+BD_INLINE void form(const elimination *e, int i)
+{
+    const bd_receptance *block = e->block;
+    const int n = block->n, beside = block->n_beside, n_left = block->n_left;
+    const size_t entries = 3 + (size_t)block->n_layers;
+    double *u = e->U + (size_t)i * e->stride, *l = e->L + (size_t)i * e->stride;
+    const double *columns = block->beside + (size_t)i * (size_t)beside;
+    lanes re, im;
+    for (int j = i; j < n; j++) { /* nothing to the left of the diagonal is kept */
+        entry(block, &e->at, e->moduli,
+              block->pencil + ((size_t)i * (size_t)n + (size_t)j) * entries, &re, &im);
+        LANES_AT(u + j * PAIR) = re;
+        LANES_AT(u + j * PAIR + BD_WIDTH) = im;
+    }
+    for (int c = 0; c < beside; c++) {
+        LANES_AT(u + (n + c) * PAIR) = columns[c] + (lanes){0};
+        LANES_AT(u + (n + c) * PAIR + BD_WIDTH) = (lanes){0};
+    }
+    if (block->symmetric)
+        return;
+    for (int j = i + 1; j < n; j++) {
+        entry(block, &e->at, e->moduli,
+              block->pencil + ((size_t)j * (size_t)n + (size_t)i) * entries, &re, &im);
+        LANES_AT(l + j * PAIR) = re;
+        LANES_AT(l + j * PAIR + BD_WIDTH) = im;
+    }
+    for (int c = 0; c < n_left; c++) {
+        LANES_AT(l + (n + c) * PAIR) = columns[c] + (lanes){0};
+        LANES_AT(l + (n + c) * PAIR + BD_WIDTH) = (lanes){0};
+    }
+}
+
+/* Rows i and, where `pair`, i + 1 minus what the `count` rows from k on take from them. */
+BD_INLINE void take(const elimination *e, int i, bool pair, int k, int count)
+{
+    const bd_receptance *block = e->block;
+    const int n = block->n, right = n + block->first_right, end = n + block->n_beside;
+    const int left = n + block->n_left;
+    const size_t stride = e->stride, row = (size_t)i * stride, above = (size_t)k * stride;
+    const size_t own = above + (size_t)i * PAIR;
+    double *u = e->U + row, *l = e->L + row;
+    const double *U = e->U + above, *L = e->L + above;
+    const int seen[2][2] = {{i, block->symmetric ? end : n},
+                            {right, block->symmetric ? right : end}};
+
+    for (int part = 0; part < 2; part++) {
+        int from = seen[part][0];
+        const int to = seen[part][1];
+        if (!pair) {
+            eliminate(count, from, to, e->L + own, U, stride, u);
+            continue;
+        }
+        if (part == 0) { /* the second has nothing in the column of the first's pivot */
+            tile_one(count, e->L + own, U + (size_t)from * PAIR, stride, u + (size_t)from * PAIR,
+                     0);
+            from++;
+        }
+        eliminate_pair(count, from, to, e->L + own, U, stride, u, stride);
+    }
+    if (block->symmetric)
+        return;
+    if (!pair) {
+        eliminate(count, i + 1, left, e->U + own, L, stride, l);
+        return;
+    }
+    tile_one(count, e->U + own, L + (size_t)(i + 1) * PAIR, stride, l + (size_t)(i + 1) * PAIR, 0);
+    eliminate_pair(count, i + 2, left, e->U + own, L, stride, l, stride);
+}
+
+/* Column i of L over the pivot. Returned in `grown`, added: what was taken from the diagonal, squared, over what it
+ * was formed from. */
+BD_INLINE void finish(const elimination *e, int i, lanes *grown)
+{
+    const bd_receptance *block = e->block;
+    const int n = block->n;
+    const size_t row = (size_t)i * e->stride;
+    const double *own = block->pencil + (size_t)i * (size_t)(n + 1) * (3 + (size_t)block->n_layers);
+    lanes scale = __builtin_fabs(own[0]) + e->at.square * __builtin_fabs(own[1]) +
+                  e->at.omega * __builtin_fabs(own[2]);
+    for (int m = 0; m < block->n_layers; m++) {
+        const lanes modulus = LANES(e->moduli + m * PAIR),
+                    loss = LANES(e->moduli + m * PAIR + BD_WIDTH);
+        lanes size = modulus * modulus + loss * loss;
+        lanes_sqrt(&size, &size);
+        scale += size * own[3 + m];
+    }
+    lanes taken = {0};
+    for (int k = 0; k < i; k++) {
+        const double *a = e->L + (size_t)k * e->stride + (size_t)i * PAIR;
+        const double *b = e->U + (size_t)k * e->stride + (size_t)i * PAIR;
+        taken += (RE(a) * RE(a) + IM(a) * IM(a)) * (RE(b) * RE(b) + IM(b) * IM(b));
+    }
+    *grown += taken / (scale * scale);
+
+    const double *u = e->U + row;
+    double *l = e->L + row;
+    const lanes p_re = RE(u + i * PAIR), p_im = IM(u + i * PAIR);
+    const lanes over = 1.0 / (p_re * p_re + p_im * p_im);
+    const lanes i_re = p_re * over, i_im = -p_im * over;
+    const double *from = block->symmetric ? u : l;
+    for (int j = i + 1; j < n + block->n_left; j++) {
+        const lanes re = RE(from + j * PAIR), im = IM(from + j * PAIR);
+        LANES_AT(l + j * PAIR) = re * i_re - im * i_im;
+        LANES_AT(l + j * PAIR + BD_WIDTH) = re * i_im + im * i_re;
+    }
 }
 
 void BD_NAMED(bd_receptance_solve)(const bd_receptance *block, const double *omega,
                                    const double *moduli, double *memory, double *response,
                                    double *growth)
 {
-    const int n = block->n, n_left = block->n_left, beside = block->n_beside;
-    const int right = n + block->first_right, end = n + beside;
-    const size_t entries = 3 + (size_t)block->n_layers;
-    /* rows of U with Q behind them, and columns of L with P behind them, each as a row */
+    const int n = block->n, n_left = block->n_left, end = n + block->n_beside;
+    const int right = n + block->first_right;
     const size_t stride = (size_t)end * PAIR;
     double *U = memory, *L = memory + (size_t)n * stride;
-    const pencil at = {LANES(omega), LANES(omega) * LANES(omega)};
+    const elimination e = {block, {LANES(omega), LANES(omega) * LANES(omega)}, moduli, U, L,
+                           stride};
     lanes grown = {0};
 
-    for (int i = 0; i < n; i++) {
-        double *u = U + (size_t)i * stride, *l = L + (size_t)i * stride;
-        for (int j = i; j < n; j++) { /* nothing to the left of the diagonal is kept */
-            lanes re, im;
-            entry(block, &at, moduli, block->pencil + ((size_t)i * (size_t)n + (size_t)j) * entries,
-                  &re, &im);
-            LANES_AT(u + j * PAIR) = re;
-            LANES_AT(u + j * PAIR + BD_WIDTH) = im;
-        }
-        const double *columns = block->beside + (size_t)i * (size_t)beside;
-        for (int c = 0; c < beside; c++) {
-            LANES_AT(u + (n + c) * PAIR) = columns[c] + (lanes){0};
-            LANES_AT(u + (n + c) * PAIR + BD_WIDTH) = (lanes){0};
-        }
-
-        /* what the diagonal is formed from, squared, against what is taken from it */
-        const double *own = block->pencil + (size_t)i * (size_t)(n + 1) * entries;
-        lanes scale = __builtin_fabs(own[0]) + at.square * __builtin_fabs(own[1]) +
-                      at.omega * __builtin_fabs(own[2]);
-        for (int m = 0; m < block->n_layers; m++) {
-            const lanes modulus = LANES(moduli + m * PAIR),
-                        loss = LANES(moduli + m * PAIR + BD_WIDTH);
-            lanes size = modulus * modulus + loss * loss;
-            lanes_sqrt(&size, &size);
-            scale += size * own[3 + m];
-        }
-        lanes taken = {0};
-        for (int k = 0; k < i; k++) {
-            const double *a = L + (size_t)k * stride + (size_t)i * PAIR;
-            const double *b = U + (size_t)k * stride + (size_t)i * PAIR;
-            taken += (RE(a) * RE(a) + IM(a) * IM(a)) * (RE(b) * RE(b) + IM(b) * IM(b));
-        }
-        grown += taken / (scale * scale);
-
-        if (block->symmetric) {
-            eliminate(i, i, end, L + (size_t)i * PAIR, U, stride, u);
-        } else {
-            /* U and Q by the rows of L; then the column of L and P by those of U */
-            eliminate(i, i, n, L + (size_t)i * PAIR, U, stride, u);
-            eliminate(i, right, end, L + (size_t)i * PAIR, U, stride, u);
-            for (int j = i + 1; j < n; j++) {
-                lanes re, im;
-                entry(block, &at, moduli,
-                      block->pencil + ((size_t)j * (size_t)n + (size_t)i) * entries, &re, &im);
-                LANES_AT(l + j * PAIR) = re;
-                LANES_AT(l + j * PAIR + BD_WIDTH) = im;
-            }
-            for (int c = 0; c < n_left; c++) {
-                LANES_AT(l + (n + c) * PAIR) = columns[c] + (lanes){0};
-                LANES_AT(l + (n + c) * PAIR + BD_WIDTH) = (lanes){0};
-            }
-            eliminate(i, i + 1, n + n_left, U + (size_t)i * PAIR, L, stride, l);
-        }
-
-        /* over the pivot */
-        const lanes p_re = RE(u + i * PAIR), p_im = IM(u + i * PAIR);
-        const lanes over = 1.0 / (p_re * p_re + p_im * p_im);
-        const lanes i_re = p_re * over, i_im = -p_im * over;
-        const double *from = block->symmetric ? u : l;
-        for (int j = i + 1; j < n + n_left; j++) {
-            const lanes re = RE(from + j * PAIR), im = IM(from + j * PAIR);
-            LANES_AT(l + j * PAIR) = re * i_re - im * i_im;
-            LANES_AT(l + j * PAIR + BD_WIDTH) = re * i_im + im * i_re;
+    for (int i = 0; i < n; i += 2) {
+        const bool pair = i + 1 < n;
+        form(&e, i);
+        if (pair)
+            form(&e, i + 1);
+        take(&e, i, pair, 0, i);
+        finish(&e, i, &grown);
+        if (pair) {
+            take(&e, i + 1, false, i, 1);
+            finish(&e, i + 1, &grown);
         }
     }
 

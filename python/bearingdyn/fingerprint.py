@@ -18,6 +18,7 @@ import os
 import sys
 import sysconfig
 import types
+import weakref
 from collections.abc import Callable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -36,6 +37,8 @@ def _own_version() -> str:
 VERSION = _own_version()
 # arrays of more numbers than this are told by their digest
 WRITTEN_OUT = 64
+# digests of large arrays that nobody may write into, by their id: the same parts stand in many applications
+_digests: dict[int, tuple[weakref.ref[Any], str]] = {}
 # methods that write into a dict, a list or a set
 _WRITERS = ("setdefault", "append", "add")
 # HDF5 keeps an attribute of up to 64 kB
@@ -137,12 +140,15 @@ def _digest(described: Any) -> str:
 def _array(value: np.ndarray, told: Callable[[Any], Any]) -> Any:
     if value.dtype.hasobject or value.size <= WRITTEN_OUT:
         return [told(item) for item in value.tolist()] if value.ndim else told(value.item())
-    plain = np.ascontiguousarray(value)
-    return {
-        "shape": list(value.shape),
-        "dtype": value.dtype.str,
-        "sha256": hashlib.sha256(plain.tobytes()).hexdigest()[:32],
-    }
+    frozen = value.base is None and not value.flags.writeable
+    known = _digests.get(id(value)) if frozen else None
+    if known is None or known[0]() is not value:
+        plain = np.ascontiguousarray(value)
+        known = weakref.ref(value), hashlib.sha256(plain.tobytes()).hexdigest()[:32]
+        if frozen:
+            _digests[id(value)] = known
+            weakref.finalize(value, _digests.pop, id(value), None).atexit = False
+    return {"shape": list(value.shape), "dtype": value.dtype.str, "sha256": known[1]}
 
 
 def _object(value: Any, told: Callable[[Any], Any], strict: bool) -> Any:

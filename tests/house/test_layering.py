@@ -31,7 +31,7 @@ PACKAGE = ROOT / "python" / "bearingdyn"
 
 # A room may import the rooms of earlier rows, and nothing beside or after it. "" is bearingdyn/__init__.py.
 ORDER: tuple[tuple[str, ...], ...] = (
-    ("pictures", "progress", "short_repr", "types"),
+    ("kept_by_object", "pictures", "progress", "short_repr", "types"),
     ("checks", "core", "fingerprint", "notice"),
     ("plausible_ranges", "units", "writing"),
     ("kept_arrays",),

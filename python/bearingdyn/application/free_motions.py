@@ -9,6 +9,7 @@ import scipy.linalg
 
 from bearingdyn.application.channel import COMPONENTS
 from bearingdyn.cms import Superelement
+from bearingdyn.kept_by_object import kept_by_object
 from bearingdyn.types import Array
 
 # energy of a rigid motion, of what the same entries would give without cancelling: round-off of a reduction
@@ -17,6 +18,7 @@ FREE = 1e-10
 HELD = 1e-9
 
 
+@kept_by_object
 def rigid_shapes(element: Superelement) -> Array | None:
     """Rigid motions (n, 6) of a part in its coordinates, from which free motions are found.
 

@@ -59,6 +59,7 @@ class _Held:
     """A model with some coordinates held: the rest in blocks that do not couple, each with factors."""
 
     K: Any
+    across: Any  # stiffness (inner, held)
     held: Index
     inner: Index
     blocks: list[tuple[Index, Any, Any, Any]]  # coordinates within inner, stiffness, mass, factors
@@ -72,15 +73,21 @@ class _Held:
 
     def static(self, T: Array) -> Array:
         """Static motion (inner, r) that goes with interface motions T (held, r)."""
-        return -self.solve(np.asarray(self.K[self.inner][:, self.held] @ T))
+        return -self.solve(np.asarray(self.across @ T))
 
-    def modes(self, f_max: float | None, n_modes: int | None) -> tuple[Array, Array]:
-        """Rising frequencies (m,), Hz, and shapes (inner, m) of unit modal mass, the interface held."""
+    def modes(
+        self, f_max: float | None, n_modes: int | None, near: Array | None = None
+    ) -> tuple[Array, Array]:
+        """Rising frequencies (m,), Hz, and shapes (inner, m) of unit modal mass, the interface held.
+
+        `near` (inner, k) are vectors in which low modes are strong, as for `lowest_modes`.
+        """
         limit = self.inner.size if n_modes is None else min(n_modes, self.inner.size)
         found = [(np.zeros(0), np.zeros((self.inner.size, 0)))]
         for at, k, m, lu in self.blocks:
             try:
-                frequency, phi = lowest_modes(k, m, math.inf if f_max is None else f_max, limit, lu)
+                top, close = math.inf if f_max is None else f_max, None if near is None else near[at]
+                frequency, phi = lowest_modes(k, m, top, limit, lu, close)
             except (np.linalg.LinAlgError, RuntimeError) as error:
                 raise _free_to_move(self.held, error) from error
             shape = np.zeros((self.inner.size, frequency.size))
@@ -94,19 +101,38 @@ class _Held:
 def _hold(K: Any, M: Any, held: Index) -> _Held:
     """Hold some coordinates of a free model. Raises ValueError if the rest can still move."""
     K, M = scipy.sparse.csr_matrix(K), scipy.sparse.csr_matrix(M)
-    inner = np.setdiff1d(np.arange(K.shape[0]), held)
-    K_ii, M_ii = K[inner][:, inner], M[inner][:, inner]
+    free = np.ones(K.shape[0], dtype=bool)
+    free[held] = False
+    inner = np.flatnonzero(free)
+    rows = K[inner]
+    K_ii, M_ii = rows[:, inner], M[inner][:, inner]
     # Bending planes, stretch and torsion of a shaft do not couple: each block is solved by itself.
-    count, label = scipy.sparse.csgraph.connected_components(abs(K_ii) + abs(M_ii), directed=False)
+    label = _coupled_by(K_ii, M_ii)
     blocks = []
-    for block in range(count):
+    for block in range(label.max(initial=-1) + 1):
         at = np.flatnonzero(label == block)
-        k, m = K_ii[at][:, at], M_ii[at][:, at]
+        k, m = (K_ii, M_ii) if at.size == inner.size else (K_ii[at][:, at], M_ii[at][:, at])
         try:
             blocks.append((at, k, m, factorise(k)))
         except RuntimeError as error:
             raise _free_to_move(held, error) from error
-    return _Held(K, held, inner, blocks)
+    return _Held(K, rows[:, held], held, inner, blocks)
+
+
+def _coupled_by(K: Any, M: Any) -> Index:
+    """Number (n,) of the block of each coordinate: nonzero entries join them."""
+    stiff = K.copy()
+    stiff.eliminate_zeros()
+    # mostly the first coordinate is joined to all others by the stiffness alone
+    first = (
+        scipy.sparse.csgraph.breadth_first_order(stiff, 0, return_predecessors=False)
+        if len(K.indptr) > 1
+        else ()
+    )
+    if len(first) == K.shape[0]:
+        return np.zeros(K.shape[0], dtype=np.intp)
+    both = abs(stiff) + abs(M)
+    return np.asarray(scipy.sparse.csgraph.connected_components(both, directed=False)[1])
 
 
 def _free_to_move(held: Index, error: Exception) -> ValueError:
@@ -267,7 +293,7 @@ def orthogonalise(shapes: Array, K: Any, M: Any) -> tuple[Array, Array]:
     return 1.0 / (2.0 * np.pi * np.sqrt(inverse[order])), shapes @ (turn[:, order] / np.sqrt(inverse[order]))
 
 
-def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Array, inner: Index, rounds: int) -> list[Array]:
+def inertia_shapes(solve: Any, M: Any, shapes: Array, inner: Index, rounds: int) -> list[Array]:
     """Shapes of a basis: static answers (n, m) to the inertia of shapes (n, m), then to that of the answers.
 
     They stand in for the truncated modes: each round makes the error smaller by the square of the frequency
@@ -277,8 +303,8 @@ def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Array, inner: Index, roun
     ----------
     solve
         Function that finds the static motion (inner, m) under loads (inner, m), the interfaces held.
-    K, M
-        Stiffness, N/m, and mass, kg, (n, n).
+    M
+        Mass (n, n), kg.
     shapes
         Shapes (n, m) whose inertia is the first load.
     inner
@@ -298,8 +324,9 @@ def inertia_shapes(solve: Any, K: Any, M: Any, shapes: Array, inner: Index, roun
     found = []
     for _ in range(rounds):
         u = np.zeros_like(shapes)
-        u[inner] = solve(np.asarray((M @ shapes)[inner]))
-        energy = np.sum(u * (K @ u), axis=0)
+        load = np.asarray((M @ shapes)[inner])
+        u[inner] = solve(load)
+        energy = np.sum(u[inner] * load, axis=0)  # uᵀKu: u is zero elsewhere
         shapes = u[:, energy > 0] / np.sqrt(energy[energy > 0])
         found.append(shapes)
     return found
@@ -350,6 +377,7 @@ def basis_of(
     load = scipy.sparse.vstack(rows).toarray().T if rows else np.zeros((model.n, 0))
 
     extra: list[Array] = []
+    near = None
     for level in levels:
         K = model.stiffness(level)
         at = _hold(K, model.M, b)
@@ -369,8 +397,11 @@ def basis_of(
         extra.append(
             points[:, energy > 0.0] / np.sqrt(energy[energy > 0.0])
         )  # none for a point on an interface
-        extra += inertia_shapes(at.solve, K, model.M, static, at.inner, inertia)
-    frequency, modes = held.modes(f_max, n_modes)
+        answers = inertia_shapes(at.solve, model.M, static, at.inner, inertia)
+        if level is levels[0] and answers:
+            near = answers[-1][at.inner]
+        extra += answers
+    frequency, modes = held.modes(f_max, n_modes, near)
     internal = np.zeros((model.n, frequency.size))
     internal[held.inner] = modes
     if any(u.shape[1] for u in extra):

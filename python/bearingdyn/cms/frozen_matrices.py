@@ -42,6 +42,18 @@ def frozen_sparse(name: str, value: Any, n: int, columns: int | None = None) -> 
     return matrix
 
 
+def _plainly_symmetric(A: Any, sign: int) -> bool:
+    """Whether a sparse matrix has a symmetric pattern and such entries, which is sooner seen."""
+    if not scipy.sparse.issparse(A) or not A.nnz:
+        return False
+    A = A.tocsr()
+    turned = A.T.tocsr()
+    if not (np.array_equal(A.indptr, turned.indptr) and np.array_equal(A.indices, turned.indices)):
+        return False
+    off = np.abs(A.data - sign * turned.data).max()
+    return bool(off <= SYMMETRY * np.abs(A.data).max())
+
+
 def check_symmetry(name: str, A: Any, sign: int) -> None:
     """Check that a matrix to be frozen, dense or sparse, is symmetric (sign 1) or skew-symmetric (sign −1).
 
@@ -50,7 +62,7 @@ def check_symmetry(name: str, A: Any, sign: int) -> None:
     ValueError
         Naming the matrix and the two entries farthest from it.
     """
-    if 0 in A.shape:
+    if 0 in A.shape or _plainly_symmetric(A, sign):
         return
     off, scale = abs(A - sign * A.T), float(abs(A).max())
     if not float(off.max()) <= SYMMETRY * scale:

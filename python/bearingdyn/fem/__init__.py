@@ -62,7 +62,7 @@ from bearingdyn.fem.revolution_harmonics import (
     moved_sections,
 )
 from bearingdyn.fem.rigid_motion import rigid_body_inertia, rigid_body_residual, rigid_motion, rigid_transfer
-from bearingdyn.fem.solid_matrices import SolidMatrices, assemble_solid
+from bearingdyn.fem.solid_matrices import SolidMatrices, assemble_elastic, assemble_solid
 
 __all__ = [
     "ALL_COMPONENTS",
@@ -89,6 +89,7 @@ __all__ = [
     "Units",
     "Wall",
     "assemble_beam",
+    "assemble_elastic",
     "assemble_harmonic",
     "assemble_solid",
     "balance",

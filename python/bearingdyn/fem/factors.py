@@ -61,7 +61,8 @@ def factorise(A: Any) -> Factor:
     Factor
         Its ``.solve(b)`` takes b (n,) or (n, m).
     """
-    A = scipy.sparse.csc_matrix(A)
+    # of a symmetric matrix, rows are columns
+    A = A.T if scipy.sparse.issparse(A) and A.format == "csr" else scipy.sparse.csc_matrix(A)
     if A.shape[0] >= LARGE and A.dtype == np.float64 and library_path() is not None:
         try:
             return Cholesky(A)

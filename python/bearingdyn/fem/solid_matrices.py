@@ -57,7 +57,9 @@ class SolidMatrices:
 
     def stiffness(self, material: Elastic) -> scipy.sparse.csr_matrix:
         """Stiffness of an elastic material, (3n, 3n), N/m."""
-        return scipy.sparse.csr_matrix(material.K * self.volumetric + 2.0 * material.G * self.deviatoric)
+        K, G = self.volumetric, self.deviatoric
+        data = material.K * K.data + 2.0 * material.G * G.data  # both have the pattern of the node pairs
+        return scipy.sparse.csr_matrix((data, K.indices, K.indptr), shape=K.shape)
 
 
 def assemble_solid(
@@ -88,6 +90,35 @@ def assemble_solid(
     -------
     SolidMatrices
     """
+    mass, (volumetric, deviatoric) = _gathered(mesh, elements, incompressible, None)
+    return SolidMatrices(points=mesh.points, mass=mass, volumetric=volumetric, deviatoric=deviatoric)
+
+
+def assemble_elastic(
+    mesh: SolidMesh, elements: ArrayLike | None, material: Elastic, *, incompressible: bool = False
+) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix]:
+    """Mass and stiffness of an elastic solid: what `assemble_solid` and its `stiffness` say, sooner.
+
+    Parameters
+    ----------
+    mesh, elements, incompressible
+        As for `assemble_solid`.
+    material
+        Of these elements.
+
+    Returns
+    -------
+    tuple of scipy.sparse.csr_matrix
+        (3n, 3n) mass, kg, and stiffness, N/m.
+    """
+    mass, (stiffness,) = _gathered(mesh, elements, incompressible, material)
+    return material.density * mass, stiffness
+
+
+def _gathered(
+    mesh: SolidMesh, elements: ArrayLike | None, incompressible: bool, material: Elastic | None
+) -> tuple[scipy.sparse.csr_matrix, list[scipy.sparse.csr_matrix]]:
+    """Mass of unit density, and the two stiffnesses of unit moduli or, of a material, their sum."""
     chosen = np.arange(len(mesh.elements)) if elements is None else np.asarray(elements, dtype=np.intp)
     groups = []
     for kind, of_kind in mesh.groups:
@@ -95,24 +126,22 @@ def assemble_solid(
         groups += [(kind, mesh.elements[at[s : s + CHUNK], : kind.nodes]) for s in range(0, len(at), CHUNK)]
     pairs = NodePairs.of([nodes for _, nodes in groups], len(mesh.points))
     mass = np.zeros(pairs.size)
-    volumetric, deviatoric = pairs.zeros(), pairs.zeros()
+    stiffnesses = [pairs.zeros() for _ in range(2 if material is None else 1)]
     for place, (kind, nodes) in enumerate(groups):
-        m, *stiff = _element_matrices(kind, mesh.points[nodes], incompressible)
+        m, *stiff = _element_matrices(kind, mesh.points[nodes], incompressible, material)
         mass += np.bincount(pairs.where[place], m.ravel(), pairs.size)
-        for sums, A in zip((volumetric, deviatoric), stiff, strict=True):
+        for sums, A in zip(stiffnesses, stiff, strict=True):
             pairs.add(sums, place, A)
-    masses = pairs.matrix(mass * np.eye(3)[:, :, None])
-    masses.eliminate_zeros()
-    return SolidMatrices(
-        points=mesh.points,
-        mass=masses,
-        volumetric=pairs.matrix(volumetric),
-        deviatoric=pairs.matrix(deviatoric),
-    )
+    return pairs.alike(mass), [pairs.matrix(sums) for sums in stiffnesses]
 
 
-def _element_matrices(kind: SolidElement, p: Array, incompressible: bool) -> tuple[Array, Array, Array]:
-    """Mass (m, k, k) of a component, volumetric and deviatoric stiffness (m, 3k, 3k); p: (m, k, 3) nodes."""
+def _element_matrices(
+    kind: SolidElement, p: Array, incompressible: bool, material: Elastic | None
+) -> tuple[Array, ...]:
+    """Mass (m, k, k) of a component, volumetric and deviatoric stiffness (m, 3k, 3k); p: (m, k, 3) nodes.
+
+    Of a material the stiffness takes the place of the two.
+    """
     X, w = points(kind)
     N = shapes(kind, X)[0]
     D, dV = gradients(kind, p, X, w)
@@ -123,6 +152,14 @@ def _element_matrices(kind: SolidElement, p: Array, incompressible: bool) -> tup
     count, k = len(p), D.shape[1] // 3
     full = ((D * dV[:, None, :]) @ D.transpose(0, 2, 1)).reshape(count, k, 3, k, 3)  # ∫∂aNi ∂bNj
     # e:e = ½ ∂aui ∂aui + ½ ∂aui ∂iua − ⅓ (div u)²
+    if material is not None and not incompressible:
+        stiffness = material.G * full.transpose(0, 1, 4, 3, 2)
+        laplace = material.G * np.einsum("micjc->mij", full)
+        for a in range(3):
+            stiffness[:, :, a, :, a] += laplace
+        full *= material.K - 2.0 / 3.0 * material.G
+        stiffness += full
+        return mass, stiffness.reshape(count, 3 * k, 3 * k)
     deviatoric = 0.5 * full.transpose(0, 1, 4, 3, 2) - full / 3.0
     laplace = 0.5 * np.einsum("micjc->mij", full)
     for a in range(3):
@@ -141,6 +178,8 @@ def _element_matrices(kind: SolidElement, p: Array, incompressible: bool) -> tup
     if bubbled:
         back = follow.transpose(0, 2, 1)
         volumetric, deviatoric = back @ volumetric @ follow, back @ deviatoric @ follow
+    if material is not None:
+        return mass, material.K * volumetric + 2.0 * material.G * deviatoric
     return mass, volumetric, deviatoric
 
 
@@ -191,8 +230,17 @@ def gradients(kind: SolidElement, p: Array, X: Array, w: Array) -> tuple[Array, 
     """∂N_i/∂x_a at points X (q, 3), (m, 3 k, q) with 3 i + a the row, and weights times volume (m, q)."""
     reference = shapes(kind, X)[1]  # (q, k, 3)
     J = np.einsum("mka,qkb->mqab", p, reference, optimize=True)
-    D = reference[None] @ np.linalg.inv(J)  # (m, q, k, 3): ∂N/∂ξ_b ∂ξ_b/∂x_a
-    return D.reshape(len(p), len(w), -1).transpose(0, 2, 1), np.linalg.det(J) * w
+    det, inverse = _inverted(J)
+    D = reference[None] @ inverse  # (m, q, k, 3): ∂N/∂ξ_b ∂ξ_b/∂x_a
+    return D.reshape(len(p), len(w), -1).transpose(0, 2, 1), det * w
+
+
+def _inverted(J: Array) -> tuple[Array, Array]:
+    """Determinants (…,) and inverses (…, 3, 3) of many 3×3 matrices: a tenth of LAPACK's time for each."""
+    a, b, c = (J[..., i, :] for i in range(3))
+    adjugate = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-1)
+    det = np.einsum("...a,...a->...", a, adjugate[..., 0])
+    return det, adjugate / det[..., None, None]
 
 
 def pressure_modes(kind: SolidElement, p: Array, X: Array, N: Array, dV: Array) -> Array:

@@ -117,7 +117,7 @@ class ShapeMaker:
             u[inner] = lu.solve(load)
             return u[inner]
 
-        return inertia_shapes(answer, K, M, static, inner, self.inertia_rounds)
+        return inertia_shapes(answer, M, static, inner, self.inertia_rounds)
 
     def _modes(self, h: Harmonic, K: Any, M: Any, shear: Sequence[float], held: Held) -> Array:
         """Modes (n, m) with interfaces held."""

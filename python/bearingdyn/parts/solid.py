@@ -38,6 +38,7 @@ from bearingdyn.fem import (
     SolidElements,
     SolidMesh,
     SurfaceSamples,
+    assemble_elastic,
     assemble_solid,
     factorise,
     rigid_motion,
@@ -299,28 +300,27 @@ class Solid:
     @cached_property
     def _full_model(self) -> FullModel:
         n = 3 * len(self.mesh.points)
-        M, E, bulk = (scipy.sparse.csr_matrix((n, n)) for _ in range(3))
+        M, E, bulk = None, None, None  # nothing is added to zeros, which takes as long as to anything else
         rubbers: list[tuple[ViscoelasticSolid, Any]] = []
         volumes: list[float] = []
         swelling: list[Viscoelastic] = []
         rest = self.mesh if self.prestress is None else self.prestress.state.body.mesh
         for region, (name, elements) in enumerate(self.mesh.regions.items()):
             material = self._materials[name]
-            unit = assemble_solid(rest, elements, incompressible=is_rubber(material))
-            M = M + material.density * unit.mass
-            H = unit.deviatoric
             if isinstance(material, Elastic):
-                E = E + (
-                    unit.stiffness(material)
-                    if self.prestress is None
-                    else self.prestress.state.stiffness([region])
-                )
+                mass, own = assemble_elastic(rest, elements, material, incompressible=is_rubber(material))
+                if self.prestress is not None:
+                    own = self.prestress.state.stiffness([region])
+                M, E = _sum(M, mass), _sum(E, own)
                 continue
+            unit = assemble_solid(rest, elements, incompressible=is_rubber(material))
+            M = _sum(M, material.density * unit.mass)
+            H = unit.deviatoric
             if self.prestress is None:
-                bulk = bulk + constant_bulk(material) * unit.volumetric
+                bulk = _sum(bulk, constant_bulk(material) * unit.volumetric)
             else:
                 own, H = self.prestress.tangents(region)
-                bulk = bulk + own
+                bulk = _sum(bulk, own)
             if (volume := volume_of(material)) is not None:
                 swelling.append(Viscoelastic(volume, 0.5 * unit.volumetric))
             same = [k for k, (other, _) in enumerate(rubbers) if other is material]
@@ -337,11 +337,11 @@ class Solid:
                 dofs, rigid_motion(self.mesh.points[nodes], reference), reference
             )
         if self.prestress is not None:
-            bulk = bulk + self.prestress.loads(interfaces)
+            bulk = _sum(bulk, self.prestress.loads(interfaces))
         return FullModel(
             M=M,
-            K=E + bulk,
-            E=E if rubbers else None,
+            K=_sum(E, bulk),
+            E=None if not rubbers else scipy.sparse.csr_matrix((n, n)) if E is None else E,
             interfaces=interfaces,
             outputs=self._rows,
             viscoelastic=(
@@ -568,4 +568,9 @@ class Solid:
         wave is ρ c Σ weights v². Raises ValueError for an unknown surface, or one not on the boundary.
         """
         samples = self.mesh.samples(name)
-        return samples, np.asarray(samples.normal_rows @ self._basis.Psi)
+        return samples, samples.normal_of(self._basis.Psi)
+
+
+def _sum(a: Any, b: Any) -> Any:
+    """a + b of matrices, of which None is one of zeros."""
+    return b if a is None else a if b is None else a + b

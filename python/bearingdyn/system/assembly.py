@@ -56,7 +56,7 @@ def assemble(app: Application) -> System:
     for part, element in plan.parts.items():
         own = (element.M, element.C, element.G, element.K, element.N)
         for total, A in zip((M, C, G, K, N), own, strict=True):
-            total += select[part].T @ np.asarray(A) @ select[part]
+            _place(total, np.asarray(A), index[part])
         R = plan.rigid_shapes(part)
         rigid = np.full((element.n, 6), np.nan) if R is None else R
         inertia += select[part].T @ (element.M @ rigid[:, :3])
@@ -67,7 +67,7 @@ def assemble(app: Application) -> System:
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
         if all(relaxed):
             deviatoric = (2.0 * G0 * t.H for G0, t in zip(relaxed, element.viscoelastic, strict=True))
-            firm += select[part].T @ sum(deviatoric, np.asarray(element.K)) @ select[part]
+            _place(firm, sum(deviatoric, np.asarray(element.K)), index[part])
         for name in (*element.interfaces, *element.outputs):
             outputs[str(Place(part, name))] = element.rows(name) @ select[part]
 
@@ -134,6 +134,16 @@ def assemble(app: Application) -> System:
     )
     check_held(system, firm)
     return noted(system, app)
+
+
+def _place(total: Array, A: Array, place: Index) -> None:
+    """Add a part's matrix to the system's, at the places of its coordinates; -1 are held by the ground."""
+    moving = np.flatnonzero(place >= 0)
+    inside, own = np.ix_(place[moving], place[moving]), A[np.ix_(moving, moving)]
+    if np.unique(place[moving]).size == moving.size:
+        total[inside] += own
+    else:  # two interfaces of a part that are joined to each other share their places
+        np.add.at(total, inside, own)
 
 
 def _between(ends: Mapping[str, Array], outputs: Mapping[str, Array]) -> Array:

@@ -7,9 +7,15 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.cms import Viscoelastic, coupled_blocks
+from bearingdyn.kept_by_object import kept_by_object
 from bearingdyn.system.matrix_factor import factor
 from bearingdyn.system.terms import LayerTerm
 from bearingdyn.types import Array
+
+
+@kept_by_object
+def _linear_factor(term: Viscoelastic) -> Array:
+    return factor(term.H)
 
 
 def softening_factor(term: Viscoelastic, part: str) -> tuple[Array, Array | None]:
@@ -23,7 +29,7 @@ def softening_factor(term: Viscoelastic, part: str) -> tuple[Array, Array | None
     ValueError
         For a law of softening on rubber whose volume is not known.
     """
-    L = factor(term.H)
+    L = _linear_factor(term)
     if getattr(term.material, "payne", None) is None:
         return L, None
     if term.volume is None:

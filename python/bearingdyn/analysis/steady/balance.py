@@ -16,11 +16,11 @@ from itertools import pairwise
 import numpy as np
 
 from bearingdyn import core
-from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.analysis.steady.krylov import gmres
 from bearingdyn.analysis.steady.layer_lines import Softened, SoftLayers
 from bearingdyn.analysis.steady.receptances import Receptances
 from bearingdyn.analysis.steady.torus import Bases, Lines, body_angles, load_lines
+from bearingdyn.kept_by_object import kept_by_object
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 
@@ -244,7 +244,7 @@ class _Packed:
         return self.fields
 
 
-@kept_by_system
+@kept_by_object
 def packed(system: System) -> tuple[_Packed, ...]:
     """Harmonic balance's kernels of the bearings, packed once for many calls."""
     return tuple(_Packed(term.kernel().packed()) for term in system.bearings)

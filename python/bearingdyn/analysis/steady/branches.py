@@ -14,7 +14,6 @@ from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.analysis.steady.balance import Balance, Found, Pressed, flat, newton
 from bearingdyn.analysis.steady.continuation import SLOPE, Curve, Point, distance, follow, locate
 from bearingdyn.analysis.steady.event_accuracy import half_turn, once
-from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.analysis.steady.layer_lines import Softened, frozen
 from bearingdyn.analysis.steady.problem import Problem
 from bearingdyn.analysis.steady.stability import (
@@ -28,6 +27,7 @@ from bearingdyn.analysis.steady.stability import (
 )
 from bearingdyn.analysis.steady.torus import Bases, Lines
 from bearingdyn.application import Application
+from bearingdyn.kept_by_object import kept_by_object
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex
 
@@ -167,7 +167,7 @@ class Task:
         return self.models[key]
 
 
-@kept_by_system
+@kept_by_object
 def _rows(system: System) -> dict[tuple[str, ...], Array]:
     """Branches' rows of motions (k, n), by the names of their channels: filled as they are asked for."""
     return {}

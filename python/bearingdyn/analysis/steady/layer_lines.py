@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from bearingdyn.analysis.softening import NO_STRAIN, softening_layers
-from bearingdyn.analysis.steady.kept_by_system import kept_by_system
+from bearingdyn.kept_by_object import kept_by_object
 from bearingdyn.material import Maxwell, held_at
 from bearingdyn.system import LayerTerm, System
 from bearingdyn.types import Array, Complex
@@ -128,7 +128,7 @@ def borne(material: Any) -> float:
     return float(material.payne.storage(material.payne.gamma_r))
 
 
-@kept_by_system
+@kept_by_object
 def soft_layers(system: System) -> SoftLayers:
     """The layers of a system that soften in its steady motions; maybe none."""
     return SoftLayers(tuple(system.layers[k] for k in softening_layers(system)))

@@ -16,8 +16,8 @@ import scipy
 
 from bearingdyn import core
 from bearingdyn.analysis.linearised import Linear
-from bearingdyn.analysis.steady.kept_by_system import kept_by_system
 from bearingdyn.analysis.steady.layer_lines import SoftLayers, soft_layers
+from bearingdyn.kept_by_object import kept_by_object
 from bearingdyn.system import System
 from bearingdyn.types import Array, Complex, Index
 
@@ -85,7 +85,7 @@ class Kept:
     at_rest: dict[bytes, AtRest]
 
 
-@kept_by_system
+@kept_by_object
 def kept(system: System) -> Kept:
     """Make ready what receptances of a system need at every speed."""
     return Kept(system.model([], relaxed=False), {})

@@ -112,7 +112,7 @@ def block_with_bore(
         "front": np.flatnonzero(np.abs(p[:, 2] - 0.5 * length) < near),
         "back": np.flatnonzero(np.abs(p[:, 2] + 0.5 * length) < near),
     }
-    skin = SolidMesh(p, elements).boundary
+    mesh = SolidMesh(p, elements, surfaces=surfaces)
+    skin = mesh.boundary
     other = ~(bore[skin].all(axis=1) | on_base[skin].all(axis=1))
-    surfaces["outside"] = np.unique(skin[other])
-    return with_kind(SolidMesh(p, elements, surfaces=surfaces), element)
+    return with_kind(mesh.naming("outside", np.unique(skin[other])), element)

@@ -80,6 +80,12 @@ class SurfaceSamples:
         )
         return turn @ self.rows
 
+    def normal_of(self, shapes: Array) -> Array:
+        """(q, m) outward normal displacement of every sample in shapes (3 n, m) of the nodes."""
+        at = self.interpolation @ shapes.reshape(self.interpolation.shape[1], -1)
+        moved = np.asarray(at).reshape(len(self.weights), 3, shapes.shape[1])
+        return np.asarray((self.normals[:, None] @ moved)[:, 0])
+
     @property
     def mean_rows(self) -> Any:
         """(3, 3 n) sparse: displacement averaged over the area."""
@@ -382,7 +388,7 @@ class SolidMesh:
         chosen = outside[np.asarray(where(self.points[outside]), dtype=bool)]
         if not chosen.size:
             raise ValueError(f"surface {name!r} is empty: no node of the boundary satisfies the condition")
-        return replace(self, surfaces={**self.surfaces, name: chosen})
+        return self.naming(name, chosen)
 
     def with_region(self, name: str, where: Callable[[Array], Any]) -> SolidMesh:
         """The mesh with the elements for whose middles (m, 3) `where` is true made a region of that name.
@@ -492,6 +498,12 @@ class SolidMesh:
         """The mesh with its nodes at other points (n, 3), unchecked: a deformation has kept it whole."""
         found = copy.copy(self)  # and what is known of how its elements hang together
         object.__setattr__(found, "points", points)
+        return found
+
+    def naming(self, name: str, nodes: Index) -> SolidMesh:
+        """The mesh with one more surface, of some of its nodes, rising; unchecked."""
+        found = copy.copy(self)
+        object.__setattr__(found, "surfaces", {**self.surfaces, name: nodes})
         return found
 
     def with_centres(self) -> SolidMesh:
