@@ -199,6 +199,21 @@ static void solve_lanes(const bd_model *model, const bd_harmonic_data *data,
     }
 }
 
+/* The motions of a lane's coefficients, where outputs are such, from those of their joints. */
+static void tell_coefficients(const bd_harmonic_work *work, size_t n_out, size_t lane)
+{
+    const size_t size = 2 * work->joints.width, joints = (size_t)work->n_joints;
+    for (size_t o = 0; o < n_out; o++)
+        for (size_t j = 0; j < joints; j++) {
+            if (work->coef[j] != work->told[o])
+                continue;
+            const double *y = work->y + (lane * joints + j) * size;
+            double *x = work->x + (lane * n_out + o) * size;
+            for (size_t i = 0; i < size; i++)
+                x[i] += y[i];
+        }
+}
+
 /* One frequency's response from its lane, or from the solution of all coordinates as one. */
 static bd_status write_response(const bd_model *model, const bd_harmonic_data *data,
                                 const bd_harmonic_work *work, const double *x, double *out)
@@ -261,6 +276,7 @@ bd_status bd_harmonic(const bd_model *model, const bd_harmonic_data *data, const
             for (size_t kl = 0; kl < m * m; kl++)
                 work->Z[kl] = complex_of(work->Kb[kl], work->omega[lane] * work->Cb[kl]);
             add_balls(data, from + lane, m, work->Z);
+            tell_coefficients(work, n_out, (size_t)lane);
             work->joints.y = work->y + (size_t)lane * of_joints;
             work->joints.x = x;
             if (whole[lane] || work->kernels->join(&work->joints)) {

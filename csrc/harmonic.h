@@ -49,8 +49,10 @@ struct bd_harmonic_work {
     int *touching,
         *n_touching; /* per block: which forces (0 ... n_in) and coefficients (n_in ...) act */
     bool *read;      /* (n_blocks x n_out) whether a row reads a block's motion */
-    int *twin;       /* (n_out) the force that a row is equal to, or -1; no force twice */
-    bool *paired;    /* (n_in) whether a force is the twin of a row */
+    int *
+        told; /* (n_out) the coefficient that a row is, which the joints tell without reading, or -1 */
+    int *twin;    /* (n_out) the force that a row is equal to, or -1; no force twice */
+    bool *paired; /* (n_in) whether a force is the twin of a row */
 
     /* for receptances in lanes */
     bd_receptance *reduced; /* (n_blocks); n is 0 where a block is too large for it */

@@ -227,6 +227,15 @@ static bool reduce_blocks(const bd_model *model, const bd_harmonic_data *data,
 
 /* ---------------------------------------------------------------- all of it */
 
+/* Whether a row (n) is a column of a matrix of m columns. */
+static bool is_column(size_t n, size_t m, const double *row, const double *column)
+{
+    for (size_t i = 0; i < n; i++)
+        if (row[i] != column[i * m])
+            return false;
+    return true;
+}
+
 bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmonic_data *data)
 {
     const size_t n = (size_t)model->n, m = (size_t)model->n_coefs;
@@ -264,12 +273,13 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
     work->touching = zeroed((size_t)model->n_blocks * columns, sizeof *work->touching);
     work->n_touching = zeroed((size_t)model->n_blocks, sizeof *work->n_touching);
     work->read = zeroed((size_t)model->n_blocks * n_out, sizeof *work->read);
+    work->told = zeroed(n_out, sizeof *work->told);
     work->twin = zeroed(n_out, sizeof *work->twin);
     work->paired = zeroed(n_in, sizeof *work->paired);
     if (!work->reduced || !work->HL || !work->HL_at || !work->force || !work->row || !work->B ||
         !work->Kb || !work->Cb || !work->S || !work->held || !work->joint || !work->coef ||
         !work->D || !work->X || !work->Z || !work->pivots || !work->touching || !work->n_touching ||
-        !work->read || !work->twin || !work->paired) {
+        !work->read || !work->told || !work->twin || !work->paired) {
         bd_harmonic_work_free(work);
         return NULL;
     }
@@ -297,6 +307,12 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
             work->B[i * m + k] =
                 model->B[padded * (size_t)model->coefs + (size_t)model->coef_slot[k]];
     }
+    for (size_t o = 0; o < n_out; o++) {
+        work->told[o] = -1;
+        for (size_t k = 0; k < m && work->told[o] < 0; k++)
+            if (is_column(n, m, work->row + o * n, work->B + k))
+                work->told[o] = (int)k;
+    }
     for (int b = 0; b < model->n_blocks; b++) {
         const size_t first = (size_t)model->blocks[b].first, rows = (size_t)model->blocks[b].n;
         for (size_t c = 0; c < columns; c++) {
@@ -308,12 +324,12 @@ bd_harmonic_work *bd_harmonic_work_create(const bd_model *model, const bd_harmon
         }
         for (size_t o = 0; o < n_out; o++)
             for (size_t i = first; i < first + rows; i++)
-                if (work->row[o * n + i] != 0.0)
+                if (work->told[o] < 0 && work->row[o * n + i] != 0.0)
                     work->read[(size_t)b * n_out + o] = true;
     }
     for (size_t o = 0; o < n_out; o++) {
         work->twin[o] = -1;
-        for (size_t k = 0; k < n_in && work->twin[o] < 0; k++)
+        for (size_t k = 0; k < n_in && work->twin[o] < 0 && work->told[o] < 0; k++)
             if (!work->paired[k] &&
                 memcmp(work->row + o * n, work->force + k * n, n * sizeof *work->row) == 0) {
                 work->twin[o] = (int)k;
@@ -334,14 +350,13 @@ void bd_harmonic_work_free(bd_harmonic_work *work)
 {
     if (!work)
         return;
-    void *pieces[] = {work->HL,          work->HL_at,  work->force,    work->row,
-                      work->B,           work->Kb,     work->Cb,       work->D,
-                      work->X,           work->y,      work->Z,        work->x,
-                      work->join_memory, work->pivots, work->S,        work->held,
-                      work->joint,       work->coef,   work->touching, work->n_touching,
-                      work->read,        work->twin,   work->paired,   work->reduced,
-                      work->beside,      work->pencil, work->columns,  work->omega,
-                      work->moduli,      work->memory, work->response, work->growth};
+    void *pieces[] = {
+        work->HL,          work->HL_at,      work->force,  work->row,     work->B,     work->Kb,
+        work->Cb,          work->D,          work->X,      work->y,       work->Z,     work->x,
+        work->join_memory, work->pivots,     work->S,      work->held,    work->joint, work->coef,
+        work->touching,    work->n_touching, work->read,   work->told,    work->twin,  work->paired,
+        work->reduced,     work->beside,     work->pencil, work->columns, work->omega, work->moduli,
+        work->memory,      work->response,   work->growth};
     for (size_t i = 0; i < sizeof pieces / sizeof pieces[0]; i++)
         free(pieces[i]);
     free(work);

@@ -298,3 +298,16 @@ def test_a_frequency_answers_alike_alone_and_among_others(state: Equilibrium):
     together = frequency_response(state, f, INPUTS, OUTPUTS)["response"].values
     alone = [frequency_response(state, [x], INPUTS, OUTPUTS)["response"].values[0] for x in f]
     np.testing.assert_array_equal(together, alone)
+
+
+@pytest.mark.parametrize("speed", [0.0, 400.0])
+def test_motions_of_the_bearings_are_told_without_being_read(state: Equilibrium, speed: float):
+    """Rows that are the bearings' own come of what joins the blocks; thrice them are read like any others."""
+    system, held = state.system, linear(state)
+    omega = 2 * np.pi * np.array([0.0, 80.0, 700.0, 3000.0])
+    force = np.vstack([system.row("shaft.end.y"), system.B[0]])  # one is that of a force as well
+    rows = np.vstack([system.row("ring.centre.x"), system.B])
+    told = held.solve(omega, force, rows, speed)
+    read = held.solve(omega, force, 3.0 * rows, speed) / 3.0
+    size = np.abs(read).max(axis=(1, 2), keepdims=True)
+    assert told / size == pytest.approx(read / size, abs=1e-11)

@@ -95,26 +95,52 @@ def test_a_small_vibration_meets_the_unbroken_rubber():
     assert abs(small) == pytest.approx(abs(expected), rel=1e-3)
 
 
+def stepped(hz, dt):
+    """What the average acceleration makes of inertia in a vibration, over a march without a step.
+
+    x'' of samples x e^(iωnΔt) is −(2/Δt tan ωΔt/2)² x instead of −ω² x; rubber's own error is far smaller.
+    """
+    half = np.pi * hz * dt
+    return (np.tan(half) / half) ** 2
+
+
+@pytest.mark.parametrize("hz", [260.0, 320.0])
+def test_a_linear_march_errs_by_what_the_step_makes_of_inertia(hz):
+    """The closed form of Newmark's error, on both flanks of the layer without its law: .14 and −.31 %."""
+    (z,), run = driven([(6.0, hz)], RUBBER.with_payne(None))
+    dt = float(run.time[1] - run.time[0])
+    apart = mass_on_layer(RUBBER.with_payne(None), mass=0.6 * stepped(hz, dt))
+    meant = bd.frequency_response(apart, [hz], [PLACE], [PLACE]).response.values[0, 0, 0]
+    # branches take the strain as linear between samples, which is (ωΔt)²/12 of what relaxes in a step
+    assert abs(z) == pytest.approx(6.0 * abs(meant), rel=3e-5)
+    assert abs(abs(z) / abs(answered([hz], 6.0, RUBBER.with_payne(None))[0]) - 1) > 1e-3
+
+
 @pytest.mark.parametrize(
-    ("tones", "kept", "per_faster"),
+    ("tones", "kept"),
     [
-        ([(6.0, 150.0), (6.0, 230.0)], 45, STEPS),
+        ([(6.0, 150.0), (6.0, 230.0)], 45),
         # on both flanks, where .1 % of stiffness is .2 % of motion
-        ([(6.0, 200.0), (6.0, 320.0)], 40, STEPS),
-        ([(40.0, 100.0), (40.0, 160.0)], 40, STEPS),
-        # where Newmark's own error at 100 steps, (ωΔt)²/12 of the frequency, is .15 and .2 % of motion
-        ([(20.0, 330.0), (20.0, 400.0)], 66, 2 * STEPS),
-        ([(6.0, 230.0), (6.0, 260.0)], 46, 4 * STEPS),
+        ([(6.0, 200.0), (6.0, 320.0)], 40),
+        ([(40.0, 100.0), (40.0, 160.0)], 40),
+        ([(20.0, 330.0), (20.0, 400.0)], 66),
+        ([(6.0, 230.0), (6.0, 260.0)], 46),
+        # one of them far stronger
+        ([(30.0, 200.0), (10.0, 300.0)], 40),
+        ([(3.0, 240.0), (12.0, 280.0)], 48),
+        ([(1.0, 260.0), (1.0, 390.0)], 48),
     ],
 )
-def test_two_tones_share_one_strain(tones, kept, per_faster):
+def test_two_tones_share_one_strain(tones, kept):
     """Each tone against the formula for several, E + 2 L iω/(iω + Ω), of the strain of both, to .2 %.
 
-    Steps of a period of the faster tone. What the rest lacks is added for one frequency, and is off by up to
-    .07 % of the modulus at another.
+    At 100 steps of a period of the faster, with what the step makes of inertia in the reference: a march
+    without a law errs by as much, up to .31 % at these tones. The law's own: what the rest lacks is added
+    for one frequency, and is off by up to .1 % of the modulus at another. Where a weak tone at the resonance
+    is far from a strong one that is .4 % of its motion (5 N at 270 Hz beside 50 N at 180 Hz).
     """
     (_, slow), (_, fast) = tones
-    steps = round(per_faster * fast / slow)
+    steps = round(STEPS * fast / slow)
     found, run = driven(tones, periods=240, kept=kept, steps=steps, memory=10 / slow)
     running = run.record.sel(channel="layer.strain").values  # it beats by half a percent
     gamma = float(np.sqrt(np.mean(running**2)))
@@ -129,8 +155,9 @@ def test_two_tones_share_one_strain(tones, kept, per_faster):
             return RUBBER.modulus_at(w, gamma, mean)
 
     for (size, hz), z in zip(tones, found, strict=True):
-        linear = bd.frequency_response(mass_on_layer(Met()), [hz], [PLACE], [PLACE])
-        assert abs(z) == pytest.approx(size * abs(linear.response.values[0, 0, 0]), rel=2e-3)
+        apart = mass_on_layer(Met(), mass=0.6 * stepped(hz, 1 / slow / steps))
+        meant = bd.frequency_response(apart, [hz], [PLACE], [PLACE]).response.values[0, 0, 0]
+        assert abs(z) == pytest.approx(size * abs(meant), rel=2e-3)
 
 
 def test_a_lasting_load_is_no_amplitude():

@@ -156,6 +156,11 @@ def test_a_force_that_does_not_fit_the_area_is_refused(sweep):
         bd.fit_payne(sweep, strain_of_isotherms=1.5e-3, lowest_trusted=1.46e-3, area=DISCS / 2)
 
 
+def test_an_area_without_forces_is_not_passed_over():
+    with pytest.raises(ValueError, match=r"area is 628 mm², and .* has no force to check it by"):
+        bd.fit_payne(made_sweep(), strain_of_isotherms=1.5e-3, area=628e-6)
+
+
 def test_untrusted_points_make_the_sweep_rise(sweep):
     with pytest.raises(ValueError, match=r"rises .*lowest_trusted"):
         bd.fit_payne(sweep, strain_of_isotherms=1.5e-3)

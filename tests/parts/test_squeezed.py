@@ -166,6 +166,10 @@ def test_squeezes_that_cannot_be_are_named() -> None:
     soft = bd.Yeoh(1.0, -2.0)
     with pytest.raises(ValueError, match=r"of the thickness is reached: the law is not stable"):
         flat.assembled(squeeze=0.3, inside="slip", outside="slip", law=soft)
+    with pytest.raises(
+        ValueError, match=r"squeeze is 0\.6; 0\.6 of the thickness is reached, and it buckles"
+    ):
+        layer().assembled(squeeze=0.6, inside="slip", outside="slip")
     for bad, text in (
         ({}, "exactly one"),
         ({"squeeze": 0.1, "interference": 1e-3}, "exactly one"),

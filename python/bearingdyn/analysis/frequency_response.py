@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -206,8 +207,13 @@ def frequency_response(
                 swings = np.concatenate(
                     [o.x[:, len(rows) - len(B) :].transpose(0, 2, 1).reshape(-1, len(B)) for o in found]
                 )
-                each = [f"in the response to {name} at {v:.6g} Hz" for v in f for name in inputs]
-                warn_of_swings(source, swings, each * len(found))
+                each = list(product(f, inputs))
+
+                def place(k: int) -> str:
+                    hertz, name = each[k % len(each)]
+                    return f"in the response to {name} at {hertz:.6g} Hz"
+
+                warn_of_swings(source, swings, place)
             coords["layer"] = (layer_names(state.system), "")
             if np.ndim(amplitude) == 1:  # type: ignore[arg-type]
                 dims = ("amplitude", *dims)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -38,7 +38,7 @@ def warn_of_overload(march: March, report: core.Report) -> None:
         warn_of_peak(term, peak, "in this march")
 
 
-def warn_of_swings(eq: Equilibrium, swings: Complex, places: Sequence[str]) -> None:
+def warn_of_swings(eq: Equilibrium, swings: Complex, place: Callable[[int], str]) -> None:
     """Warn of an overload: bearings whose balls a linear response about an equilibrium presses too hard.
 
     The rings' motion is the linear one, the balls' loads in it are those of Hertz.
@@ -49,8 +49,8 @@ def warn_of_swings(eq: Equilibrium, swings: Complex, places: Sequence[str]) -> N
         About which the rings move.
     swings
         (k, m), m, zero-to-peak, of the coefficients of all bearings.
-    places
-        Of each which response it is, such as "in the response at 100 rad/s".
+    place
+        Tells of each which response it is, such as "in the response at 100 rad/s".
 
     Warns
     -----
@@ -64,7 +64,7 @@ def warn_of_swings(eq: Equilibrium, swings: Complex, places: Sequence[str]) -> N
         at += len(rest)
         if isinstance(bearing, BallBearing) and len(own):
             peak, worst = _worst(term.kernel(), bearing.static_ball_load, rest, own)
-            warn_of_peak(term, peak, places[worst])
+            warn_of_peak(term, peak, place(worst))
 
 
 def _worst(kernel: BearingKernel, limit: float, rest: Array, swings: Complex) -> tuple[float, int]:

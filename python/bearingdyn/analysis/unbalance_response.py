@@ -117,7 +117,7 @@ def unbalance_response(
     if soft:
         warn_of_strain(system, strain)
     if isinstance(source, Equilibrium):
-        warn_of_swings(source, swings, [f"in the response at {speed:.6g} rad/s" for speed in given])
+        warn_of_swings(source, swings, lambda k: f"in the response at {given[k]:.6g} rad/s")
 
     from bearingdyn.results import dataset, inputs_of
 

@@ -25,7 +25,7 @@ from bearingdyn.parts.revolved import Revolved
 from bearingdyn.parts.revolved_faces import Cylinder
 from bearingdyn.parts.rubber_zones import RubberZone
 from bearingdyn.parts.shape_moduli import shape_moduli
-from bearingdyn.parts.squeezed import COARSER, Squeezed, compare_meshes
+from bearingdyn.parts.squeezed import COARSER, Squeezed, buckles, compare_meshes
 from bearingdyn.parts.strain import Strain
 from bearingdyn.pictures import page
 from bearingdyn.plausible_ranges import plausible
@@ -181,7 +181,8 @@ class Layer:
         ------
         ValueError
             For a squeeze outside 0 to 1, both or neither measure; and naming the squeeze that was reached,
-            where the layer folds over the edge of a bond, elements turn inside out, or the law is not stable.
+            where the layer folds over the edge of a bond, elements turn inside out, the law is not stable, or
+            the stiffness about the squeezed state is not positive.
 
         Warns
         -----
@@ -231,6 +232,9 @@ class Layer:
                 f"{asked[0]} is {asked[1]}; {failure.share * share:.3g} of the thickness is reached: "
                 f"{failure.reason}"
             ) from None
+        lost = buckles(found)
+        if lost:
+            raise ValueError(f"{asked[0]} is {asked[1]}; {share:.3g} of the thickness is reached, and {lost}")
         if compare and share > 0.0 and COARSER * self.refinement >= 0.25:
             compare_meshes(found, lambda: on(replace(self, refinement=COARSER * self.refinement)))
         return found

@@ -121,6 +121,25 @@ class Squeezed:
         return self.part.round_faces()
 
 
+def buckles(found: Squeezed) -> str | None:
+    """Why a squeezed ring cannot hold what is in it: a direction in which the tangent is not positive.
+
+    Of the last interface against the others, which are held, about the static state.
+    """
+    K = found.stiffness().real[-6:, -6:]
+    size = np.sqrt(np.abs(np.diag(K)))
+    values, shapes = np.linalg.eigh(K / np.outer(size, size))
+    if values[0] > 0.0:
+        return None
+    names = ("radial", "radial", "axial", "tilting", "tilting", "torsional")
+    worst = int(np.argmax(np.abs(shapes[:, 0])))
+    unit = "N/m" if worst < 3 else "N m/rad"
+    return (
+        f"it buckles there: its {names[worst]} stiffness is {values[0] * size[worst] ** 2:.4g} {unit}; squeeze "
+        f"less, or take a wider or thinner ring"
+    )
+
+
 def compare_meshes(fine: Squeezed, coarser: Callable[[], Squeezed]) -> None:
     """Warn (MeshDependent) where a squeezed part's force or stiffness differ by 1 % on a coarser mesh.
 

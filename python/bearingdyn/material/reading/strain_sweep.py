@@ -139,10 +139,15 @@ class StrainSweep:
         ------
         ValueError
             Where the points imply different areas, or another one than given, m²: force, modulus or strain is
-            then in another unit, or of another specimen.
+            then in another unit, or of another specimen. For an area where there are no forces.
         """
         given = None if area is None else positive("area", area, "it must be the specimen's area, m²")
         if self.force is None:
+            if given is not None:
+                raise ValueError(
+                    f"area is {1e6 * given:.4g} mm², and {self.source} has no force to check it by: leave "
+                    f"area out, or read the column of forces"
+                )
             return None
         each = self.force / (np.hypot(self.storage, self.loss) * self.strain)
         implied = float(np.median(each))
