@@ -124,9 +124,11 @@ BD_INLINE void film_contacts(const bd_contact *contact, bool gives, bool carries
     double *const cells = oil->cell, *const cubics = oil->cubic;
     const bd_contact own = *contact;
     for (int from = 0, until; from < n; from = until) {
-        elastic springs[AHEAD];
-        lanes s_of[AHEAD], u_of[AHEAD], by_s_of[AHEAD];
-        lane_digits cell_of[AHEAD], moved = {0};
+        /* registers cross no line of the cache: stores are read again at once */
+        _Alignas(64) elastic springs[AHEAD];
+        _Alignas(64) lanes s_of[AHEAD], u_of[AHEAD], by_s_of[AHEAD];
+        _Alignas(64) lane_digits cell_of[AHEAD];
+        lane_digits moved = {0};
         until = from + AHEAD * BD_WIDTH < n ? from + AHEAD * BD_WIDTH : n;
         for (int first = from, i = 0; first < until; first += BD_WIDTH, i++) {
             s_of[i] = LANES(delta + first) + own.h0;
