@@ -125,10 +125,15 @@ void BD_NAMED(bd_bearing_force)(const bd_bearing *bearing, bd_bearing_work *work
     const int coefs = bearing->coefs;
 
     indent(bearing, work, z, z_rate, cage_speed);
-    const bd_carried oil = {work->carried, work->pressed, work->fresh};
-    BD_NAMED(bd_ehl_contacts)(&data->contact, bearing->film, whole_lanes(data->n_balls),
-                              work->delta, work->rate, &oil, work->force, work->stiffness,
-                              work->damping);
+    const bd_oil oil = {.film = bearing->film,
+                        .stride = bearing->balls,
+                        .cell = work->cell,
+                        .cubic = work->cubic,
+                        .carried = work->carried,
+                        .pressed = work->pressed,
+                        .fresh = work->fresh};
+    BD_NAMED(bd_ehl_contacts)(&data->contact, whole_lanes(data->n_balls), work->delta, work->rate,
+                              &oil, work->force, work->stiffness, work->damping);
     if (work->holds)
         bd_held_contacts(&data->contact, data->n_balls, work);
 

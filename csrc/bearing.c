@@ -13,7 +13,7 @@ static const double no_ball = -1e6;
 size_t bd_bearing_work_size(const bd_bearing_data *data)
 {
     size_t balls = (size_t)BD_PADDED(data->n_balls), coefs = (size_t)BD_PADDED(data->n_coefs);
-    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + 22 * balls;
+    return 2 * (size_t)data->n_coefs * balls + 4 * balls * coefs + (23 + BD_FILM_POWERS) * balls;
 }
 
 bool bd_has_film(const bd_contact *contact)
@@ -93,7 +93,7 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
         &work->tilt,       &work->turning,  &work->force,  &work->stiffness,    &work->damping,
         &work->shift_X,    &work->shift_Y,  &work->shift,  &work->shift_X_rate, &work->shift_Y_rate,
         &work->shift_rate, &work->place,    &work->inside, &work->pull,         &work->peak,
-        &work->carried,    &work->pressed};
+        &work->carried,    &work->pressed,  &work->cell,   &work->cubic};
 
     work->holds = false;
     work->fresh = 1.0;
@@ -103,6 +103,7 @@ void bd_bearing_work_carve(const bd_bearing *bearing, bd_bearing_work *work, dou
     memory = work->along + balls * coefs;
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++, memory += balls)
         *parts[i] = memory;
+    memset(work->cell, 0, balls * sizeof *work->cell);
 }
 
 void bd_bearing_lead(const bd_bearing *bearing, bd_bearing_work *work,

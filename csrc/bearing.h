@@ -43,6 +43,9 @@ struct bd_bearing_work {
     bool led;   /* whether the basis is another bearing's, which turns it (abreast.c) */
     /* (balls) of the carried law: eta without the rate at the step's end, and b ddelta/dt there */
     double *carried, *pressed;
+    /* of the film's laws: (balls) the cell in which a ball was, its start in 1 + w, 0 before the first; (BD_FILM_POWERS x
+     * balls) the cubic of that cell */
+    double *cell, *cubic;
     double fresh; /* eta per b ddelta/dt at the step's end; 1 where all has been so for long */
 };
 

@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "bearing.h"
 #include "damping_table.h"
@@ -54,7 +55,7 @@ BD_INLINE void press(const elastic *spring, const lanes *c, const lanes *slope, 
 
 /* ---------------------------------------------------------------- the film's laws */
 
-/* Registers at most between looking up and using: their chains of division, look-up and cubic then overlap, which are
+/* Registers at most between finding places and using cubics: their chains of root and division then overlap, which are
  * longer than a processor looks ahead. */
 enum { AHEAD = 8 };
 /* Binary digits of a double, of them those of a cell, and those of a cell's powers. */
@@ -62,50 +63,40 @@ enum { DIGITS = 52, CELL_DIGITS = 6, POWER_DIGITS = 2 };
 /* Just below 1, so that no w reaches the end of the last cell. */
 static const double below_end = 1.0 - 0x1p-50;
 
-/* Digits of doubles as they stand, without a sign: AVX2 has no instruction that shifts signed ones to the right. */
+/* Digits of doubles as they stand. */
 typedef unsigned long long lane_digits
     __attribute__((vector_size(8 * BD_WIDTH), aligned(8), may_alias));
 
-/* The cubic of each lane's cell, a power a register. Written lane by lane: a loop would go by way of memory. */
-BD_INLINE void film_cubics(const double *film, const lane_digits *cell, lanes *k0, lanes *k1,
-                           lanes *k2, lanes *k3)
+/* Whether a bit is set in any lane. */
+BD_INLINE bool any(const lane_digits *value)
 {
-#define CUBIC(lane) (film + (*cell)[lane])
-#if BD_WIDTH == 4 && (defined(__clang__) || __GNUC__ >= 12)
-    /* halves of two cubics side by side, then turned */
-    typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
-#define HALVES(a, b, k)                                                                            \
-    __builtin_shufflevector(*(const pair *)(CUBIC(a) + (k)), *(const pair *)(CUBIC(b) + (k)), 0,   \
-                            1, 2, 3)
-    lanes even = HALVES(0, 2, 0), odd = HALVES(1, 3, 0);
-    *k0 = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
-    *k1 = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
-    even = HALVES(0, 2, 2), odd = HALVES(1, 3, 2);
-    *k2 = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
-    *k3 = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
-#undef HALVES
-#else
-#define PAIR(lane, k) CUBIC(lane)[k], CUBIC((lane) + 1)[k]
-#if BD_WIDTH == 2
-#define POWER(k) ((lanes){PAIR(0, k)})
-#elif BD_WIDTH == 4
-#define POWER(k) ((lanes){PAIR(0, k), PAIR(2, k)})
-#else
-#define POWER(k) ((lanes){PAIR(0, k), PAIR(2, k), PAIR(4, k), PAIR(6, k)})
-#endif
-    *k0 = POWER(0);
-    *k1 = POWER(1);
-    *k2 = POWER(2);
-    *k3 = POWER(3);
-#undef POWER
-#undef PAIR
-#endif
-#undef CUBIC
+    unsigned long long all = 0;
+    for (int i = 0; i < BD_WIDTH; i++)
+        all |= (*value)[i];
+    return all != 0;
+}
+
+/* Takes the cubics of balls that have come into another cell; `now` is the start of each one's cell, in 1 + w. */
+static __attribute__((noinline)) void keep_cubics(const double *film, const lane_digits *now,
+                                                  int first, int stride, double *restrict cell,
+                                                  double *restrict cubic)
+{
+    const unsigned long long inside = (BD_FILM_CELLS - 1) << POWER_DIGITS;
+    const lane_digits was = *(const lane_digits *)(cell + first);
+    for (int i = 0; i < BD_WIDTH; i++) {
+        if (was[i] == (*now)[i])
+            continue;
+        /* masked so that what is no number reads inside the table */
+        const double *own = film + ((*now)[i] >> (DIGITS - CELL_DIGITS - POWER_DIGITS) & inside);
+        for (int k = 0; k < BD_FILM_POWERS; k++)
+            cubic[k * stride + first + i] = own[k];
+    }
+    *(lane_digits *)(cell + first) = *now;
 }
 
 /* Force of one register under s, where the film is thicker by what the oil carries and by what is pressed now: F =
  * kappa u^3, u^2 + give kappa u^3 = s + carried + fresh b rate; and its slopes. */
-BD_INLINE void press_carried(const bd_contact *contact, bool gives, const bd_carried *oil, int at,
+BD_INLINE void press_carried(const bd_contact *contact, bool gives, const bd_oil *oil, int at,
                              const lanes *approach, const lanes *b, const lanes *slope,
                              const double *rate, double *force, double *stiffness, double *damping)
 {
@@ -119,71 +110,73 @@ BD_INLINE void press_carried(const bd_contact *contact, bool gives, const bd_car
     LANES_AT(damping) = spring.firm * (oil->fresh * *b);
 }
 
-/* The film law, or the carried law; which of them the compiler knows. */
-BD_INLINE void film_contacts(const bd_contact *contact, bool gives, bool carries,
-                             const double *restrict film, int n, const double *restrict delta,
-                             const double *restrict rate, const bd_carried *oil,
-                             double *restrict force, double *restrict stiffness,
+/* The film law, or the carried law; which of them the compiler knows. A ball stays in a cell for many evaluations, so that
+ * its cubic is kept: a look-up in each would wait for its own address, as long as all else here takes. */
+BD_INLINE void film_contacts(const bd_contact *contact, bool gives, bool carries, int n,
+                             const double *restrict delta, const double *restrict rate,
+                             const bd_oil *oil, double *restrict force, double *restrict stiffness,
                              double *restrict damping)
 {
     const bool settled = gives && !carries; /* w is of what the ring's give leaves */
     const double half = sqrt(contact->c);
-    const int registers = n / BD_WIDTH, groups = (registers + AHEAD - 1) / AHEAD;
-    for (int group = 0, from = 0; group < groups; group++) {
-        /* of nearly one size: a register left over would have nothing to overlap with */
-        const int count = (registers - from / BD_WIDTH) / (groups - group);
-        elastic spring[AHEAD];
-        lanes s_of[AHEAD], u[AHEAD], by_s[AHEAD];
-        lane_digits cell[AHEAD];
-        for (int i = 0; i < count; i++) {
-            s_of[i] = LANES(delta + from + i * BD_WIDTH) + contact->h0;
-            squeeze(contact, settled, &s_of[i], &spring[i]);
-            lanes root = spring[i].root, s = root * root;
-            /* one division, by root (root + half); 0 where nothing touches, so that w is, where c and its slope are 0 */
-            lanes inverse = LANES_WHERE(spring[i].touching, 1.0 / (s + half * root));
-            /* 1 + w: its leading digits are the cell, masked so that what is none reads inside the table */
-            lanes place = (below_end * s) * inverse + 1.0;
-            lane_digits digits = (lane_digits)place;
-            cell[i] = digits >> (DIGITS - CELL_DIGITS - POWER_DIGITS) &
-                      ((BD_FILM_CELLS - 1) << POWER_DIGITS);
-            u[i] = place - (lanes)(digits & -(1ULL << (DIGITS - CELL_DIGITS)));
-            by_s[i] = ((0.5 * half) * root) * (inverse * inverse); /* dw/ds */
+    const int stride = oil->stride;
+    const double *film = oil->film;
+    double *const cells = oil->cell, *const cubics = oil->cubic;
+    const bd_contact own = *contact;
+    for (int from = 0, until; from < n; from = until) {
+        /* registers cross no line of the cache: stores are read again at once */
+        _Alignas(64) elastic springs[AHEAD];
+        _Alignas(64) lanes s_of[AHEAD], u_of[AHEAD], by_s_of[AHEAD];
+        _Alignas(64) lane_digits cell_of[AHEAD];
+        lane_digits moved = {0};
+        until = from + AHEAD * BD_WIDTH < n ? from + AHEAD * BD_WIDTH : n;
+        for (int first = from, i = 0; first < until; first += BD_WIDTH, i++) {
+            s_of[i] = LANES(delta + first) + own.h0;
+            squeeze(&own, settled, &s_of[i], &springs[i]);
+            const lanes root = springs[i].root, sum = root + half;
+            /* 1 + w, whose leading digits are the cell */
+            const lanes place = (below_end * root) / sum + 1.0;
+            cell_of[i] = (lane_digits)place & -(1ULL << (DIGITS - CELL_DIGITS));
+            u_of[i] = place - (lanes)cell_of[i];
+            moved |= cell_of[i] ^ *(const lane_digits *)(cells + first);
+            /* dw/ds, 0 where nothing touches, as c is */
+            by_s_of[i] = LANES_WHERE(springs[i].touching, (0.5 * half) / (root * (sum * sum)));
             if (settled)
-                by_s[i] *= spring[i].soft;
+                by_s_of[i] *= springs[i].soft;
         }
-        for (int i = 0; i < count; i++) {
-            const int first = from + i * BD_WIDTH;
-            lanes k0, k1, k2, k3;
-            film_cubics(film, &cell[i], &k0, &k1, &k2, &k3);
-            lanes last = u[i] * k3, both = k2 + last;
-            lanes c = (k0 + u[i] * k1) + (u[i] * u[i]) * both;
-            lanes slope = (k1 + u[i] * (both + both + last)) * by_s[i];
-            if (carries) {
-                press_carried(contact, gives, oil, first, &s_of[i], &c, &slope, rate + first,
+        if (any(&moved))
+            for (int first = from, i = 0; first < until; first += BD_WIDTH, i++)
+                keep_cubics(film, &cell_of[i], first, stride, cells, cubics);
+        for (int first = from, i = 0; first < until; first += BD_WIDTH, i++) {
+            const double *cubic = cubics + first;
+            const lanes k1 = LANES(cubic + stride), k2 = LANES(cubic + 2 * stride);
+            const lanes u = u_of[i], last = u * LANES(cubic + 3 * stride), both = k2 + last;
+            const lanes c = (LANES(cubic) + u * k1) + (u * u) * both;
+            const lanes slope = (k1 + u * (both + both + last)) * by_s_of[i];
+            if (carries)
+                press_carried(&own, gives, oil, first, &s_of[i], &c, &slope, rate + first,
                               force + first, stiffness + first, damping + first);
-                continue;
-            }
-            press(&spring[i], &c, &slope, rate + first, force + first, stiffness + first,
-                  damping + first);
+            else
+                press(&springs[i], &c, &slope, rate + first, force + first, stiffness + first,
+                      damping + first);
         }
-        from += count * BD_WIDTH;
     }
 }
 
 /* ---------------------------------------------------------------- all laws */
 
 /* As bd_ehl_contacts, of a law that the compiler knows: a loop without a branch. */
-BD_INLINE void contacts(const bd_contact *contact, bd_damping_law law, bool gives,
-                        const double *restrict film, int n, const double *restrict delta,
-                        const double *restrict rate, const bd_carried *oil, double *restrict force,
-                        double *restrict stiffness, double *restrict damping)
+BD_INLINE void contacts(const bd_contact *contact, bd_damping_law law, bool gives, int n,
+                        const double *restrict delta, const double *restrict rate,
+                        const bd_oil *oil, double *restrict force, double *restrict stiffness,
+                        double *restrict damping)
 {
     if (law == BD_DAMPING_FILM) {
-        film_contacts(contact, gives, false, film, n, delta, rate, oil, force, stiffness, damping);
+        film_contacts(contact, gives, false, n, delta, rate, oil, force, stiffness, damping);
         return;
     }
     if (law == BD_DAMPING_CARRIED) {
-        film_contacts(contact, gives, true, film, n, delta, rate, oil, force, stiffness, damping);
+        film_contacts(contact, gives, true, n, delta, rate, oil, force, stiffness, damping);
         return;
     }
     for (int first = 0; first < n; first += BD_WIDTH) {
@@ -208,25 +201,25 @@ BD_INLINE void contacts(const bd_contact *contact, bd_damping_law law, bool give
     }
 }
 
-/* Given:    n contacts (whole lanes): indentation delta and its rate; `film` as in bd_bearing
+/* Given:    n contacts (whole lanes): indentation delta and its rate; the film's laws need the oil
  * Returned: force     F = max(0, kappa u^3 + c(delta) rate), 0 where delta + h0 <= 0, with the root u of film and
  *                     solids, u^2 + give kappa u^3 = delta + h0
  *           stiffness dF/ddelta at fixed rate, damping dF/drate; all zero where F is clipped
- *           of the carried law see bd_echo; `oil` is written to
+ *           of the carried law see bd_echo; what the oil keeps is written to
  * Notes:    a film cannot pull, hence the clip. Where c > 0 at the film's edge F jumps there; newton.c finds the force
  *           inside the jump (grazing.h)
  * Reference: paper eq (1). */
-void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, const double *restrict film, int n,
-                               const double *restrict delta, const double *restrict rate,
-                               const bd_carried *oil, double *restrict force,
-                               double *restrict stiffness, double *restrict damping)
+void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *restrict delta,
+                               const double *restrict rate, const bd_oil *oil,
+                               double *restrict force, double *restrict stiffness,
+                               double *restrict damping)
 {
 #define LAW(law)                                                                                   \
     case law:                                                                                      \
         if (contact->give * contact->kappa != 0.0)                                                 \
-            contacts(contact, law, true, film, n, delta, rate, oil, force, stiffness, damping);    \
+            contacts(contact, law, true, n, delta, rate, oil, force, stiffness, damping);          \
         else                                                                                       \
-            contacts(contact, law, false, film, n, delta, rate, oil, force, stiffness, damping);   \
+            contacts(contact, law, false, n, delta, rate, oil, force, stiffness, damping);         \
         break;
     switch (contact->law) {
         LAW(BD_DAMPING_CONSTANT)

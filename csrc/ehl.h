@@ -5,16 +5,19 @@
 #include "elastic_force.h"
 #include "kernels.h"
 
-/* What the carried law needs besides: as in bd_bearing_work. */
-typedef struct bd_carried {
+/* What the film's laws need besides: as in bd_bearing and bd_bearing_work. */
+typedef struct bd_oil {
+    const double *film;
+    int stride; /* of cubic */
+    double *cell, *cubic;
     const double *carried;
     double *pressed;
     double fresh;
-} bd_carried;
+} bd_oil;
 
-void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, const double *restrict film, int n,
-                               const double *restrict delta, const double *restrict rate,
-                               const bd_carried *oil, double *restrict force,
-                               double *restrict stiffness, double *restrict damping);
+void BD_NAMED(bd_ehl_contacts)(const bd_contact *contact, int n, const double *restrict delta,
+                               const double *restrict rate, const bd_oil *oil,
+                               double *restrict force, double *restrict stiffness,
+                               double *restrict damping);
 
 #endif

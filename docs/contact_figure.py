@@ -11,6 +11,7 @@ import numpy as np
 INK, BLUE, ORANGE, GREEN = "#22313f", "#2b6ea6", "#c9692c", "#3a8a6e"
 RPM = math.pi / 30
 LOAD, SPEED, TEMPERATURE = 100.0, 3000.0, 60.0  # N on a ball, rpm, °C
+OIL = {"density": 870.0, "alpha": 2.0e-8}  # as in the guide
 
 
 def maps(path: Path) -> None:
@@ -21,7 +22,7 @@ def maps(path: Path) -> None:
     from bearingdyn.bearing import ehl
 
     ball = bd.catalogue.bearing("6205", clearance=10e-6)
-    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
+    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32), **OIL)
     us = surface_speed(ball, SPEED)
     found = ehl.solve(ball.inner_contact, oil, LOAD, us, TEMPERATURE, accuracy=0.02)
     figure, axes = plt.subplots(1, 2, figsize=(9.6, 4.2), layout="constrained")
@@ -35,7 +36,7 @@ def surface_speed(ball: object, rpm: float) -> float:
     """Sum of the surface speeds in each contact, m/s, by `lubricate` at a light axial load."""
     import bearingdyn as bd
 
-    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
+    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32), **OIL)
     return bd.bearing.lubricate(ball, oil, TEMPERATURE, rpm * RPM, (0, 0, 500.0, 0, 0, 0)).us
 
 
@@ -49,7 +50,7 @@ def damping(path: Path) -> None:
 
     ball = bd.catalogue.bearing("6205", clearance=10e-6)
     walther = bd.bearing.Walther
-    oils = {f"VG {vg}": bd.bearing.Lubricant(walther.iso_vg(vg)) for vg in (32, 100)}
+    oils = {f"VG {vg}": bd.bearing.Lubricant(walther.iso_vg(vg), **OIL) for vg in (32, 100)}
     oil = oils["VG 32"]
     figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.2), layout="constrained")
 
@@ -103,7 +104,7 @@ def in_time(path: Path) -> None:
     import bearingdyn as bd
     from bearingdyn.bearing import FilmMemory, OilSupply
 
-    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32))
+    oil = bd.bearing.Lubricant(bd.bearing.Walther.iso_vg(32), **OIL)
     ball = bd.catalogue.bearing("6202", clearance=10e-6, lubrication=OilSupply(oil, TEMPERATURE, 500.0))
     app = bd.Application()
     app.add("mass", bd.RigidBody(mass=0.006, inertia=(1e-6, 1e-6, 1e-6)))

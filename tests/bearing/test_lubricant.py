@@ -9,7 +9,7 @@ import pytest
 from bearingdyn.bearing.film_thickness import dimensionless_film, hamrock_dowson, nijenbanning_venner_moes
 from bearingdyn.bearing.hertz import PointContact
 from bearingdyn.bearing.lubricant import Lubricant, Walther
-from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent
+from bearingdyn.bearing.pressure_viscosity import barus, roelands, roelands_exponent, wooster
 
 CONTACT = PointContact(Rx=4e-3, Ry=80e-3, modulus=115e9)
 
@@ -94,6 +94,19 @@ def test_barus_and_roelands_share_their_slope_at_ambient_pressure():
     p = 1.0  # Pa: second order in αp is below 1e-15
     assert math.log(barus(eta0, alpha, p) / eta0) == pytest.approx(alpha * p, rel=1e-7)
     assert math.log(roelands(eta0, z, p) / eta0) == pytest.approx(alpha * p, rel=1e-7)
+
+
+def test_alpha_of_a_mineral_oil_follows_its_viscosity():
+    oil, known = Lubricant(Walther.iso_vg(32)), Lubricant(Walther.iso_vg(32), alpha=2.2e-8)
+    # by hand: .6 + .965 lg 27.2, ν of 32 mm²/s and 850 kg/m³
+    assert oil.pressure_coefficient(40.0) == pytest.approx(1.9842e-8, rel=1e-4)
+    assert oil.pressure_coefficient(100.0) < oil.pressure_coefficient(70.0) < 1.6e-8
+    assert known.pressure_coefficient(70.0) == 2.2e-8
+    p = 1e4
+    rise = math.log(oil.viscosity(70.0, p) / oil.viscosity(70.0)) / p
+    assert rise == pytest.approx(oil.pressure_coefficient(70.0), rel=1e-4)
+    with pytest.raises(ValueError, match=r"eta0 is 0.0002.*give alpha"):
+        wooster(2e-4)
 
 
 def test_roelands_stays_far_below_barus_at_contact_pressure():

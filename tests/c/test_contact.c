@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "bearingdyn.h"
@@ -206,6 +207,45 @@ static void turned_by_one_pitch_a_bearing_is_itself(void)
         CHECK_CLOSE("force after one pitch", turned[k], g[k], 1e-11 * largest_of(g, 5));
 }
 
+/* The films' laws keep the cubics of balls from one evaluation to the next; it must not show. */
+static void a_bearing_answers_the_same_wherever_it_was_before(bd_damping_law law)
+{
+    enum { N = 400, COEFS = 5, BALLS = 11 };
+    bd_bearing_data bearing = deep_groove(law);
+    bearing.n_balls = BALLS; /* some lanes are empty */
+    static double z[N * COEFS], rate[N * COEFS], g[N * COEFS], K[N * COEFS * COEFS],
+        C[N * COEFS * COEFS], loads[N * BALLS], heat[N], pressing[N], turning[N];
+    bd_bodies angle[N];
+    unsigned long long seed = 5;
+    for (int i = 0; i < N; i++) {
+        angle[i] = (bd_bodies){.cage = 0.01 * i};
+        for (int k = 0; k < COEFS; k++) {
+            z[COEFS * i + k] = 2e-5 * uniform(&seed);
+            rate[COEFS * i + k] = 1e-3 * uniform(&seed);
+        }
+    }
+    const bd_along_data motion = {
+        .n = N, .z = z, .z_rate = rate, .angle = angle, .speed = {.cage = 200.0}};
+    bd_along found = {.g = g,
+                      .K = K,
+                      .C = C,
+                      .loads = loads,
+                      .heat = heat,
+                      .pressing = pressing,
+                      .turning = turning};
+    double *scratch = calloc(bd_bearing_along_size(&bearing), sizeof *scratch);
+    CHECK_EQUAL("the motion is known", bd_bearing_along(&bearing, &motion, scratch, &found), BD_OK);
+    free(scratch);
+    for (int i = 0; i < N; i++) {
+        double own_g[COEFS], own_K[COEFS * COEFS], own_C[COEFS * COEFS], own_loads[BALLS];
+        bd_bearing_single(&bearing, z + COEFS * i, rate + COEFS * i, angle[i].cage, 200.0, still,
+                          own_g, own_K, own_C, own_loads);
+        CHECK_EQUAL("force", memcmp(own_g, g + COEFS * i, sizeof own_g), 0);
+        CHECK_EQUAL("stiffness", memcmp(own_K, K + COEFS * COEFS * i, sizeof own_K), 0);
+        CHECK_EQUAL("damping", memcmp(own_C, C + COEFS * COEFS * i, sizeof own_C), 0);
+    }
+}
+
 int main(void)
 {
     static const bd_damping_law laws[] = {BD_DAMPING_CONSTANT, BD_DAMPING_TABLE, BD_DAMPING_LOAD,
@@ -218,6 +258,8 @@ int main(void)
         bearing_tangent_is_the_derivative_of_its_force(laws[i], true);
     }
     a_film_that_is_carried_adds_to_the_approach();
+    a_bearing_answers_the_same_wherever_it_was_before(BD_DAMPING_FILM);
+    a_bearing_answers_the_same_wherever_it_was_before(BD_DAMPING_CARRIED);
     turned_by_one_pitch_a_bearing_is_itself();
     return check_result();
 }

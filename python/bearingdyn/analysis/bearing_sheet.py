@@ -31,12 +31,12 @@ from bearingdyn.bearing import (
     friction,
     in_hours,
     modified_life,
-    nijenbanning_venner_moes,
     ratings_of,
     reliability_factor,
 )
 from bearingdyn.bearing import catalogue as listed
 from bearingdyn.bearing import lives as lives_of
+from bearingdyn.bearing.lubrication import film_by_formula
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
 from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.parts import RigidBody
@@ -376,7 +376,9 @@ def _row(
         gamma = bearing.Dw / bearing.Dpw * math.cos(alpha)
         us = bearing.Dpw / 2 * abs(relative) * (1 - gamma**2)
         for race, contact in contacts.items():
-            film = nijenbanning_venner_moes(contact, float(Q[heaviest]), us, nu * oil.density, oil.alpha)
+            film = film_by_formula(
+                contact, float(Q[heaviest]), us, oil.viscosity(T), oil.pressure_coefficient(T)
+            )
             row[f"film_{race}"] = film
             if sigma > 0:
                 row[f"lambda_{race}"] = film / sigma

@@ -102,7 +102,8 @@ class FilmAnswer:
         return AnswerUnderLoads(tuple(found), to_balls)
 
     def _looked_up(self, Q: float) -> _Pair:
-        eta0, alpha = self.lubricant.viscosity(self.temperature), self.lubricant.alpha
+        eta0 = self.lubricant.viscosity(self.temperature)
+        alpha = self.lubricant.pressure_coefficient(self.temperature)
         inner, outer = (
             ehl.LubricatedContact(contact, Q, self.us, eta0, alpha, ehl.lookup(M * Q, L, D))
             for contact in (self.inner, self.outer)
@@ -112,8 +113,8 @@ class FilmAnswer:
 
     def _groups(self, contact: PointContact) -> tuple[float, float, float]:
         """M under 1 N, and the L and D of the table that are nearest."""
-        oil = self.lubricant
-        M, L, D = ehl.scales(contact, 1.0, self.us, oil.viscosity(self.temperature), oil.alpha)
+        oil, T = self.lubricant, self.temperature
+        M, L, D = ehl.scales(contact, 1.0, self.us, oil.viscosity(T), oil.pressure_coefficient(T))
         return M, *ehl.nearest_in_table(L, D)
 
 

@@ -209,7 +209,7 @@ def lubricated(
     gamma = bearing.Dw / bearing.Dpw * math.cos(angle)
     us = bearing.Dpw / 2 * abs(supply.speed * (turns[0] - turns[1])) * (1 - gamma**2)
     oil, T = supply.lubricant, supply.temperature
-    eta0, alpha = oil.viscosity(T), oil.alpha
+    eta0, alpha = oil.viscosity(T), oil.pressure_coefficient(T)
     contacts = (bearing.inner_contact, bearing.outer_contact)
     found: list[ehl.LubricatedContact | None] = []
     for race, contact in zip(_RACES, contacts, strict=True):
@@ -229,14 +229,7 @@ def lubricated(
         centre = [c.hc for c in found if c is not None]
         h0 = [c.h0 for c in found if c is not None]
     else:
-        centre = []
-        for contact in contacts:
-            if law == "hamrock-dowson":
-                film = hamrock_dowson(contact, Q, us / 2, eta0, alpha).central
-            else:
-                film = nijenbanning_venner_moes(contact, Q, us, eta0, alpha) / YIELDING
-            centre.append(film / float(ehl.relative_density(contact.pressure(Q))))
-        h0 = centre
+        h0 = centre = [film_by_formula(contact, Q, us, eta0, alpha, law) for contact in contacts]
     inner, outer = found
     single = [math.nan if c is None else c.c0 for c in found]
     together = math.nan if inner is None or outer is None else in_series(inner, outer)
@@ -259,13 +252,29 @@ def lubricated(
     )
 
 
+def film_by_formula(
+    contact: PointContact,
+    Q: float,
+    us: float,
+    eta0: float,
+    alpha: float,
+    law: Literal["nijenbanning-venner-moes", "hamrock-dowson"] = "nijenbanning-venner-moes",
+) -> float:
+    """Central film of an oil that yields, m: a formula of `film_thickness` over ρ̄ at the Hertz pressure."""
+    if law == "hamrock-dowson":
+        film = hamrock_dowson(contact, Q, us / 2, eta0, alpha).central
+    else:
+        film = nijenbanning_venner_moes(contact, Q, us, eta0, alpha) / YIELDING
+    return film / float(ehl.relative_density(contact.pressure(Q)))
+
+
 def _over_alpha(
     contacts: tuple[PointContact, PointContact], oil: Lubricant, Q: float, us: float, T: float
 ) -> dict[str, float]:
     """Exponents of α in the inner film and in the damping of a ball, by the table; none outside of it."""
     found = []
     for factor in (1 / _ALPHA_STEP, _ALPHA_STEP):
-        other = dataclasses.replace(oil, alpha=factor * oil.alpha)
+        other = dataclasses.replace(oil, alpha=factor * oil.pressure_coefficient(T))
         try:
             inner, outer = (ehl.look_up(contact, other, Q, us, T) for contact in contacts)
         except ValueError:
@@ -297,8 +306,8 @@ def _over_load(
 
 def _speeds_held(contact: PointContact, supply: OilSupply, Q: float, us: float) -> str:
     """What to say of the speeds at which the table holds a contact under Q; nothing where there is none."""
-    oil = supply.lubricant
-    M, L, D = ehl.scales(contact, Q, us, oil.viscosity(supply.temperature), oil.alpha)
+    oil, T = supply.lubricant, supply.temperature
+    M, L, D = ehl.scales(contact, Q, us, oil.viscosity(T), oil.pressure_coefficient(T))
     if D != ehl.nearest_in_table(L, D)[1]:
         return ""
     (M_low, M_high), (L_low, L_high) = ehl.table_ends(D)

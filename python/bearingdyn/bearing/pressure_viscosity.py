@@ -1,4 +1,4 @@
-"""Viscosity of an oil over pressure: the laws of Barus and Roelands."""
+"""Viscosity of an oil over pressure: the laws of Barus and Roelands, and α by Wooster."""
 
 from __future__ import annotations
 
@@ -8,6 +8,27 @@ from bearingdyn.checks import nonnegative, positive, require
 
 _ROELANDS_PRESSURE = 1.96e8  # Pa
 _ROELANDS_LOG_VISCOSITY = 9.67  # −ln(6.31e-5 Pa s)
+
+
+def wooster(eta0: float) -> float:
+    """α of a mineral oil, 1/Pa: (0.6 + 0.965 lg η0)·1e-8, η0 in mPa s (Wooster; in A. Cameron 1966).
+
+    At 40 °C 1.98e-8 for VG 32, at 70 °C 1.54e-8. Synthetic oils lie lower, naphthenic ones higher.
+
+    Parameters
+    ----------
+    eta0
+        Viscosity at ambient pressure and the temperature of the oil, Pa s.
+
+    Raises
+    ------
+    ValueError
+        At 0.24 mPa s or less, where it would not be positive.
+    """
+    remedy = "α by Wooster's rule needs more than 0.24e-3 Pa s (density in kg/m³?); give alpha"
+    alpha = (0.6 + 0.965 * math.log10(1e3 * positive("eta0", eta0))) * 1e-8
+    require(alpha > 0, "eta0", eta0, remedy)
+    return alpha
 
 
 def barus(eta0: float, alpha: float, p: float) -> float:

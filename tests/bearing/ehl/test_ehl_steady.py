@@ -125,6 +125,15 @@ def test_film_of_an_incompressible_oil_is_the_fit_of_nijenbanning_venner_and_moe
     assert found.Hc == pytest.approx(dimensionless_film(200, 8, D), rel=0.04)  # 1 to 3 % is the fit's
 
 
+def test_a_rigid_ball_floats_on_the_film_of_kapitza() -> None:
+    """P. L. Kapitza 1955, D = 1: H = 128/4 φ² (.131 atan ½ + 1.683)²/M², φ = 3/5, oil from everywhere."""
+    # oil that begins at a gap of g hc lacks what the rest would bear, as 1/√g: pressure falls as distance^−3
+    near, far = (ehl.steady(0.5, 0, inlet=gap, accuracy=0.03).Hc for gap in (75.0, 300.0))
+    endless = 2 * far - near
+    # the next term, as 1/g, and sides at .4 of the gap
+    assert endless == pytest.approx(32 * 0.36 * (0.131 * math.atan(0.5) + 1.683) ** 2 / 0.25, rel=0.05)
+
+
 def test_pressure_film_and_reynolds_equation_close(coarse: ehl.Steady) -> None:
     level = coarse.levels[-1]
     grid, state = level.equations.grid, level.state

@@ -184,7 +184,7 @@ def solve(
     ArithmeticError
         If the solution does not converge.
     """
-    M, L, D, speed, eta0 = _checked(contact, lubricant, F, us, temperature)
+    M, L, D, speed, eta0, alpha = _checked(contact, lubricant, F, us, temperature)
     found = steady(
         M,
         L,
@@ -194,10 +194,10 @@ def solve(
         grid=grid,
         inlet=inlet,
         accuracy=accuracy,
-        alpha=lubricant.alpha,
+        alpha=alpha,
         eta0=eta0,
     )
-    return SolvedContact(contact, float(F), speed, eta0, lubricant.alpha, found)
+    return SolvedContact(contact, float(F), speed, eta0, alpha, found)
 
 
 def look_up(
@@ -215,14 +215,14 @@ def look_up(
     ValueError
         As `solve`, and outside of the table.
     """
-    M, L, D, speed, eta0 = _checked(contact, lubricant, F, us, temperature)
-    return LubricatedContact(contact, float(F), speed, eta0, lubricant.alpha, lookup(M, L, D))
+    M, L, D, speed, eta0, alpha = _checked(contact, lubricant, F, us, temperature)
+    return LubricatedContact(contact, float(F), speed, eta0, alpha, lookup(M, L, D))
 
 
 def _checked(
     contact: PointContact, lubricant: Lubricant, F: float, us: float, temperature: float
-) -> tuple[float, float, float, float, float]:
-    """M, L, D, |us| and η0 of a contact that rolls and is lubricated."""
+) -> tuple[float, float, float, float, float, float]:
+    """M, L, D, |us|, η0 and α of a contact that rolls and is lubricated."""
     require(
         isinstance(contact, PointContact),
         "contact",
@@ -235,5 +235,5 @@ def _checked(
     positive("F", F, "the contact load in N must be positive")
     speed = abs(number("us", us, "it must be a finite speed u1 + u2, in m/s"))
     require(speed != 0, "us", us, "without speed there is no film: give u1 + u2 in m/s")
-    eta0 = lubricant.viscosity(temperature)
-    return *scales(contact, F, speed, eta0, lubricant.alpha), speed, eta0
+    eta0, alpha = lubricant.viscosity(temperature), lubricant.pressure_coefficient(temperature)
+    return *scales(contact, F, speed, eta0, alpha), speed, eta0, alpha

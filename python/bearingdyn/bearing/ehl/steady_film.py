@@ -179,6 +179,8 @@ def steady(
         Gap at which the oil begins, over hc, with 0.4 of it at the sides. Left out, the extent is that of
         published solutions. Oil that reaches further (100) adds some 1 % to the film of a circular contact
         and, at M = 20 to 100, 7 to 3 % to C0, and takes .01 to 0 from K0; a narrow contact hardly changes.
+        Rigid bodies (M below 3.5 D^−0.59) have .5 to .77 of the film of endless oil (P. L. Kapitza 1955) in
+        published extents, short of it as 1/√inlet.
     accuracy
         Relative error of the central film that "auto" aims at.
     alpha, eta0
