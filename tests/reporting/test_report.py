@@ -166,7 +166,11 @@ def test_results_of_another_machine_or_version_are_doubted(mass: bd.Application,
     assert "other inputs" in text_of(bd.report(found, tmp_path / "a.html", model=other))
     assert "other inputs" not in text_of(bd.report(found, tmp_path / "b.html", model=mass))
     old = found.assign_attrs(made_by="bearingdyn 0.0.1, Python 3.11")
-    assert "computed by version 0.0.1" in text_of(bd.report(old, tmp_path / "c.html"))
+    said: list[str] = []
+    assert "computed by version 0.0.1" in text_of(bd.report(old, tmp_path / "c.html", tell=said.append))
+    assert any("computed by version 0.0.1" in line and "compute it anew" in line for line in said)
+    del old.attrs["made_by"]
+    assert "does not say what computed it" in text_of(bd.report({"x": old}, tmp_path / "d.html"))
 
 
 def test_modes_that_nothing_holds_are_called_free_and_long_lists_end(
