@@ -289,7 +289,7 @@ BAD = [
     ('"1 MPa"', '"1 N/(mm mm)"', 10, "materials.rubber.G0", "has the unit mm twice"),
     ('"16 mm"', '"16mm mm"', 26, "parts.layer.width", "lacks the space before its unit"),
     ('"16 mm"', '"16*mm"', 26, "parts.layer.width", "write '= 16*mm'"),
-    ('"16 mm"', '"= 16 mm"', 26, "parts.layer.width", "between them, such as 14 * mm"),
+    ('"16 mm"', '"= 16 mm"', 26, "parts.layer.width", "such as 14 * mm"),
     ('width = "16 mm"', 'width = "16 mm"\nwidth = "16 mm"', 27, "width", "leave one of the two out"),
     ("[bearings.ball]", "[parts.layer]", 29, "parts.layer", "leave one of the two out"),
     ('"16 mm"', '"= 16 * mm * mm"', 34, "bearings.ball.outer", "of it lie on layer.inner"),
@@ -578,9 +578,7 @@ def test_quantities_and_grids() -> None:
     assert quantity("30 mm", "m") == 30 * 1e-3
     assert quantity("shaft.left", "m") is None
     assert quantity("293.15 K", "°C") == 20.0
-    assert (
-        quantity("3 N mm/mm", "N") == quantity("3000 N/(m s) mm s", "N") == 3.0
-    )  # above and below once each
+    assert quantity("3 N mm/mm", "N") == quantity("3000 N/(m s) mm s", "N") == 3.0  # one each way
     assert grid({"from": 1, "to": 100, "count": 3, "spacing": "log"}).tolist() == pytest.approx([1, 10, 100])
     with pytest.raises(ValueError, match="count is missing"):
         grid({"from": 1, "to": 2})

@@ -31,9 +31,7 @@ _CLOSE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)([^\W\d_eE]
 _PRODUCT = re.compile(r"^\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*[*/]")
 # of a compound unit: a stroke, or "mm" and its power; a stroke divides the next factor, or all in parentheses
 _FACTOR = re.compile(r"(/\s*\(?|\))|([^\W\d]+|°|%)((?:\^|\*\*)?-?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?")
-_NO_ARITHMETIC = (
-    "is no arithmetic; write numbers, parameters, units and + - * / ** between them, such as 14 * mm"
-)
+_NO_ARITHMETIC = "is no arithmetic; write numbers, parameters, units and + - * / **, such as 14 * mm"
 
 
 def evaluate(text: str, names: Mapping[str, Any]) -> Any:
