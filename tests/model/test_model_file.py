@@ -283,7 +283,15 @@ BAD = [
     ('[parts.rotor]\ntype = "RigidBody"', '[parts.rotor]\ntype = "RigidBdy"', 17, "parts.rotor", "RigidBody"),
     ('mass = "= weight"\n', "", 16, "parts.rotor", "RigidBody lacks mass"),
     ("width = ", "widht = ", 26, "parts.layer", "did you mean 'width'"),
-    ('"16 mm"', '"16 mm mm"', 26, "parts.layer.width", "is in mm mm"),
+    ('"16 mm"', '"16 mm mm"', 26, "parts.layer.width", "has the unit mm twice; write it once"),
+    ('"16 mm"', '"16 mm m⁻¹ mm"', 26, "parts.layer.width", "has the unit mm twice"),
+    ('"16 mm"', '"16 mm/m * mm"', 26, "parts.layer.width", "has the unit mm twice"),
+    ('"1 MPa"', '"1 N/(mm mm)"', 10, "materials.rubber.G0", "has the unit mm twice"),
+    ('"16 mm"', '"16mm mm"', 26, "parts.layer.width", "lacks the space before its unit"),
+    ('"16 mm"', '"16*mm"', 26, "parts.layer.width", "write '= 16*mm'"),
+    ('"16 mm"', '"= 16 mm"', 26, "parts.layer.width", "such as 14 * mm"),
+    ('width = "16 mm"', 'width = "16 mm"\nwidth = "16 mm"', 27, "width", "leave one of the two out"),
+    ("[bearings.ball]", "[parts.layer]", 29, "parts.layer", "leave one of the two out"),
     ('"16 mm"', '"= 16 * mm * mm"', 34, "bearings.ball.outer", "of it lie on layer.inner"),
     ('"16 mm"', '"16 MPa"', 26, "parts.layer.width", "it must be in m"),
     ('"16 mm"', "16", 26, "parts.layer.width", "in mm"),
@@ -345,6 +353,25 @@ def test_a_circular_include_is_named_with_its_chain(tmp_path: Path) -> None:
         bd.read_model(tmp_path / "a.toml")
 
 
+def test_a_circular_include_through_three_folders_or_a_link_is_named(tmp_path: Path) -> None:
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "a.toml").write_text('format = 1\ninclude = ["sub/b.toml"]\n')
+    (tmp_path / "sub" / "b.toml").write_text('include = ["../c.toml"]\n')
+    (tmp_path / "c.toml").write_text('\ninclude = ["sub/../a.toml"]\n')
+    told = r"c\.toml, line 2, include.*a\.toml includes b\.toml includes c\.toml includes a\.toml; leave one"
+    with pytest.raises(ValueError, match=told):
+        bd.read_model(tmp_path / "a.toml")
+    (tmp_path / "c.toml").write_text('include = ["link.toml"]\n')
+    try:
+        (tmp_path / "link.toml").symlink_to("a.toml")
+    except OSError:
+        pytest.skip("this system makes no links")
+    with pytest.raises(
+        ValueError, match=r"line 1, include.*includes link\.toml \(a link to a\.toml\); leave"
+    ):
+        bd.read_model(tmp_path / "a.toml")
+
+
 def test_a_part_in_two_files_and_a_file_that_is_not_there_are_named(tmp_path: Path) -> None:
     (tmp_path / "b.toml").write_text('[parts.x]\ntype = "RigidBody"\n')
     (tmp_path / "a.toml").write_text('format = 1\ninclude = ["b.toml"]\n[parts.x]\ntype = "RigidBody"\n')
@@ -375,8 +402,29 @@ def test_what_an_analysis_alone_knows_is_told_with_its_line(bench: Path) -> None
 def test_a_file_without_its_format_is_told_the_line_to_add(bench: Path) -> None:
     """It is no file of another version."""
     bench.write_text(bench.read_text("utf-8").replace("format = 1", ""))
-    with pytest.raises(ValueError, match=r"format is missing; the file must begin with a line format = 1"):
+    with pytest.raises(
+        ValueError, match=r"line 1, format: format is missing; the file must begin with a line format = 1"
+    ):
         bd.read_model(bench)
+
+
+def test_a_file_without_parts_is_told_where_to_add_them(tmp_path: Path) -> None:
+    path = tmp_path / "m.toml"
+    path.write_text('format = 1\ntitle = "nothing yet"\n', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"m\.toml, line 2, parts: .*at least one part: \[parts\.name\]"):
+        bd.read_model(path)
+
+
+def test_an_unbalance_in_the_wrong_unit_is_told_with_its_line(tmp_path: Path) -> None:
+    """It is found with the equilibrium, which knows what turns with it."""
+    text = examples.model_path("spindle").read_text(encoding="utf-8")
+    line = next(k for k, row in enumerate(text.splitlines(), 1) if row.startswith("unbalance"))
+    path = tmp_path / "m.toml"
+    path.write_text(re.sub(r"(?m)^unbalance = .*$", "unbalance = 2.0", text), encoding="utf-8")
+    with pytest.raises(
+        ValueError, match=rf"m\.toml, line {line}, loads\[\d\]\.unbalance: unbalance at shaft"
+    ):
+        bd.read_model(path).run()
 
 
 def mutated(text: str, draw: random.Random) -> str:
@@ -428,8 +476,7 @@ def test_200_mutated_files_are_refused_with_line_and_key_or_run(bench: Path) -> 
         else:
             assert isinstance(found, dict)
             ran += 1
-    # what is missing from the whole file has no line
-    unsaid = [e for e in refused if not re.search(r"bench\.toml(, line \d+)?, [\w\[\].\-\"']+: ", e)]
+    unsaid = [e for e in refused if not re.search(r"bench\.toml, line \d+, [\w\[\].\-\"']+: ", e)]
     assert not unsaid
     assert len(refused) > 80
     assert ran > 10
@@ -531,6 +578,7 @@ def test_quantities_and_grids() -> None:
     assert quantity("30 mm", "m") == 30 * 1e-3
     assert quantity("shaft.left", "m") is None
     assert quantity("293.15 K", "°C") == 20.0
+    assert quantity("3 N mm/mm", "N") == quantity("3000 N/(m s) mm s", "N") == 3.0  # one each way
     assert grid({"from": 1, "to": 100, "count": 3, "spacing": "log"}).tolist() == pytest.approx([1, 10, 100])
     with pytest.raises(ValueError, match="count is missing"):
         grid({"from": 1, "to": 2})

@@ -63,6 +63,15 @@ def test_the_report_is_whole_and_readable(chromium: Any, page_file: Path, width:
     )
     assert len(drawn) == 1
     assert drawn[0] > 0.02
+    # a level that stands alone is a dot
+    assert view.locator("figure.chart", has_text="Levels in bands").locator("path.dots").count() == 2
+    # ticks of an axis differ
+    named = view.evaluate(
+        "[...document.querySelectorAll('figure.chart svg')].map(s => {"
+        " const t = [...s.querySelectorAll('text[text-anchor=end]')].map(e => e.textContent);"
+        " return new Set(t).size - t.length; })"
+    )
+    assert set(named) == {0}
     # nothing is wider than the page
     assert view.evaluate("document.documentElement.scrollWidth") <= width
     ratio, text = view.evaluate(CONTRAST)

@@ -16,6 +16,7 @@ import pytest
 import bearingdyn as bd
 from bearingdyn.cli import main
 from bearingdyn.notice import Notice
+from bearingdyn.reporting.chart import Chart, Curve
 from bearingdyn.reporting.of_results import everything
 from bearingdyn.reporting.shapes import first_elastic
 
@@ -47,8 +48,23 @@ def curves(page: Path, title: str) -> list[tuple[str, np.ndarray, np.ndarray]]:
     held = json.loads(found[1])
     grids = [np.frombuffer(base64.b64decode(x), "<f4") for x in held["grids"]]
     return [
-        (c["name"], grids[c["x"]], np.frombuffer(base64.b64decode(c["y"]), "<f4")) for c in held["curves"]
+        (
+            c["name"],
+            grids[c["x"]],
+            np.frombuffer(base64.b64decode(c["y"]), "<f4").astype(float) + c.get("base", 0.0),
+        )
+        for c in held["curves"]
     ]
+
+
+def test_a_small_motion_about_a_large_level_keeps_its_digits() -> None:
+    """32-bit floats have seven digits; a shaft that sags 137 µm and moves by picometres needs nine."""
+    x = np.linspace(0.0, 1.0, 50)
+    y = -137.24 + 1e-6 * np.sin(20 * x)
+    held = Chart("y", "s", "µm", [Curve("y", x, y), Curve("wide", x, 1e3 * x)]).held()["curves"]
+    kept = np.frombuffer(base64.b64decode(held[0]["y"]), "<f4").astype(float) + held[0]["base"]
+    np.testing.assert_allclose(kept, y, rtol=0, atol=1e-12)
+    assert "base" not in held[1]
 
 
 def test_an_equilibrium_gets_a_page(tmp_path: Path) -> None:
@@ -166,7 +182,11 @@ def test_results_of_another_machine_or_version_are_doubted(mass: bd.Application,
     assert "other inputs" in text_of(bd.report(found, tmp_path / "a.html", model=other))
     assert "other inputs" not in text_of(bd.report(found, tmp_path / "b.html", model=mass))
     old = found.assign_attrs(made_by="bearingdyn 0.0.1, Python 3.11")
-    assert "computed by version 0.0.1" in text_of(bd.report(old, tmp_path / "c.html"))
+    said: list[str] = []
+    assert "computed by version 0.0.1" in text_of(bd.report(old, tmp_path / "c.html", tell=said.append))
+    assert any("computed by version 0.0.1" in line and "compute it anew" in line for line in said)
+    del old.attrs["made_by"]
+    assert "does not say what computed it" in text_of(bd.report({"x": old}, tmp_path / "d.html"))
 
 
 def test_modes_that_nothing_holds_are_called_free_and_long_lists_end(

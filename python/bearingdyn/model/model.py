@@ -92,7 +92,7 @@ class Model:
     materials
         By the name that the file has for them.
     places
-        Where "equilibrium" and each analysis stand in a file, for messages.
+        Where "equilibrium", each analysis, and what a message begins with stand in a file, for messages.
 
     Examples
     --------
@@ -170,6 +170,8 @@ class Model:
         try:
             yield
         except (ValueError, TypeError) as error:
-            if name not in self.places:
+            told = str(error)
+            place = next((self.places[k] for k in self.places if told.startswith(k)), self.places.get(name))
+            if place is None:
                 raise
-            raise ValueError(f"{self.places[name]}: {error}") from error
+            raise ValueError(f"{place}: {told}") from error

@@ -26,7 +26,12 @@ _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s+(\S.*
 
 
 # "50mm": what comes behind the number begins with a letter, and is no exponent
-_CLOSE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)([^\W\d_eE][^\s]*|[°%].*)\s*$")
+_CLOSE = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)([^\W\d_eE].*?|[°%].*?)\s*$")
+# "50*mm"
+_PRODUCT = re.compile(r"^\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*[*/]")
+# of a compound unit: a stroke, or "mm" and its power; a stroke divides the next factor, or all in parentheses
+_FACTOR = re.compile(r"(/\s*\(?|\))|([^\W\d]+|°|%)((?:\^|\*\*)?-?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?")
+_NO_ARITHMETIC = "is no arithmetic; write numbers, parameters, units and + - * / **, such as 14 * mm"
 
 
 def evaluate(text: str, names: Mapping[str, Any]) -> Any:
@@ -62,14 +67,12 @@ def evaluate(text: str, names: Mapping[str, Any]) -> Any:
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
             inner = of(node.operand)
             return -inner if isinstance(node.op, ast.USub) else inner
-        raise ValueError(f"{text!r} is no arithmetic; write numbers, parameters, units and + - * / **")
+        raise ValueError(f"{text.strip()!r} {_NO_ARITHMETIC}")
 
     try:
         return of(ast.parse(text.strip(), mode="eval"))
     except (SyntaxError, RecursionError, MemoryError):
-        raise ValueError(
-            f"{text!r} is no arithmetic; write numbers, parameters, units and + - * / **"
-        ) from None
+        raise ValueError(f"{text.strip()!r} {_NO_ARITHMETIC}") from None
 
 
 def quantity(text: str, unit: str) -> float | None:
@@ -85,12 +88,17 @@ def quantity(text: str, unit: str) -> float | None:
         close = _CLOSE.match(text)
         if close is not None:
             raise ValueError(f"{text!r} lacks the space before its unit; write '{close[1]} {close[2]}'")
+        if _PRODUCT.match(text):
+            raise ValueError(f"{text!r} is arithmetic without its sign; write '= {text.strip()}'")
         return None
     number, given = float(found[1]), found[2]
     if unit == units.CELSIUS:
         require(given in ("°C", "K"), "unit", given, "it must be °C or K")
         return number - units.KELVIN if given == "K" else number
     own = units.read(given)
+    twice = _twice(given)
+    if twice:
+        raise ValueError(f"{text!r} has the unit {twice} twice; write it once, and its square as {twice}²")
     if unit == "rad/s" and given in ("1/min", "/min", "min⁻¹", "min^-1", "min-1", "U/min", "rev/min"):
         raise ValueError(f"{text!r} is in {given}; write '{found[1]} rpm'")
     if not own.alike(units.read(unit)):
@@ -98,6 +106,21 @@ def quantity(text: str, unit: str) -> float | None:
             f"{text!r} is in {given}; it must be in {unit or 'no unit'}, or one that measures the same"
         )
     return number * own.factor
+
+
+def _twice(unit: str) -> str:
+    """What a compound unit names twice above its stroke, or below; "" for nothing."""
+    seen, stroke = set(), ""
+    for sign, name, power in _FACTOR.findall(unit):
+        if not name:
+            stroke = "" if sign == ")" else sign
+            continue
+        below = bool(stroke) != power.lstrip("^*").startswith(("-", "⁻"))
+        if (name, below) in seen:
+            return str(name)
+        seen.add((name, below))
+        stroke = stroke if stroke.endswith("(") else ""
+    return ""
 
 
 def grid(value: Mapping[str, Any]) -> Array:

@@ -63,6 +63,8 @@ def read_model(path: str | os.PathLike[str], **parameters: float | str) -> Model
     file = existing(path, "model file")
     origin = Origin(str(file))
     held = _load(file, origin, (), [])
+    last = max((line for where, line in origin.known.values() if where == str(file)), default=1)
+    origin.known.setdefault(("parts",), (str(file), last))  # where they must be added
     for key in held:
         if key not in (*TABLES, *LISTS, *WORDS):
             with at(origin, (key,)):
@@ -97,6 +99,11 @@ def read_model(path: str | os.PathLike[str], **parameters: float | str) -> Model
         require(isinstance(title, str), "title", title, "it must be a text")
     places = {"equilibrium": origin.told(("equilibrium",))}
     places |= {one.name: origin.told(("analyses", k)) for k, one in enumerate(asked)}
+    for k, table in enumerate(_list(origin, held, "loads")):
+        if "unbalance" in table:  # what turns with it is known with the equilibrium
+            places[f"unbalance at {table['at']} "] = origin.told(("loads", k, "unbalance"))
+        elif isinstance(table.get("force"), list) and table["force"][-1:] != [0.0]:
+            places.setdefault("a constant load turns ", origin.told(("loads", k, "force")))
     return Model(app, asked, state, title, values, shelf.materials, places)
 
 
@@ -119,15 +126,17 @@ def _load(file: Path, origin: Origin, above: tuple[Path, ...], seen: list[Path])
     except tomllib.TOMLDecodeError as error:
         found = re.search(r"at line (\d+)", str(error))
         line = int(found[1]) if found else text.count("\n") + 1
-        raise Located(f"{file}, line {line}, {_near(text, line)}: {error}") from None
+        raise Located(f"{file}, line {line}, {_near(text, line)}: {_told(error)}") from None
     except ValueError as error:  # Python refuses to read a number of thousands of digits
         raise Located(f"{file}: a number has too many digits to be read ({error})") from None
     lines: Mapping[Key, int] = key_lines(text)
     own = Origin(str(file), {key: (str(file), line) for key, line in lines.items()})
+    own.known.setdefault(("format",), (str(file), 1))  # where it must be added
     with at(own, ("format",)):
         version = held.pop("format", None if not above else FORMAT)
         remedy = (
-            f"this is a file of another version; it must be {FORMAT}, that of this package: format = {FORMAT}"
+            f"this is a file of another version; it must be {FORMAT}, that of this package: read it with the "
+            f"bearingdyn that wrote it, or write format = {FORMAT} and mend what is then refused"
         )
         if version is None:
             raise ValueError(f"format is missing; the file must begin with a line format = {FORMAT}")
@@ -145,6 +154,7 @@ def _load(file: Path, origin: Origin, above: tuple[Path, ...], seen: list[Path])
             chain = [*above, file.resolve()]
             if other.resolve() in chain:
                 told = " includes ".join(p.name for p in (*chain[chain.index(other.resolve()) :], other))
+                told += "" if other.name == other.resolve().name else f" (a link to {other.resolve().name})"
                 raise ValueError(f"include is circular: {told}; leave one of them out")
             if other.resolve() in seen:
                 raise ValueError(f"include names {name!r} twice; once is enough")
@@ -158,6 +168,14 @@ def _load(file: Path, origin: Origin, above: tuple[Path, ...], seen: list[Path])
             key = (first, key[1] + shift[first], *key[2:])
         origin.known[key] = place
     return result
+
+
+def _told(error: tomllib.TOMLDecodeError) -> str:
+    """What the parser refuses; of a key or table that is there twice, in the reader's words."""
+    text = str(error)
+    if text.startswith(("Cannot overwrite a value", "Cannot declare", "Duplicate inline table key")):
+        return "this stands in the file already, above; leave one of the two out"
+    return text
 
 
 def _near(text: str, line: int) -> str:

@@ -73,8 +73,12 @@ class SolidFamily:
         (inner, m) common basis within the body.
     M, K
         (s, k, k) matrices of the samples in the common coordinates, k = 6 for each interface and m.
-    rows, rigid, positions
-        (s, rows, k) of the outputs, (s, k, 6) rigid motions, (s, interfaces, 3) references, m.
+    rows
+        (s, rows, k) of the outputs.
+    rigid
+        (s, k, 6) rigid motions.
+    positions
+        (s, interfaces, 3) references, m.
     errors
         Against full models, by their values.
     """

@@ -69,7 +69,10 @@ class Chart:
             at = next((k for k, x in enumerate(shared) if np.array_equal(x, curve.x)), len(shared))
             if at == len(shared):
                 shared.append(curve.x)
-            row: dict[str, Any] = {"name": curve.name, "x": at, "y": floats(curve.y)}
+            base = _base(curve.y)
+            row: dict[str, Any] = {"name": curve.name, "x": at, "y": floats(curve.y - base)}
+            if base:
+                row["base"] = base
             if curve.beside:
                 row["beside"] = [c.name for c in curves].index(curve.beside)
             rows.append(row)
@@ -119,6 +122,14 @@ def thinned(curve: Curve) -> Curve:
             kept.append(int(first))
     at = np.unique([0, *kept, n - 1])
     return Curve(curve.name, curve.x[at], y[at], curve.beside)
+
+
+def _base(y: Array) -> float:
+    """A level that a small motion rides on: taken off a chart's values before they become 32-bit floats."""
+    known = y[np.isfinite(y)]
+    if not known.size or np.ptp(known) >= 1e-2 * np.abs(known).max():
+        return 0.0
+    return float(known[0])
 
 
 def floats(values: Array) -> str:

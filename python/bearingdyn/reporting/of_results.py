@@ -100,10 +100,10 @@ def _march(members: Results) -> str:
         traces = {label: d["record"].sel(channel=name).values for label, d in members.items()}
         scale, unit = _common(list(traces.values()), units[name])
         # runs that settled for different times begin together
-        curves = [
-            Curve(k, d["time"].values - d["time"].values[0], scale * traces[k]) for k, d in members.items()
-        ]
-        charts.append(Chart(name, "time from the first sample, s", unit or "–", curves).html())
+        times = {k: d["time"].values - d["time"].values[0] for k, d in members.items()}
+        pace, clock = _common(list(times.values()), "s")
+        curves = [Curve(k, pace * times[k], scale * traces[k]) for k in members]
+        charts.append(Chart(name, f"time from the first sample, {clock}", unit or "–", curves).html())
         lines = _spectra(members, name)
         if lines:
             factor, text = _common([c.y for c in lines], units[name])
@@ -253,12 +253,15 @@ def _campbell(data: xarray.Dataset) -> str:
 def _steady(data: xarray.Dataset) -> str:
     """One steady motion: a period of its channels, and its lines."""
     charts = []
+    pace, clock = _common([data["time"].values], "s")
     for k, name in enumerate(map(str, data["channel"].values)):
         unit = str(data["unit"].values[k])
         record = data["record"].values[:, k]
         factor, text = _common([record], unit)
         charts.append(
-            Chart(name, "time, s", text, [Curve(name, data["time"].values, factor * record)]).html()
+            Chart(
+                name, f"time, {clock}", text, [Curve(name, pace * data["time"].values, factor * record)]
+            ).html()
         )
         size = np.abs(data["amplitude"].values[:, k])
         order = np.argsort(data["frequency"].values)

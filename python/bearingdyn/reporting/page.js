@@ -16,6 +16,14 @@
     return size >= 1e6 || size < 1e-3 ? x.toExponential(4).replace(/\.?0+e/, "e") : String(+x.toPrecision(5));
   };
 
+  // ticks: as many digits as tell neighbours apart
+  const told = values => {
+    const step = Math.min(...values.slice(1).map((v, k) => Math.abs(v - values[k])));
+    const largest = Math.max(...values.map(Math.abs));
+    const digits = step > 0 && largest > 0 ? Math.min(12, Math.ceil(Math.log10(largest / step)) + 1) : 5;
+    return values.map(v => digits > 5 && largest < 1e6 && largest >= 1e-3 ? String(+v.toPrecision(digits)) : shown(v));
+  };
+
   // ---- axes: from values to [0, 1] and back, and ticks
   const forward = (axis, x) => axis.log ? Math.log10(x) : x;
   const back = (axis, u) => axis.log ? 10 ** u : u;
@@ -38,7 +46,8 @@
     const given = JSON.parse(figure.querySelector("script").textContent);
     const box = figure.querySelector(".plot");
     const read_curves = (held, grids = held.grids.map(floats)) =>
-      held.curves.map((c, k) => ({name: c.name, x: grids[c.x], y: floats(c.y), on: true,
+      held.curves.map((c, k) => ({name: c.name, x: grids[c.x], on: true,
+        y: c.base ? Float64Array.from(floats(c.y), v => v + c.base) : floats(c.y),
         beside: c.beside !== undefined, colour: `var(--c${(c.beside ?? k) % 7})`}));
     const curves = read_curves(given);
     const usable = (axis, v) => Number.isFinite(v) && (!axis.log || v > 0);
@@ -93,18 +102,20 @@
       area = {left, top, w, h};
       const X = u => left + (u - x0) / (x1 - x0) * w, Y = v => top + (y1 - v) / (y1 - y0) * h;
       const svg = make("svg", {width, height, viewBox: `0 0 ${width} ${height}`, "aria-hidden": "true"});
-      for (const u of ticks(given.x, x0, x1, w / 80)) {
+      const across = ticks(given.x, x0, x1, w / 80), names = told(across.map(u => back(given.x, u)));
+      for (const [k, u] of across.entries()) {
         make("line", {x1: X(u), x2: X(u), y1: top, y2: top + h, class: "grid"}, svg);
-        make("text", {x: X(u), y: top + h + 15, "text-anchor": X(u) > left + w - 20 ? "end" : "middle"}, svg).textContent = shown(back(given.x, u));
+        make("text", {x: X(u), y: top + h + 15, "text-anchor": X(u) > left + w - 20 ? "end" : "middle"}, svg).textContent = names[k];
       }
-      for (const v of ticks(given.y, y0, y1, h / 40)) {
+      const up = ticks(given.y, y0, y1, h / 40), heights = told(up.map(v => back(given.y, v)));
+      for (const [k, v] of up.entries()) {
         make("line", {x1: left, x2: left + w, y1: Y(v), y2: Y(v), class: "grid"}, svg);
-        make("text", {x: left - 5, y: Y(v) + 4, "text-anchor": "end"}, svg).textContent = shown(back(given.y, v));
+        make("text", {x: left - 5, y: Y(v) + 4, "text-anchor": "end"}, svg).textContent = heights[k];
       }
       make("rect", {x: left, y: top, width: w, height: h, class: "frame"}, svg);
       const clip = make("svg", {x: left, y: top, width: w, height: h, viewBox: `${left} ${top} ${w} ${h}`}, svg);
       for (const c of curves) if (c.on) {
-        let d = "", pen = false, at = null, low = 0, high = 0, last = 0, x = "";
+        let d = "", lone = "", pen = false, at = null, low = 0, high = 0, last = 0, x = "";
         const rest = () => pen && low < high ? `L${x} ${low.toFixed(1)}L${x} ${high.toFixed(1)}L${x} ${last.toFixed(1)}` : "";
         for (let i = 0; i < c.x.length; i++) {
           if (!usable(given.x, c.x[i]) || !usable(given.y, c.y[i])) { d += rest(); pen = false; continue; }
@@ -113,6 +124,8 @@
           if (!in_view) { d += rest(); pen = false; continue; }
           const p = X(u), q = Y(forward(given.y, c.y[i]));
           if (given.dots || c.x.length === 1) { d += `M${p.toFixed(1)} ${q.toFixed(1)}h.01`; continue; }
+          const beside = [i - 1, i + 1].some(k => usable(given.x, c.x[k]) && usable(given.y, c.y[k]));
+          if (!beside) { d += rest(); pen = false; lone += `M${p.toFixed(1)} ${q.toFixed(1)}h.01`; continue; }
           const column = Math.floor(2 * p);
           if (pen && column === at) {  // of what falls into half a pixel, its lowest, highest and last
             low = Math.min(low, q); high = Math.max(high, q); last = q;
@@ -124,6 +137,7 @@
         }
         d += rest();
         make("path", {d, class: given.dots || c.x.length === 1 ? "dots" : c.beside ? "curve beside" : "curve", style: `stroke:${c.colour}`}, clip);
+        if (lone) make("path", {d: lone, class: "dots", style: `stroke:${c.colour}`}, clip);
       }
       make("text", {x: left + w / 2, y: height - 6, "text-anchor": "middle", class: "label"}, svg).textContent = given.x.label;
       make("text", {x: left, y: 13, class: "label"}, svg).textContent = given.y.label;

@@ -202,26 +202,43 @@ def _fill(
             content += shapes_html(eq, first)
         kind = kind_of(first)
         page.add(name if name == kind or not kind else f"{name}: {kind}", content)
-    _provenance(page, eq, results or {})
+    _provenance(page, eq, results or {}, tell)
 
 
-def _provenance(page: _Page, eq: Equilibrium | None, results: Mapping[str, xarray.Dataset]) -> None:
+def _provenance(
+    page: _Page,
+    eq: Equilibrium | None,
+    results: Mapping[str, xarray.Dataset],
+    tell: Callable[[str], object],
+) -> None:
     """What made the results, and whether it was this machine and this version."""
     own = inputs_of(eq.system.inputs).get("inputs_hash", "") if eq is not None else ""
     now = versions()["bearingdyn"]
     told, makers = [], set[str]()
+
+    def doubt(text: str, remedy: str) -> None:
+        page.doubts[text] = remedy
+        tell(f"{text} {remedy}")
+
     for name, data in results.items():
         made, when, inputs = (str(data.attrs.get(k, "")) for k in ("made_by", "made_at", "inputs_hash"))
         makers.add(made)
         told.append((name, kind_of(data), when, inputs))
         if own and inputs and inputs != own:
-            page.doubts[f"{name!r} was computed from other inputs than those of the machine shown here."] = (
-                "Report it with the model that it was computed from, or compute it anew."
+            doubt(
+                f"{name!r} was computed from other inputs than those of the machine shown here.",
+                "Report it with the model that it was computed from, or compute it anew.",
             )
         by = made.partition(",")[0].removeprefix("bearingdyn ")
         if by and by != now:
-            page.doubts[f"{name!r} was computed by version {by}; this page is made by {now}."] = (
-                "The changelog says what changed; compute it anew where it matters."
+            doubt(
+                f"{name!r} was computed by version {by}; this page is made by {now}.",
+                "The changelog says what changed; compute it anew where it matters.",
+            )
+        if not by:
+            doubt(
+                f"{name!r} does not say what computed it: this package, its version and inputs, or another.",
+                "Report a result as an analysis returns it, or as bd.save wrote it.",
             )
     page.add(
         "Where it comes from",

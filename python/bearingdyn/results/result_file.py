@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 PARTS = "part"
 # its name where results have parts of a machine
 PARTS_BESIDE = "real_imaginary"
+_REMEDY = "give a file that bd.save or the stream of a march wrote, or compute it again"
 
 
 def save(results: xarray.Dataset | Mapping[str, xarray.Dataset], path: str | os.PathLike[str]) -> None:
@@ -132,7 +133,7 @@ def open_result(path: str | os.PathLike[str], group: str = "") -> xarray.Dataset
             hint = meant(group, known) if known else "it is one result: leave group out"
             raise ValueError(f"{os.fspath(path)} has no result {group!r}; {hint}") from None
         place = f"group {group!r} of " if group else ""
-        raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}") from None
+        raise ValueError(f"{place}{os.fspath(path)} cannot be read as a result: {error}; {_REMEDY}") from None
     if not group and not found.variables and groups(path):
         raise ValueError(f"{os.fspath(path)} holds several results; name one of them: {groups(path)}")
     return found
@@ -166,7 +167,7 @@ def groups(path: str | os.PathLike[str]) -> list[str]:
         with h5netcdf.File(path, "r") as file:
             return sorted(_holding(file, ""))
     except Exception as error:  # as in open_result
-        raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+        raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}; {_REMEDY}") from None
 
 
 def _check_content(path: str | os.PathLike[str]) -> None:
@@ -181,7 +182,7 @@ def _check_content(path: str | os.PathLike[str]) -> None:
         with h5py.File(path, "r") as file:
             file.visititems(lambda name, item: _check_texts(name, item, size))
     except Exception as error:  # as in open_result
-        raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}") from None
+        raise ValueError(f"{os.fspath(path)} cannot be read as a result: {error}; {_REMEDY}") from None
 
 
 def _check_texts(name: str, item: Any, size: int) -> None:

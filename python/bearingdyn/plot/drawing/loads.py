@@ -166,6 +166,6 @@ def _unbalance(
     told = f"unbalance {load.moment * 1e6:.4g} g mm"
     told += f", {math.degrees(load.phase):.4g}° from x" if load.phase else ", towards x"
     ax.annotate(
-        told, centre, xytext=(-8 if left else 8, 8), textcoords="offset points", color=RED, fontsize=8.5,
+        told, centre, xytext=(-8 if left else 8, 13), textcoords="offset points", color=RED, fontsize=8.5,
         va="center", ha="right" if left else "left", zorder=12, bbox=HALO,
     )  # fmt: skip
