@@ -42,7 +42,8 @@ class Cholesky:
         if not np.array_equal(first, np.arange(A.shape[0])):  # the library asks for every diagonal entry
             raise np.linalg.LinAlgError("the matrix is not positive definite: its diagonal has gaps")
         starts, columns = (np.asarray(x + 1, dtype=np.int32) for x in (upper.indptr, upper.indices))
-        known, error = _analysed(starts, columns), 0
+        # a handle that has solved on one thread dies in factors on several: an analysis is shared on one alone
+        known, error = _analysed(starts, columns) if _alone() else None, 0
         self._call = _Call(starts, columns) if known is None else known
         if known is None:
             error = self._call(ANALYSE)
@@ -70,6 +71,7 @@ class _Call:
 
     def __init__(self, starts: Any, columns: Any) -> None:
         self.data, self.starts, self.columns = np.ones(columns.size), starts, columns
+        self.alone = _alone()
         self.handle, self.settings = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
         for place, value in SETTINGS.items():
             self.settings[place - 1] = value
@@ -97,6 +99,11 @@ class _Call:
 _idle: list[_Call] = []
 
 
+def _alone() -> bool:
+    """Whether the library has one thread, as in a study's workers."""
+    return bool(_library().MKL_Get_Max_Threads() == 1)
+
+
 def _analysed(starts: Any, columns: Any) -> _Call | None:
     """An idle call of this pattern, which is idle no more; None where there is none."""
     for call in list(_idle):
@@ -113,7 +120,7 @@ def _rest(call: _Call) -> None:
     """Free a call's factors, and keep what was found of its pattern for the next of the same."""
     call(FREE_FACTORS)
     call.data = np.zeros(0)
-    if call.columns.size > LARGEST_KEPT:
+    if call.columns.size > LARGEST_KEPT or not (call.alone and _alone()):
         call(FREE)
         return
     _idle.append(call)
