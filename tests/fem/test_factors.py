@@ -58,7 +58,7 @@ class TestPardiso:
 
     def test_the_next_of_a_pattern_has_the_numbers_of_the_first(self, solid):
         """Its analysis is kept, and what comes of it is the same to the last bit; two at once are two."""
-        K, M = solid
+        K = solid[0]
         b = np.random.default_rng(2).standard_normal((K.shape[0], 2))
         other = K.copy()
         scale = np.linspace(1.0, 1.2, K.shape[0])  # of rows and columns, so that it stays symmetric
