@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import scipy.sparse
 
-from bearingdyn.fem import assemble_solid, box_mesh, factorise, lowest_modes
+from bearingdyn.fem import assemble_solid, box_mesh, factorise, lowest_modes, pardiso
 from bearingdyn.fem import factors as room
 from bearingdyn.fem.pardiso import library_path
 from bearingdyn.material import STEEL
@@ -55,6 +55,31 @@ class TestPardiso:
             assert x.shape == load.shape
             # condition of a solid of bricks, some 1e7, times rounding
             assert np.abs(x - y).max(initial=0.0) <= 1e-9 * np.abs(y).max(initial=0.0)
+
+    def test_the_next_of_a_pattern_has_the_numbers_of_the_first(self, solid):
+        """Its analysis is kept, and what comes of it is the same to the last bit; two at once are two."""
+        K = solid[0]
+        b = np.random.default_rng(2).standard_normal((K.shape[0], 2))
+        other = K.copy()
+        scale = np.linspace(1.0, 1.2, K.shape[0])  # of rows and columns, so that it stays symmetric
+        other.data = K.data * scale[K.indices] * np.repeat(scale, np.diff(K.indptr))
+        fresh = factorise(other)
+        wanted = fresh.solve(b)
+        one = factorise(K)
+        first = one.solve(b)
+        del one, fresh
+        gc.collect()
+        kept = len(pardiso._idle)
+        assert kept >= 1
+        again, beside = factorise(K), factorise(other)
+        assert np.array_equal(again.solve(b), first)
+        assert np.array_equal(beside.solve(b), wanted)
+        assert np.array_equal(again.solve(b), first)
+        del again, beside
+        for n in (7000, 6900, 6800):  # other patterns push the oldest out
+            factorise(K[:n][:, :n])
+            gc.collect()
+            assert len(pardiso._idle) <= pardiso.KEPT
 
     def test_factors_do_not_disturb_each_other(self, solid):
         K, M = solid

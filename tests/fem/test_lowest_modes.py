@@ -47,6 +47,44 @@ def test_modes_of_equal_frequency_are_all_found_however_many(copies: int) -> Non
     np.testing.assert_allclose(below, found, rtol=1e-9)
 
 
+@pytest.mark.parametrize("low", [4, 6, 8])
+def test_none_is_missed_where_the_first_block_holds_one_part_alone(low: int) -> None:
+    """Chains that do not touch, begun from the lowest modes of one of them: the others are still found."""
+    copies, n = 6, 160
+    K = scipy.sparse.kron(scipy.sparse.eye(copies), chain(n), format="csr")
+    exact = 2.0 * np.sin(np.arange(1, 10) * math.pi / (2 * (n + 1)))
+    place = np.arange(1, n + 1)[:, None] * np.arange(1, low + 1) * math.pi / (n + 1)
+    near = np.zeros((copies * n, low))
+    near[:n] = np.sin(place)
+    limit = (exact[low - 1] + 1e-3 * (exact[low] - exact[low - 1])) / (2 * math.pi)
+    found, _ = lowest_modes(K, scipy.sparse.eye(copies * n), f_max=limit, near=near)
+    # round-off of ω² of 4e-4 against springs of one
+    np.testing.assert_allclose(2 * math.pi * found, np.repeat(exact[:low], copies), rtol=1e-9)
+
+
+def test_vectors_near_the_modes_save_steps_and_change_nothing() -> None:
+    n = 900
+    K, M = chain(n), scipy.sparse.eye(n, format="csc")
+    exact = 2.0 * np.sin(np.arange(1, 8) * math.pi / (2 * (n + 1)))
+    place = np.arange(1, n + 1)[:, None] * np.arange(1, 7) * math.pi / (n + 1)
+    near = np.sin(place) + 1e-3 * np.random.default_rng(4).standard_normal((n, 6))
+    lu, steps = factorise(K), []
+
+    class Counted:
+        def solve(self, b):
+            steps.append(b.shape[1])
+            return lu.solve(b)
+
+    limit = 0.5 * (exact[4] + exact[5]) / (2 * math.pi)
+    plain, shapes = lowest_modes(K, M, f_max=limit, lu=Counted())
+    without = sum(steps)
+    steps.clear()
+    found, same = lowest_modes(K, M, f_max=limit, lu=Counted(), near=near)
+    assert len(steps) < without
+    np.testing.assert_allclose(found, plain, rtol=1e-9)  # round-off of ω² of 1e-5 against springs of one
+    np.testing.assert_allclose(same, shapes, atol=1e-7)  # a residual of 1e-10 over relative gaps of .01
+
+
 def test_pairs_are_those_of_arpack_and_as_many_as_pivots_are_negative() -> None:
     """A membrane of unequal sides and masses: the same ω² by ARPACK, and none below them by Sylvester."""
     A, B = chain(37), chain(41)

@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 from bearingdyn.fem import (
     FEMatrices,
     SolidMesh,
+    assemble_elastic,
     assemble_solid,
     block_with_bore,
     box_mesh,
@@ -32,6 +33,7 @@ from bearingdyn.fem import (
 )
 from bearingdyn.fem.meshes.solid_element import BUBBLES, TET10, WEDGE15, points, shapes
 from bearingdyn.fem.meshes.solid_mesh import second_order
+from bearingdyn.fem.node_pairs import NodePairs
 from bearingdyn.fem.solid_matrices import _with_bubble
 from bearingdyn.material import STEEL, Elastic
 from bearingdyn.notice import FoldedMesh
@@ -505,3 +507,35 @@ def test_matrices_from_elsewhere_that_are_wrong_are_refused(model, tmp_path):
     ):
         with pytest.raises(ValueError, match=message):
             read()
+
+
+@pytest.mark.parametrize(("element", "soft"), [("hex20", False), ("hex20", True), ("hex27", True)])
+def test_stiffness_of_a_material_at_once_is_that_of_its_parts(element, soft):
+    lines = [np.linspace(0, 1, 3), np.linspace(0, 0.7, 3), np.linspace(0, 0.4, 4)]
+    mesh = box_mesh(*lines, element=element)
+    parts = assemble_solid(mesh, incompressible=soft)
+    mass, stiffness = assemble_elastic(mesh, None, STEEL, incompressible=soft)
+    expected = parts.stiffness(STEEL)
+    # round-off of sums of some ten terms
+    assert abs(stiffness - expected).max() <= 1e-14 * abs(expected).max()
+    assert abs(mass - STEEL.density * parts.mass).max() == 0.0
+
+
+def test_meshes_of_one_topology_share_their_pattern_and_others_do_not():
+    def pairs(elements):
+        return NodePairs.of([elements], int(elements.max()) + 1)
+
+    mesh = box_mesh(*[np.linspace(0, 1, 3)] * 3)
+    longer = box_mesh(np.linspace(0, 1, 3), np.linspace(0, 1, 3), np.linspace(0, 2, 3))
+    assert pairs(mesh.elements) is pairs(longer.elements)
+    # as many elements and nodes, joined otherwise
+    turned = mesh.elements[:, ::-1].copy()
+    turned[0] = np.roll(turned[0], 1)
+    other = (turned + 1) % (turned.max() + 1)
+    fresh = pairs(other)
+    assert fresh is not pairs(mesh.elements)
+    K = assemble_solid(longer).stiffness(STEEL)
+    K0 = assemble_solid(mesh).stiffness(STEEL)
+    again = assemble_solid(longer).stiffness(STEEL)
+    assert (K != again).nnz == 0  # what is kept is not written into
+    assert abs(K - K0).max() > 0.1 * abs(K).max()

@@ -140,3 +140,17 @@ def test_what_is_short_is_written_out_whole():
 def test_what_cannot_be_kept_even_so_is_told_by_one_hash():
     """Ten thousand entries of ten bytes: nothing in it is long, and all of it is."""
     assert json.loads(fingerprint.text({f"{k:08d}": k for k in range(10_000)})).keys() == {"sha256"}
+
+
+def test_large_frozen_arrays_are_told_once_and_each_by_its_content():
+    rng, told = np.random.default_rng(0), []
+    for _ in range(20):  # of one size, so that a new one takes the place of a lost one
+        array = rng.standard_normal(100)
+        frozen = array.copy()
+        frozen.setflags(write=False)
+        told.append(fingerprint.fingerprint(frozen))
+        assert told[-1] == fingerprint.fingerprint(frozen) == fingerprint.fingerprint(array)
+        array[0] += 1.0  # one that may be written into is told anew
+        assert fingerprint.fingerprint(array) != told[-1]
+        del array, frozen
+    assert len(set(told)) == 20
