@@ -56,7 +56,21 @@ class TestPardiso:
             # condition of a solid of bricks, some 1e7, times rounding
             assert np.abs(x - y).max(initial=0.0) <= 1e-9 * np.abs(y).max(initial=0.0)
 
-    def test_the_next_of_a_pattern_has_the_numbers_of_the_first(self, solid):
+    @pytest.fixture
+    def one_thread(self):
+        """The library on one thread, as in a study's workers."""
+        library = pardiso._library()
+        before = library.MKL_Set_Num_Threads_Local(1)
+        yield
+        library.MKL_Set_Num_Threads_Local(before)
+
+    def test_one_after_another_on_all_threads(self, solid):
+        """The process ended here: a handle that had solved on one thread took no factors on several."""
+        b = np.ones(solid[0].shape[0])
+        told = {factorise(solid[0]).solve(b).tobytes() for _ in range(3)}
+        assert len(told) == 1
+
+    def test_the_next_of_a_pattern_has_the_numbers_of_the_first(self, solid, one_thread):
         """Its analysis is kept, and what comes of it is the same to the last bit; two at once are two."""
         K = solid[0]
         b = np.random.default_rng(2).standard_normal((K.shape[0], 2))

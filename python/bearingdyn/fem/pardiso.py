@@ -83,14 +83,15 @@ class _Call:
         columns = ctypes.c_int32(1 if b is None or b.ndim == 1 else b.shape[1])
         library = _library()
         # of this thread alone: in a solution, which memory bounds, a second thread mostly waits, and busily
-        before = library.MKL_Set_Num_Threads_Local(1 if phase == SOLVE else 0)
+        before = library.MKL_Set_Num_Threads_Local(1) if phase == SOLVE else None
         library.pardiso(
             self.handle.ctypes, *map(ctypes.byref, (one, one, kind, ctypes.c_int32(phase), n)),
             self.data.ctypes, self.starts.ctypes, self.columns.ctypes, None, ctypes.byref(columns),
             self.settings.ctypes, ctypes.byref(silent), None if b is None else b.ctypes,
             None if x is None else x.ctypes, ctypes.byref(error),
         )  # fmt: skip
-        library.MKL_Set_Num_Threads_Local(before)
+        if before is not None:
+            library.MKL_Set_Num_Threads_Local(before)
         return error.value
 
 
