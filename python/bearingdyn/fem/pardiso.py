@@ -42,7 +42,7 @@ class Cholesky:
         if not np.array_equal(first, np.arange(A.shape[0])):  # the library asks for every diagonal entry
             raise np.linalg.LinAlgError("the matrix is not positive definite: its diagonal has gaps")
         starts, columns = (np.asarray(x + 1, dtype=np.int32) for x in (upper.indptr, upper.indices))
-        # a handle that has solved on one thread dies in factors on several: an analysis is shared on one alone
+        # a handle that has solved on one thread dies in factors on several: it serves again on one alone
         known, error = _analysed(starts, columns) if _alone() else None, 0
         self._call = _Call(starts, columns) if known is None else known
         if known is None:
