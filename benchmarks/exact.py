@@ -54,7 +54,7 @@ class Marching:
     def us(self, state: np.ndarray) -> tuple[np.ndarray, float, float]:
         """State behind TIMED steps, microseconds and bearing evaluations of each."""
         began = time.process_time()
-        _, after, report = self.march._core_march(self.model, state, TIMED, 10)
+        _, after, report = self.march.core_march(self.model, state, TIMED, 10)
         return after, 1e6 * (time.process_time() - began) / TIMED, report.iterations / TIMED
 
 
@@ -103,7 +103,7 @@ def measure() -> dict[str, Any]:
     eq = bd.equilibrium(motor.motor(motor.designs(low)[2], motor.RADIAL))
     timed = {"newmark": Marching(eq, "newmark", 2.5e-6), "exact": Marching(eq, "exact", 1e-5)}
     states = {
-        m: one.march._core_march(one.model, one.first, 2000, 10, start=True)[1] for m, one in timed.items()
+        m: one.march.core_march(one.model, one.first, 2000, 10, start=True)[1] for m, one in timed.items()
     }
     least: dict[str, float] = dict.fromkeys(timed, float("inf"))
     evaluations: dict[str, float] = {}

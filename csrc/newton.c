@@ -18,6 +18,8 @@ enum { GRAZING = 10 };
 /* Corrections with held balls: so many in which all that must move do, then one ball at a time (the first, which
  * comes to an end where W is a P-matrix: Murty 1974). */
 enum { TOGETHER = 20, HELD = 400 };
+/* Of the tolerance, what an exact step's last correction may leave by the rate of the one before it, and that rate. */
+static const double left_over = 0.1, steep = 0.01;
 /* A position is known to so many times its rounding error. */
 static const double rounding = 16.0 * DBL_EPSILON;
 
@@ -172,12 +174,20 @@ static int worst_bearing(const bd_model *model, const bd_work *work)
     return worst;
 }
 
+/* What the next correction leaves by the rate of the last, where that is steep; else infinite. An exact step is long:
+ * its guess is too far off for two evaluations, and a third would only see what is known. */
+static double expected_rest(double before, double residual)
+{
+    return residual <= steep * before ? residual / before * residual : INFINITY;
+}
+
 static bd_status iterate(const bd_model *model, bd_work *work, bd_state *state, bd_report *report)
 {
     const bd_scheme *scheme = &work->scheme;
     const size_t m = (size_t)model->coefs;
     const double *inverse = state->inverse;
     bool fresh = state->clock.inverse_set, holds = false;
+    double before = 0.0;
     int limit = scheme->max_iterations, held = 0;
 
     for (int iteration = 0; iteration < limit; iteration++) {
@@ -193,6 +203,13 @@ static bd_status iterate(const bd_model *model, bd_work *work, bd_state *state, 
         }
         double least = scheme->tolerance * scale;
         bool converged = residual <= least;
+        if (work->exact && fresh && !holds && !converged) {
+            const double rest = expected_rest(before, residual);
+            converged = rest <= left_over * least;
+            if (converged)
+                report->residual = rest / scale;
+            before = residual;
+        }
         if (holds) {
             least = fmax(least, noise(model, work));
             converged = hold(model, work, least, residual, held++ < TOGETHER);

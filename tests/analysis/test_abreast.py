@@ -93,7 +93,7 @@ def test_each_case_is_its_own_march_to_the_bit(
 def test_streams_and_what_resumes_them_too(
     cases: list[dict[str, Any]], groups: list[int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("bearingdyn.analysis.march.CHUNK_STEPS", 250)
+    monkeypatch.setattr("bearingdyn.analysis.march_pieces.CHUNK_STEPS", 250)
     plain = [bd.transient(**case) for case in cases[:5]]
     paths = [tmp_path / f"{k}.bdrun" for k in range(5)]
     streamed = bd.transients(

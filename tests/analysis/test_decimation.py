@@ -118,7 +118,7 @@ def test_resumed_and_streamed_marches_are_the_same_bits(
         np.testing.assert_allclose(np.concatenate([first.time, second.time]), whole.time, rtol=1e-14)
         np.testing.assert_array_equal(second.state, whole.state)
     # pieces of 450 steps: 106 steps are looked back and ahead
-    monkeypatch.setattr("bearingdyn.analysis.march.CHUNK_STEPS", 450)
+    monkeypatch.setattr("bearingdyn.analysis.march_pieces.CHUNK_STEPS", 450)
     path = tmp_path / "a.run"
     np.testing.assert_array_equal(run(start, settle=settle, stream=path).record, whole.record)
     data = path.read_bytes()

@@ -16,13 +16,14 @@ from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
 from bearingdyn.analysis.held_forces import held_growth, phi
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.recordable_channels import channel_of
 from bearingdyn.application import Application
 from bearingdyn.material import Payne
 from bearingdyn.notice import GrowingStep
 from bearingdyn.parts import RigidBody
 from bearingdyn.results import open_result
 from bearingdyn.system import LoadTerm, System, assemble
-from rotors import BEARING, RUBBER, friswell, motor, oscillator
+from rotors import BEARING, RUBBER, friswell, held_jis_rotor, motor, oscillator
 
 SPEED = 500.0  # rad/s
 RECORD = ["shaft.end.y", "shaft.end.y.velocity", "ring.centre.x.velocity", "left.force.y"]
@@ -83,6 +84,23 @@ def test_newtons_matrix_is_of_the_steps_own_order(state: Equilibrium) -> None:
     _, _, later = core.march(model, after, march.stepping, 100, 1, modes=modes)
     assert (first.refreshes, later.refreshes) == (3, 0)
     assert later.iterations <= 2.1 * later.steps
+
+
+def test_an_evaluation_that_would_only_confirm_is_spared_and_the_tolerance_kept() -> None:
+    march = March.of(equilibrium(held_jis_rotor()), speed=300.0, dt=2e-5, steps=3, method="exact")
+    model = march.model([channel_of(march.modal, "rotor.centre.y")[0]])
+    modes = ExactModes.of(march.modal, 300.0).step(2e-5, 3)
+    evaluations, record = {}, {}
+    for tolerance in (1e-11, 1e-15):
+        stepping = replace(march.stepping, scheme=replace(march.stepping.scheme, tolerance=tolerance))
+        found, _, report = core.march(model, march.start(model), stepping, 2000, 1, start=True, modes=modes)
+        evaluations[tolerance], record[tolerance] = report.iterations / report.steps, found[:, 0]
+    # the third of most steps sees what the first two told: 2.94 with it
+    assert evaluations[1e-11] < 2.1
+    assert evaluations[1e-15] > 2.5
+    # a tenth of the tolerance may be left in a step's force, and 2000 steps add what they leave
+    apart = np.abs(record[1e-11] - record[1e-15]).max() / np.ptp(record[1e-15])
+    assert apart < 2000 * 0.1 * 1e-11
 
 
 @pytest.mark.parametrize("speed", [0.0, 400.0])

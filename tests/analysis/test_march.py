@@ -102,7 +102,7 @@ def test_an_audited_march_that_overflows_keeps_what_it_computed() -> None:
 def test_an_audit_that_overflows_between_two_chunks_ends_the_march(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("bearingdyn.analysis.march.CHUNK_STEPS", 5)
+    monkeypatch.setattr("bearingdyn.analysis.march_pieces.CHUNK_STEPS", 5)
     path = tmp_path / "run.bdrun"
     with pytest.raises(bd.SolverError, match="no longer finite") as caught:
         unstable(audit=True, stream=path)

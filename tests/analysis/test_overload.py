@@ -11,6 +11,7 @@ import bearingdyn as bd
 from bearingdyn import run_file
 from bearingdyn.analysis import ball_channels, overload
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.march_pieces import pieces
 from bearingdyn.notice import BearingWarning
 
 BALLS = {"Z": 9, "Dw": 7.94e-3, "Dpw": 39.04e-3, "fi": 0.52, "fo": 0.53, "clearance": 10e-6}
@@ -64,14 +65,14 @@ def test_the_peaks_are_the_largest_of_every_recorded_step(isa):
     channels = [*ball_channels(eq, "a"), *ball_channels(eq, "b")]
     rows = march(eq, record=channels, scheme=scheme)["record"].values
     model = prepared.modal.model([])
-    *_, (_, _, report) = prepared.pieces(model, prepared.start(model), start=True)
+    *_, (_, _, report) = pieces(prepared, model, prepared.start(model), start=True)
     np.testing.assert_allclose(report.peaks, [rows[:, :9].max(), rows[:, 9:].max()], rtol=1e-15)
 
 
 @pytest.mark.filterwarnings("ignore::bearingdyn.notice.CoarseStep")
 def test_a_stream_keeps_the_peaks_of_the_chunks_before(tmp_path, monkeypatch):
     """Cut after the blow and gone on with, the march warns of what came before the cut."""
-    monkeypatch.setattr("bearingdyn.analysis.march.CHUNK_STEPS", 500)
+    monkeypatch.setattr("bearingdyn.analysis.march_pieces.CHUNK_STEPS", 500)
     path = tmp_path / "run.bdrun"
     with pytest.warns(BearingWarning, match="a ball bore"):
         march(rotor(1.5e5), stream=path)

@@ -48,7 +48,7 @@ def start() -> bd.Equilibrium:
 
 @pytest.fixture(autouse=True)
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("bearingdyn.analysis.march.CHUNK_STEPS", 700)
+    monkeypatch.setattr("bearingdyn.analysis.march_pieces.CHUNK_STEPS", 700)
 
 
 def same(a: xarray.Dataset, b: xarray.Dataset) -> bool:
@@ -111,7 +111,7 @@ CHILD = """
 import sys
 sys.path[:0] = [{tests!r}, {here!r}]
 import test_streaming as t
-import bearingdyn.analysis.march as march
+import bearingdyn.analysis.march_pieces as march
 march.CHUNK_STEPS = 700
 print("ready", flush=True)
 t.bd.transient(t.rotor(), stream={path!r}, **t.ARGUMENTS)

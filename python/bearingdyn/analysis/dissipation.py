@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from bearingdyn import core
 from bearingdyn.analysis.equilibrium import Equilibrium
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.march_pieces import ended, pieces
 from bearingdyn.analysis.recordable_channels import CoreChannel
 from bearingdyn.application import Application
 from bearingdyn.checks import one_speed
@@ -113,8 +114,8 @@ def dissipation(
     energy, last, done = np.zeros(len(losing)), np.zeros((0, len(losing))), 0
     # the power of the last state before the record is the first that counts
     with told(progress, "step") as tell:
-        for rows, _, report in march.pieces(
-            model, state, start=True, size=PIECE, keep_settled=True, progress=tell
+        for rows, _, report in pieces(
+            march, model, state, start=True, size=PIECE, keep_settled=True, progress=tell
         ):
             power = np.vstack([last, _powers(losing, sizes, rows)])
             if len(power):
@@ -141,7 +142,7 @@ def dissipation(
         },
         {"part": ([s.name for s in losing], "")},
     )
-    return march.ended(result, replace(report, steps=done))
+    return ended(march, result, replace(report, steps=done))
 
 
 def sinks(system: System) -> list[Sink]:

@@ -1,19 +1,17 @@
-"""A march, prepared once: checks, modes, start state, fingerprint, pieces and what is raised at its end."""
+"""A march, prepared once: checks, modes, start state, the core's step and fingerprints."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bearingdyn import core, fingerprint, run_file
+from bearingdyn import core, fingerprint
 from bearingdyn.analysis.abreast import GATHERING
-from bearingdyn.analysis.decimation import Decimator, half_length
 from bearingdyn.analysis.displaced_start import warn_if_start_is_coarse
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.exact_step import ExactModes
@@ -24,11 +22,9 @@ from bearingdyn.analysis.speed_profile import drive_of
 from bearingdyn.analysis.static_balance import Statics
 from bearingdyn.analysis.step_size import step_error, warn_if_coarse, warn_if_growing
 from bearingdyn.application import Application
-from bearingdyn.bearing import OPEN_SIDE_REMEDY
 from bearingdyn.checks import instance, one_of, positive, require, whole
-from bearingdyn.notice import NothingPushes, OpenSideWarning, warn
+from bearingdyn.notice import NothingPushes, warn
 from bearingdyn.plausible_ranges import plausible
-from bearingdyn.progress import part_of
 from bearingdyn.results import inputs_of
 from bearingdyn.system import Contacts, System, system_of
 from bearingdyn.types import Array
@@ -37,13 +33,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-# words of a state: steps since its clock began, and their size (csrc/state.c)
-STEPS, STEP = 1, 2
 METHODS = ("newmark", "exact")
 CoreMarch = tuple[Array, Array, core.Report]
-NEVER = 2**62  # a decimation that keeps nothing
-# steps between two chunks on the disk: a tenth of a second or so, which a kill may cost
-CHUNK_STEPS = 50_000
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -252,7 +243,7 @@ class March:
         """What the core needs of them for the step."""
         return self._modes.step(self.stepping.dt, self.stepping.scheme.hold)
 
-    def _core_march(self, model: core.Model, state: Array, steps: int, every: int, **how: Any) -> CoreMarch:
+    def core_march(self, model: core.Model, state: Array, steps: int, every: int, **how: Any) -> CoreMarch:
         """The core's march by this method, side by side with others where a gathering says so."""
         modes = None if self.method == "newmark" else self._step
         gathering = GATHERING.get()
@@ -375,224 +366,6 @@ class March:
                 **({} if self.method == "newmark" else {"method": self.method}),
             }
         )
-
-    def pieces(
-        self,
-        model: core.Model,
-        state: Array,
-        *,
-        start: bool,
-        size: int | None = None,
-        done: int = 0,
-        keep_settled: bool = False,
-        progress: core.Progress | None = None,
-    ) -> Iterator[tuple[Array, Array, core.Report]]:
-        """March piece by piece, and say of each its rows (n, channels), the state after it, and its report.
-
-        Ends behind the piece whose report says that it could not go on.
-
-        Parameters
-        ----------
-        model, state
-            In modal coordinates.
-        start
-            Whether the acceleration is first made to satisfy the equation of motion.
-        size
-            Most steps of a piece; None for no limit.
-        done
-            Steps already behind the state, those before the record included.
-        keep_settled
-            Whether the last state before the record is its first row.
-        progress
-            Told of the steps done and of all there are.
-        """
-        status, told = 0, False
-        while status == 0 and (done < self.total or start):
-            settling = done < self.settle
-            left = (self.settle if settling else self.total) - done
-            before = (self.settle or NEVER) if keep_settled else NEVER
-            rows, state, report = self._core_march(
-                model,
-                state,
-                left if size is None else min(left, size),
-                before if settling else self.decimate,
-                start=start,
-                progress=part_of(progress, done, self.total),
-            )
-            start, status, done = False, report.status, done + report.steps
-            if report.open_steps and not told:
-                told = True
-                self._tell_open_side(report)
-            yield rows, state, report
-
-    def _tell_open_side(self, report: core.Report) -> None:
-        """Warn of the first step in which a bearing did not hold together on its shoulder."""
-        name = self.system.bearings[report.open_bearing].name
-        warn(
-            f"bearing {name!r}: from t = {report.open_t:.6g} s on, in {report.open_steps} of the "
-            f"{report.steps} steps marched, balls are pressed onto its open side, where no shoulder holds "
-            f"them, or none of them onto its shoulder; {OPEN_SIDE_REMEDY}",
-            OpenSideWarning,
-        )
-
-    def filtered(
-        self,
-        model: core.Model,
-        state: Array,
-        sieve: Decimator,
-        *,
-        start: bool,
-        size: int | None = None,
-        done: int = 0,
-        progress: core.Progress | None = None,
-    ) -> Iterator[tuple[Array, Array, core.Report]]:
-        """As `pieces`, with the rows low-passed; what is marched ahead of a piece for that is thrown away."""
-        status, size = 0, max(size or CHUNK_STEPS, 4 * sieve.half)
-        blind = max(self.settle - sieve.half, 0)  # so many steps leave no trace in the record
-        told = False
-        while status == 0 and (done < self.total or start):
-            goal = next((g for g in (blind, self.settle) if done < g), self.total)
-            every = NEVER if goal == blind and done < blind else 1
-            rows, state, report = self._core_march(
-                model,
-                state,
-                min(goal - done, size),
-                every,
-                start=start,
-                progress=part_of(progress, done, self.total),
-            )
-            start, status, done = False, report.status, done + report.steps
-            if every == NEVER:
-                sieve.skip(report.steps)
-            else:
-                sieve.add(rows)
-            if done <= self.settle:
-                sieve.drop()
-            if report.open_steps and not told:
-                told = True
-                self._tell_open_side(report)
-            ahead, after = rows[:0], status
-            if done > self.settle and status in (0, core.INTERRUPTED):
-                ahead, _, looked = self._core_march(model, state, sieve.half, 1)
-                after = core.INTERRUPTED if looked.status == core.INTERRUPTED else status
-            report, status = replace(report, status=after), after
-            yield sieve.take(ahead), state, report
-
-    def sieve(
-        self,
-        model: core.Model,
-        state: Array,
-        *,
-        start: bool,
-        plain: Array,
-        past: Array | None,
-        chunks: Sequence[run_file.Chunk],
-    ) -> Decimator:
-        """What filters this march from the end of its chunks; the rows before that end are marched again."""
-        own = not start and state[STEP] == self.stepping.dt
-        begun = int(state[STEPS]) if own else 0
-        done, half = sum(chunk.report.steps for chunk in chunks), half_length(self.decimate)
-        if done == 0:
-            return Decimator(self.decimate, plain, begun, past)
-        at, rows = 0, None
-        for chunk in chunks:
-            if at + chunk.report.steps > max(done - half, 0):
-                break
-            at, state, start = at + chunk.report.steps, chunk.state, False
-        if done > self.settle - half:
-            again, _, _ = self._core_march(model, state, done - at, 1, start=start)
-            before = np.repeat(again[:1], half, axis=0) if past is None or at > 0 else past
-            rows = np.concatenate([before, again])[-half:]
-        return Decimator(self.decimate, plain, begun + done, rows)
-
-    def run(
-        self,
-        model: core.Model,
-        state: Array,
-        *,
-        start: bool,
-        progress: core.Progress | None = None,
-        stream: str | os.PathLike[str] | None = None,
-        header: Mapping[str, Any] | None = None,
-        plain: Array | None = None,
-        past: Array | None = None,
-    ) -> tuple[Array, Array, core.Report, Array | None]:
-        """March to the end: rows (n, channels), state, report, and the last steps if there is a filter.
-
-        `plain` (channels,) says which channels are not filtered; `past` are the steps before the start.
-
-        With `stream`, every CHUNK_STEPS steps are on the disk before the next begin; a run file that holds
-        the beginning of this very march is continued, bit for bit. The report counts what this call and, from
-        a file, earlier ones did.
-
-        Raises
-        ------
-        ValueError
-            For a file that holds something else, or ends in a state that is not finite.
-        OSError
-            Where the file cannot be written.
-        """
-        writer = None if stream is None else run_file.Writer(stream, header or {})
-        try:
-            kept = [] if writer is None else [c.rows for c in writer.chunks]
-            report = core.Report(t=core.time_of(model, state))
-            sieve = None
-            if self.filters and plain is not None:
-                known = [] if writer is None else writer.chunks
-                sieve = self.sieve(model, state, start=start, plain=plain, past=past, chunks=known)
-            if writer is not None and writer.chunks:
-                state, start = writer.chunks[-1].state.copy(), False
-                check_state(f"stream {writer.path}", state)
-                report = run_file.report_of(writer.chunks)
-            size = None if writer is None else CHUNK_STEPS
-            go: dict[str, Any] = {"start": start, "size": size, "done": report.steps, "progress": progress}
-            for rows, after, part in (
-                self.pieces(model, state, **go) if sieve is None else self.filtered(model, state, sieve, **go)
-            ):
-                state = after
-                kept.append(rows)
-                if writer is not None and part.steps > 0:
-                    writer.append(run_file.Chunk(rows, state, part))
-                report = report + part
-        finally:
-            if writer is not None:
-                writer.close()
-        tail = None if sieve is None else sieve.rows
-        return np.concatenate([np.zeros((0, model.channels)), *kept]), state, report, tail
-
-    def energies(self, model: core.Model, state: Array) -> dict[str, float]:
-        """What the audit integrated, J, by the names of core.ENERGIES; NaN where they have overflowed."""
-        if not np.isfinite(state).all():
-            return dict.fromkeys(core.ENERGIES, float("nan"))
-        return core.energies(model, state)
-
-    def ended(self, result: xarray.Dataset, report: core.Report) -> xarray.Dataset:
-        """The result of a march that reached its end.
-
-        Raises
-        ------
-        Interrupted
-            Where the user ended it; the result is its `partial`.
-        SolverError
-            Where it could not go on, likewise; says where, and what helps.
-        """
-        if report.status == core.INTERRUPTED:
-            raise core.Interrupted(
-                f"interrupted at t = {report.t:.6g} s; what was marched is in `partial`", result
-            )
-        if report.status != 0:
-            worst = (
-                f", worst in bearing {self.system.bearings[report.bearing].name!r}"
-                if report.bearing >= 0
-                else ""
-            )
-            raise core.SolverError(
-                f"{report.text} in step {report.steps + 1} at t = {report.t:.6g} s (residual "
-                f"{report.residual:.3g} of the largest bearing force{worst}); try a smaller dt",
-                report,
-                result,
-            )
-        return result
 
 
 def _exact_speed(system: System, drive: float | tuple[Array, Array]) -> float:

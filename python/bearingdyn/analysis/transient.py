@@ -16,6 +16,7 @@ from bearingdyn import core
 from bearingdyn.analysis.abreast import Gathering
 from bearingdyn.analysis.equilibrium import Equilibrium, equilibrium
 from bearingdyn.analysis.march import March
+from bearingdyn.analysis.march_pieces import ended, energies_of, run
 from bearingdyn.analysis.overload import warn_of_overload
 from bearingdyn.analysis.record_memory import check_room
 from bearingdyn.analysis.recordable_channels import channel_of
@@ -272,7 +273,8 @@ def transient(
         state = march.start(model, places)
     facts = march.facts(record, [unit for _, unit in found])
     with told(progress, "step") as tell:
-        rows, state, report, tail = march.run(
+        rows, state, report, tail = run(
+            march,
             model,
             state,
             start=resume is None,
@@ -283,7 +285,7 @@ def transient(
             past=None if resume is None else march.past(resume, record),
         )
     warn_of_overload(march, report)
-    energies = march.energies(model, state) if audit else {}
+    energies = energies_of(model, state) if audit else {}
     error: dict[str, Any] = {}
     if check_step and report.status == 0:
         made = step_error_made(method, march.stepping.scheme.hold)
@@ -298,7 +300,7 @@ def transient(
         meaning = {"units": "", "long_name": "peak to peak of each stable motion; units in `unit`"}
         result["stable_motion"] = (("motion", "channel"), swings, meaning)
         result.attrs["stable_motions"] = len(swings)
-    return march.ended(result, report)
+    return ended(march, result, report)
 
 
 def _approaches(source: Equilibrium | Application | System, speed: object) -> Approaches:
