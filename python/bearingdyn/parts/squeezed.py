@@ -135,8 +135,8 @@ def buckles(found: Squeezed) -> str | None:
     worst = int(np.argmax(np.abs(shapes[:, 0])))
     unit = "N/m" if worst < 3 else "N m/rad"
     return (
-        f"it buckles there: its {names[worst]} stiffness is {values[0] * size[worst] ** 2:.4g} {unit}; squeeze "
-        f"less, or take a wider or thinner ring"
+        f"it buckles there: its {names[worst]} stiffness is {values[0] * size[worst] ** 2:.4g} {unit}; "
+        f"squeeze less, or take a wider or thinner ring"
     )
 
 
