@@ -1,6 +1,7 @@
 """The law of softening with amplitude, its fit to a strain sweep, and what is said of bad sweeps."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -159,6 +160,23 @@ def test_a_force_that_does_not_fit_the_area_is_refused(sweep):
 def test_an_area_without_forces_is_not_passed_over():
     with pytest.raises(ValueError, match=r"area is 628 mm², and .* has no force to check it by"):
         bd.fit_payne(made_sweep(), strain_of_isotherms=1.5e-3, area=628e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("scatter", [1e-3, 3e-3])
+def test_a_sweep_with_scatter_gives_a_law_with_a_spring(seed, scatter):
+    """The least D that noise allows may leave F below L at the largest strain: then more is taken."""
+    gamma = np.geomspace(1.46e-3, 1.14e-2, 20)
+    noise = 1 + scatter * np.random.default_rng(seed).normal(size=(2, gamma.size))
+    made = LAW.modulus(gamma) + 3.6e6 + 0.4e6j
+    G = made.real * noise[0] + 1j * made.imag * noise[1]
+    sweep = replace(made_sweep(), strain=gamma, storage=G.real, loss=G.imag)
+    law = bd.fit_payne(sweep, strain_of_isotherms=1.5e-3)
+    assert (law.elastic(np.geomspace(1e-4, 1.14e-2, 100)) >= 0).all()
+    inside = np.geomspace(2e-3, 1e-2, 9)
+    off = law.change(1.0, inside) - LAW.change(1.0, inside)
+    # the point at the isotherms' strain is one of the scattered ones
+    assert np.abs(off).max() < 4 * scatter * abs(made[0])
 
 
 def test_untrusted_points_make_the_sweep_rise(sweep):
