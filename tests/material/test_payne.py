@@ -220,6 +220,14 @@ def test_the_rest_of_a_maxwell_model_is_passive_and_says_what_it_misses():
     assert rest.complex_modulus(omega) - wanted == pytest.approx(rest.misses, rel=1e-9, abs=1e-3)
 
 
+def test_what_a_dashpot_does_stands_beside_the_rest():
+    plain = bd.Maxwell(4e6, [6e5, 6e5, 7e5, 8e5], [1e-2, 2e-3, 4e-4, 7e-5], K=2e9, density=1150.0, payne=LAW)
+    damped = replace(plain, eta0=60.0)
+    assert damped.rest.G == pytest.approx(plain.rest.G, rel=1e-6)
+    assert damped.rest.eta0 == 60.0
+    assert damped.rest.lacks == pytest.approx(plain.rest.lacks, rel=1e-6, abs=1.0)
+
+
 def test_a_law_of_a_harder_rubber_is_refused():
     soft = bd.Maxwell(1e6, [1e5], [1e-3], K=2e9, density=1150.0, payne=LAW)
     with pytest.raises(ValueError, match=r"the law is of a harder rubber"):
