@@ -1,5 +1,7 @@
 """Levels of DMA runs: one factor for each specimen, found with the shifts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.measured import measured
@@ -73,6 +75,52 @@ def test_runs_of_one_level_are_left_in_peace():
     dma = made({"a": (np.arange(-20.0, 15.0, 5.0), 1.0), "b": (np.arange(15.0, 50.0, 5.0), 1.0)})
     curve = bd.master_curve(dma, T_ref=20.0)
     assert curve.levels["b"] == pytest.approx(1.0, abs=max(0.02, 3 * curve.level_errors["b"]))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_runs_that_share_temperatures_tell_their_levels_there(seed):
+    """Three runs, each with a temperature of the one before; their scatter over √n is the error."""
+    dma = made(
+        {
+            "a": (np.arange(-20.0, 15.0, 10.0), 1.0),
+            "b": (np.arange(10.0, 45.0, 10.0), 0.93),
+            "c": (np.arange(30.0, 65.0, 10.0), 1.06),
+        },
+        scatter=0.01,
+        seed=seed,
+    )
+    with pytest.warns(UnequalRuns, match=r"'b' 1\.0\d\d ± 0\.00\d, 'c' 0\.9\d\d ± 0\.00\d"):
+        curve = bd.master_curve(dma, T_ref=20.0)
+    for run, level in (("b", 0.93), ("c", 1.06)):
+        assert curve.levels[run] * level == pytest.approx(1.0, abs=2 * curve.level_errors[run] * level)
+        assert curve.level_errors[run] < 0.006
+    assert list(curve.shifts) == [-20.0, -10.0, 0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0]
+    G = MODEL.complex_modulus(2 * np.pi * curve.frequency)
+    assert np.median(np.abs(curve.storage / G.real - 1)) < 0.01
+
+
+def test_a_temperature_in_common_needs_no_law():
+    """The level of runs without scatter, by one isotherm of both, whatever law the shifts follow."""
+    dma = made({"a": ([0.0, 10.0, 20.0], 1.0), "b": ([20.0, 30.0], 0.9)}, scatter=0.0)
+    with pytest.warns(UnequalRuns):
+        curve = bd.master_curve(dma, T_ref=20.0, law="free")
+    assert curve.levels["b"] == pytest.approx(1 / 0.9, rel=1e-9)
+
+
+def test_curves_that_do_not_meet_tell_no_level():
+    """A gap of two decades: a smooth spectrum is a guess across it, and so would be a level."""
+    dma = made({"a": ([-20.0, -10.0, 0.0], 1.0), "b": ([80.0, 90.0, 100.0], 0.9)})
+    with pytest.warns(UnequalRuns, match="runs without overlap: .* level of 'b'"):
+        curve = bd.master_curve(dma, T_ref=20.0)
+    assert curve.levels == {"a": 1.0, "b": 1.0}
+    assert curve.level_errors["b"] == np.inf
+
+
+def test_one_run_has_one_isotherm_at_a_temperature():
+    dma = made({"a": ([0.0, 10.0], 1.0), "b": ([10.0, 20.0], 1.0)})
+    again = replace(dma, run=np.array(["a"] * dma.frequency.size), isotherm=dma.isotherm)
+    with pytest.raises(ValueError, match=r"two isotherms at 10 °C"):
+        bd.master_curve(again, T_ref=20.0)
 
 
 def test_the_measured_runs_differ_by_six_percent():

@@ -1,6 +1,7 @@
 """The law of softening with amplitude, its fit to a strain sweep, and what is said of bad sweeps."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -161,6 +162,23 @@ def test_an_area_without_forces_is_not_passed_over():
         bd.fit_payne(made_sweep(), strain_of_isotherms=1.5e-3, area=628e-6)
 
 
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("scatter", [1e-3, 3e-3])
+def test_a_sweep_with_scatter_gives_a_law_with_a_spring(seed, scatter):
+    """The least D that noise allows may leave F below L at the largest strain: then more is taken."""
+    gamma = np.geomspace(1.46e-3, 1.14e-2, 20)
+    noise = 1 + scatter * np.random.default_rng(seed).normal(size=(2, gamma.size))
+    made = LAW.modulus(gamma) + 3.6e6 + 0.4e6j
+    G = made.real * noise[0] + 1j * made.imag * noise[1]
+    sweep = replace(made_sweep(), strain=gamma, storage=G.real, loss=G.imag)
+    law = bd.fit_payne(sweep, strain_of_isotherms=1.5e-3)
+    assert (law.elastic(np.geomspace(1e-4, 1.14e-2, 100)) >= 0).all()
+    inside = np.geomspace(2e-3, 1e-2, 9)
+    off = law.change(1.0, inside) - LAW.change(1.0, inside)
+    # the point at the isotherms' strain is one of the scattered ones
+    assert np.abs(off).max() < 4 * scatter * abs(made[0])
+
+
 def test_untrusted_points_make_the_sweep_rise(sweep):
     with pytest.raises(ValueError, match=r"rises .*lowest_trusted"):
         bd.fit_payne(sweep, strain_of_isotherms=1.5e-3)
@@ -200,6 +218,14 @@ def test_the_rest_of_a_maxwell_model_is_passive_and_says_what_it_misses():
     omega = np.geomspace(*rest.omega, rest.misses.size)
     wanted = rubber.complex_modulus(omega) - LAW.modulus(LAW.gamma_r)
     assert rest.complex_modulus(omega) - wanted == pytest.approx(rest.misses, rel=1e-9, abs=1e-3)
+
+
+def test_what_a_dashpot_does_stands_beside_the_rest():
+    plain = bd.Maxwell(4e6, [6e5, 6e5, 7e5, 8e5], [1e-2, 2e-3, 4e-4, 7e-5], K=2e9, density=1150.0, payne=LAW)
+    damped = replace(plain, eta0=60.0)
+    assert damped.rest.G == pytest.approx(plain.rest.G, rel=1e-6)
+    assert damped.rest.eta0 == 60.0
+    assert damped.rest.lacks == pytest.approx(plain.rest.lacks, rel=1e-6, abs=1.0)
 
 
 def test_a_law_of_a_harder_rubber_is_refused():

@@ -157,6 +157,30 @@ def test_contact_is_lost_at_a_free_edge() -> None:
     assert narrow.pressures["outer"] > 0
 
 
+def test_what_is_lost_and_what_touches_are_the_whole_surface() -> None:
+    """A hollow-ended ring pressed into a bore parts from it at both ends; flat ends stay in touch."""
+    hollow = layer(1.2 * MM, RUBBER, 0.5).assembled(squeeze=0.05, outside="slip", compare=False)
+    assert hollow.lost["outer"] > 0.5 * MM
+    # 12 mm wide, and no more than the squeeze, of which most goes to the ends, has made of it
+    assert 12 * MM < hollow.lost["outer"] + hollow.widths["outer"] < 13.2 * MM
+    flat = layer(0.0, RUBBER, 0.5).assembled(squeeze=0.05, outside="slip", compare=False)
+    assert flat.lost == {"inner": 0.0, "outer": 0.0}
+
+
+def test_pressure_is_force_over_the_area_that_it_is_on() -> None:
+    """A frictionless pad: all of its face bears alike, π r² J/λ of it."""
+    pad = bd.Revolved(
+        (bd.Region((0.0, 10 * MM), (0.0, 5 * MM), RUBBER),),
+        {"foot": bd.EndFace(0.0), "plate": bd.EndFace(5 * MM)},
+        refinement=0.5,
+    )
+    found = pad.assembled({"plate": 0.25 * MM}, slip=("foot", "plate"))
+    # J is 1 − p/3K, 2.5e-5 here
+    area = np.pi * (10 * MM) ** 2 / 0.95
+    assert found.pressures["plate"] == pytest.approx(found.force / area, rel=1e-4)
+    assert found.lost["plate"] == 0.0
+
+
 def test_squeezes_that_cannot_be_are_named() -> None:
     flat = layer(0.0, RUBBER, 0.5)
     with pytest.raises(

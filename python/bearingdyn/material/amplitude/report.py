@@ -25,8 +25,8 @@ class PayneFit:
     storage_max, tan_delta_max
         Largest relative deviation of G′ and of tan δ.
     D_range
-        Lowest and highest D that the sweep does not refute with 90 % confidence (F test); the lowest is
-        taken. inf where a larger D is always as good.
+        Lowest and highest D that the sweep does not refute with 90 % confidence (F test), and with which the
+        law keeps a spring, F ≥ L; the lowest is taken. inf where a larger D is always as good.
     """
 
     frequency: float

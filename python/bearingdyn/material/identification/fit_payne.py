@@ -22,6 +22,7 @@ _PARAMETERS = 7  # of the law and the two constants it stands on
 _EXACT = 1e-12  # squared relative misfit of a point that is round-off
 _FACTORS = (0.2, 20.0)  # of D sought, over the fall of G′ within the sweep
 _CUT = 5e-3  # of ln D
+_KEPT = 1.02  # times L that F shall be: the sweep's points are not all strains
 
 
 def fit_payne(
@@ -40,7 +41,8 @@ def fit_payne(
     F(γ) and L(γ) therefore go through the trusted point nearest to that strain, and the squared deviations of
     G′ and G″ from them are least. A sweep of usual width does not determine D (the plateaus at very small and
     very large strain are both outside it): unless given it is the smallest that the sweep does not refute
-    with 90 % confidence. `fit.D_range` says how open it is.
+    with 90 % confidence and that leaves a spring, F ≥ L, all over the sweep. `fit.D_range` says how
+    open it is.
 
     Parameters
     ----------
@@ -126,6 +128,7 @@ def fit_payne(
 
     if D is None:
         D_low, D_high, best = _open_range(found, fall, 2 * gamma.size - _PARAMETERS)
+        D_low = _least_elastic(found, D_low, max(D_high, _FACTORS[1] * fall), gamma, p)
         value = D_low
     else:
         value = positive("D", D, "it must be positive and finite, Pa")
@@ -247,6 +250,27 @@ def _open_range(found: Any, fall: float, freedom: int) -> tuple[float, float, _F
     over = np.flatnonzero(costs[k:] > limit)
     high = np.inf if over.size == 0 else edge(float(values[k + over[0]]), float(values[k + over[0] - 1]))
     return low, high, laws[k]
+
+
+def _least_elastic(found: Any, low: float, high: float, gamma: Array, p: float) -> float:
+    """The least D from `low` on whose law keeps a spring, F ≥ L, over the sweep; `low` where none does.
+
+    The sweep tells how much F falls, so that what is left of it at the largest strain rises with D.
+    """
+
+    def keeps(value: float) -> bool:
+        gamma_c, m, Lm, gamma_l = found(value).law
+        storage = value * (1 + (gamma / gamma_c) ** p) ** (-m / p)
+        v = (gamma / gamma_l) ** p
+        return bool((storage >= _KEPT * Lm * v / (1 + v)).all())
+
+    if keeps(low) or not keeps(high):
+        return low
+    bad, good = low, high
+    while np.log(good / bad) > _CUT:
+        half = float(np.sqrt(bad * good))
+        bad, good = (bad, half) if keeps(half) else (half, good)
+    return good
 
 
 def _in_shear(sweep: StrainSweep) -> StrainSweep:

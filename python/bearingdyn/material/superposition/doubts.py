@@ -15,7 +15,7 @@ _TIMES_ERROR, _NOTICED = (
 )  # of the shifts' own errors; decades, 5 % in frequency, that matter at all
 _TIMES_MISFIT = 2.0  # misfit of the moduli by the law over that by the shifts
 _UNEVEN = 2.0  # a step against its neighbours' rates, which through Tg change less between isotherms
-_GAP = 0.3  # decades without a point between isotherms; inside sweeps points stand 0.2 to 0.3 apart
+GAP = 0.3  # decades without a point between isotherms; inside sweeps points stand 0.2 to 0.3 apart
 _APART, _TIMES_SCATTER, _SHOWN = 0.1, 10.0, 3  # a deviation that no scatter makes; how many are named
 _UNEVEN_DECADES = 0.15  # by which a step must stand out; steps are known to a tenth of a decade
 
@@ -83,7 +83,7 @@ def doubt_gaps(dma: DMAData, shifts: Array) -> None:
     ends.sort()
     told, reach = [], ends[0][1]
     for low, high in ends[1:]:
-        if low - reach > _GAP:
+        if low - reach > GAP:
             told.append(f"{low - reach:.2g} decades about {10 ** ((low + reach) / 2):.3g} Hz")
         reach = max(reach, high)
     if told:

@@ -31,6 +31,7 @@ from bearingdyn.material.superposition.free_shifts import Superposed, Superposit
 from bearingdyn.material.superposition.kramers_kronig import Suspect, summary, suspects
 from bearingdyn.material.superposition.law_fit import LawName, fit_law, fit_law_to_data, require_isotherms
 from bearingdyn.material.superposition.levels import Levels, find_levels, levelled
+from bearingdyn.material.superposition.shared_temperatures import merged
 from bearingdyn.notice import LeftOut, OutsideIsotherms, ThinIsotherm, warn
 from bearingdyn.pictures import picture
 from bearingdyn.types import Array
@@ -180,7 +181,8 @@ def master_curve(
         Strength of a prior on the curvature of log10 a_T(T); 0 for none, None to let the data choose it.
     levels
         Where the measurement is of several runs (specimens): "find" multiplies the moduli of each after the
-        first by the factor with which the shifts follow the law best; {run: factor} gives factors by hand;
+        first by the factor that temperatures in common tell or, where there are none, with which the shifts
+        follow the law best; {run: factor} gives factors by hand;
         None leaves moduli as measured. Shifts set by hand leave them, too.
 
     Returns
@@ -191,8 +193,8 @@ def master_curve(
     Raises
     ------
     ValueError
-        If there is only one isotherm, two isotherms have the same temperature, or T_ref lies where the law
-        cannot reach or more than 100 K outside the measured temperatures.
+        If there is only one isotherm, two isotherms of one run have the same temperature, or T_ref lies where
+        the law cannot reach or more than 100 K outside the measured temperatures.
 
     References
     ----------
@@ -226,13 +228,14 @@ def master_curve(
         require(vertical.T_ref == T_ref, "vertical", vertical, remedy)
         factor = vertical.factor(used.temperature)
         used = replace(used, storage=used.storage / factor, loss=used.loss / factor)
-    T = _temperatures(used, T_ref)
+    T = _temperatures(merged(used), T_ref)
     require_isotherms(law, T.size)
     known_levels = _levels(used, levels, bool(shifts), float(T_ref), law, smoothness)
     if known_levels is not None:
         which = np.array([used.runs.index(name) for name in used.run.tolist()])  # type: ignore[union-attr]
         factors = np.array([known_levels.factors[name] for name in used.runs])
         used = levelled(used, which, np.log(factors))
+    used = merged(used)
 
     start = first_shifts(used)
     held = np.zeros(T.size, dtype=bool)
