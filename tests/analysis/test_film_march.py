@@ -182,7 +182,7 @@ def test_a_dry_bearing_has_no_films() -> None:
 
 @pytest.mark.parametrize(("grade", "load"), [(150, 2.0), (150, 5.0), (220, 10.0)])
 def test_a_film_that_follows_the_load_is_refused(grade: int, load: float) -> None:
-    thick = Lubricant(Walther.iso_vg(grade))
+    thick = Lubricant(Walther.iso_vg(grade), density=870.0, alpha=2e-8)
     eq = oiled(oil=thick, load=load)
     with pytest.raises(ValueError, match=r"bearing 'ball': contacts is 'film'; under .* N the films leave"):
         transient(eq, speed=OMEGA, dt=5e-6, steps=1, record=PLACES, contacts="film")

@@ -10,7 +10,15 @@ import re
 import numpy as np
 import pytest
 
-from bearingdyn.bearing import BallBearing, Lubricant, Walther, ehl, lubricate, nijenbanning_venner_moes
+from bearingdyn.bearing import (
+    BallBearing,
+    Lubricant,
+    Walther,
+    ehl,
+    film_by_formula,
+    lubricate,
+    nijenbanning_venner_moes,
+)
 from bearingdyn.bearing.catalogue import bearing
 from bearingdyn.bearing.contact_damping import wijnant_damping
 
@@ -105,6 +113,7 @@ def test_formula_is_divided_by_the_density_under_pressure():
         rho = (5.9e8 + 1.34 * p) / (5.9e8 + p)
         plain = nijenbanning_venner_moes(contact, found.Q, found.us, found.viscosity, OIL.alpha)
         assert film == pytest.approx(plain / rho / 1.009, rel=1e-12)  # the middle of its errors
+        assert film == film_by_formula(contact, found.Q, found.us, found.viscosity, OIL.alpha)
     equations = lubricate(BRG, OIL, 70.0, SPEED, AXIAL)
     # theory.md §4.3: the divided formula is 3 to 5 % high for narrow contacts
     assert found.film_inner == pytest.approx(equations.film_inner, rel=0.05)

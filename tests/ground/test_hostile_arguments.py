@@ -177,6 +177,10 @@ CASES: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         brg.nijenbanning_venner_moes,
         {"contact": BALL.inner_contact, "F": 100.0, "us": 4.0, "eta0": 0.01, "alpha": 2e-8},
     ),
+    "film_by_formula": (
+        brg.film_by_formula,
+        {"contact": BALL.inner_contact, "F": 100.0, "us": 4.0, "eta0": 0.01, "alpha": 2e-8},
+    ),
     "contact_modulus": (brg.contact_modulus, {"first": bd.STEEL, "second": bd.STEEL}),
 }  # fmt: skip
 # names are texts, and what the package itself writes beside the numbers is not read by any answer

@@ -28,6 +28,7 @@ from bearingdyn.bearing import (
     equivalent_load,
     equivalent_static_load,
     fault_lines,
+    film_by_formula,
     friction,
     in_hours,
     modified_life,
@@ -36,7 +37,6 @@ from bearingdyn.bearing import (
 )
 from bearingdyn.bearing import catalogue as listed
 from bearingdyn.bearing import lives as lives_of
-from bearingdyn.bearing.lubrication import film_by_formula
 from bearingdyn.checks import instance, items, meant, named, nonnegative, one_speed, positive, require
 from bearingdyn.notice import BearingWarning, warn
 from bearingdyn.parts import RigidBody

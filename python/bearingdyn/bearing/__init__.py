@@ -31,7 +31,7 @@ from bearingdyn.bearing.load_and_motion_checks import warn_of_lean
 from bearingdyn.bearing.load_distribution import LoadDistribution, load_distribution
 from bearingdyn.bearing.loose_fit import LooseFit
 from bearingdyn.bearing.lubricant import Lubricant, Walther
-from bearingdyn.bearing.lubrication import Lubrication, lubricate, lubricated
+from bearingdyn.bearing.lubrication import Lubrication, film_by_formula, lubricate, lubricated
 from bearingdyn.bearing.mounting import Mounting, Seat
 from bearingdyn.bearing.oil_supply import OilSupply
 from bearingdyn.bearing.open_side import OPEN_SIDE_REMEDY, runs_off, samples_off, shoulder
@@ -129,6 +129,7 @@ __all__ = [
     "equivalent_load",
     "equivalent_static_load",
     "fault_lines",
+    "film_by_formula",
     "footprint_profile",
     "friction",
     "half_space_orders",

@@ -254,18 +254,38 @@ def lubricated(
 
 def film_by_formula(
     contact: PointContact,
-    Q: float,
+    F: float,
     us: float,
     eta0: float,
     alpha: float,
     law: Literal["nijenbanning-venner-moes", "hamrock-dowson"] = "nijenbanning-venner-moes",
 ) -> float:
-    """Central film of an oil that yields, m: a formula of `film_thickness` over ρ̄ at the Hertz pressure."""
+    """Central film of an oil that yields, m: a formula over ρ̄ at the Hertz pressure.
+
+    That of Nijenbanning, Venner and Moes over 1.009 ρ̄ is within 5 % of `ehl.steady` from M = 10.5 D^−0.59
+    on; the 1.009 is fitted to its solutions.
+
+    Parameters
+    ----------
+    contact, F, us, eta0, alpha
+        As in `nijenbanning_venner_moes`.
+    law
+        Whose formula.
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive, or Rx > Ry.
+    """
+    instance("contact", contact, PointContact, "give a bearing's inner_contact or outer_contact")
+    one_of("law", law, ("nijenbanning-venner-moes", "hamrock-dowson"))
+    F = positive("F", F, "it must be positive, in N")
     if law == "hamrock-dowson":
-        film = hamrock_dowson(contact, Q, us / 2, eta0, alpha).central
+        speed = positive("us", us, "it must be positive, in m/s (u1 + u2)")
+        film = hamrock_dowson(contact, F, speed / 2, eta0, alpha).central
     else:
-        film = nijenbanning_venner_moes(contact, Q, us, eta0, alpha) / YIELDING
-    return film / float(ehl.relative_density(contact.pressure(Q)))
+        film = nijenbanning_venner_moes(contact, F, us, eta0, alpha) / YIELDING
+    return film / float(ehl.relative_density(contact.pressure(F)))
 
 
 def _over_alpha(
