@@ -66,6 +66,7 @@ FAMILIES: dict[str, Callable[[], list[Row]]] = {
     "Sandwich cantilever": solids.sandwich,
     "Solids of elements": solids.bonded,
     "Housing in CalculiX": peers.calculix,
+    "A rotor in ROSS": peers.ross,
     "Reduced parts": reduction.reduction,
     "Sound of spheres": sound.spheres,
     "Sound intensity of spheres": sound.intensities,

@@ -12,6 +12,7 @@ import scipy.signal
 import bearingdyn as bd
 from bearingdyn.bearing import Running
 from bearingdyn.demo import motor
+from verified import peers
 
 RUBBER = bd.Maxwell(G0=1e6, G=[2e6, 5e5], tau=[1e-4, 3e-3], eta0=20.0, K=2e9, density=1150.0)
 FREQUENCY = [1.0, 30.0, 170.0, 600.0, 1500.0, 4000.0]
@@ -175,6 +176,25 @@ def test_ross_finds_the_same_critical_speed():
     rotor = ross.Rotor(shaft, [], bearings)
     lowest = min(w for w in rotor.run_modal(0.0).wn if w > 1.0)
     assert lowest == pytest.approx(math.sqrt(2 * found["kxx"][0] / rotor.m), rel=1e-3)
+
+
+@pytest.mark.parametrize(("thrust", "expected"), peers.ROSS.items())
+def test_a_rotor_has_the_critical_speed_that_ross_finds_with_the_table(thrust, expected):
+    """Within .1 %, the line of the work's list."""
+    assert peers.forward_critical(peers.rotor_for_ross(thrust)[0]) == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize(("thrust", "expected"), peers.ROSS.items())
+def test_ross_still_finds_it(thrust, expected):
+    ross = pytest.importorskip("ross")
+    table = peers.rotor_for_ross(thrust)[1]
+    steel = ross.Material("steel", rho=7850, E=210e9, Poisson=0.3)
+    shaft = [ross.ShaftElement(L=0.025, idl=0, odl=0.025, material=steel, n=k) for k in range(16)]
+    bearings = [ross.BearingElement(n=n, **table) for n in (0, 16)]
+    rotor = ross.Rotor(shaft, [ross.DiskElement(n=6, m=5.0, Id=0.012, Ip=0.022)], bearings)
+    found = rotor.run_modal(expected, num_modes=12)
+    ways = zip(found.wn, found.whirl_direction(), strict=True)
+    assert min(w for w, way in ways if way == "Forward" and w > 5) == pytest.approx(expected, rel=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """An application: parts joined at rigid interfaces, bearings hung between them, loads applied."""
 
 from bearingdyn.application.application import Application
+from bearingdyn.application.applied_loads import AppliedLoads
 from bearingdyn.application.channel import COMPONENTS, GROUND, QUANTITIES, RATES, Channel
 from bearingdyn.application.free_motions import arm
 from bearingdyn.application.joints import BearingJoint, Bush, Connection, LooseJoint, Support
@@ -25,6 +26,7 @@ __all__ = [
     "QUANTITIES",
     "RATES",
     "Application",
+    "AppliedLoads",
     "BearingJoint",
     "Bush",
     "Channel",

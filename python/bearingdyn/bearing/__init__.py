@@ -62,6 +62,7 @@ from bearingdyn.bearing.rating import (
     ratings_of,
     reliability_factor,
 )
+from bearingdyn.bearing.rigid_ring_law import RigidRingLaw
 from bearingdyn.bearing.row_set import Row, RowSet, at_distance
 from bearingdyn.bearing.spectral_lines import fault_lines, waviness_lines
 from bearingdyn.bearing.surface_damage import dent, spall
@@ -104,6 +105,7 @@ __all__ = [
     "PointContact",
     "RacewaySeries",
     "Ratings",
+    "RigidRingLaw",
     "Row",
     "RowSet",
     "Running",
