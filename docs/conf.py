@@ -20,7 +20,7 @@ try:
 except metadata.PackageNotFoundError:
     release = ""
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
 exclude_patterns = ["*.py", "**/.ipynb_checkpoints", "**/__pycache__"]
 
 # ---- pages and notebooks
@@ -51,7 +51,9 @@ nitpick_ignore_regex = [("py:.*", r".*")]
 # ---- looks
 html_theme = "furo"
 html_title = "bearingdyn"
-html_static_path = ["_static"]
+html_static_path = ["_static", "looks"]
+html_css_files = ["wide.css"]
+html_math_renderer = "mathml"
 html_show_sphinx = False
 html_copy_source = False
 

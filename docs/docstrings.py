@@ -10,7 +10,7 @@ import re
 from typing import Any
 
 ARRAY = re.compile(r"[\w~.]*ndarray\[tuple\[[\w~.]*Any, \.\.\.\], [\w~.]*dtype\[[\w~.]*?(\w+)\]\]")
-MARK = re.compile(r"([|*]|_(?!\w))")
+MARK = re.compile(r"([|*@]|_(?!\w))")
 LITERAL = re.compile(r"(``.+?``|`[^`]+`)", re.DOTALL)
 
 
@@ -29,7 +29,7 @@ def shorten(app: Any, what: str, name: str, obj: Any, options: Any, signature: A
 
 
 def escaped(line: str) -> str:
-    """What Sphinx would read as a mark, as it stands: bars, stars, underscores at the end of a word."""
+    """What Sphinx would read as a mark, as it stands: bars, stars, @, underscores at the end of a word."""
     if line.lstrip().startswith((">>>", "...")):
         return line
     parts = LITERAL.split(line)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import inspect
 import io
 import re
@@ -27,6 +28,11 @@ def make() -> None:
 
     matplotlib.use("Agg")
     STATIC.mkdir(exist_ok=True)
+    sources = digest()
+    kept = STATIC / "sources.txt"
+    if kept.exists() and kept.read_text(encoding="utf-8") == sources:
+        return
+    kept.unlink(missing_ok=True)
     (STATIC / "warnings.txt").write_text(warnings_table(), encoding="utf-8")
     (STATIC / "names.txt").write_text(names(), encoding="utf-8")
     architecture.draw(STATIC / "architecture.svg")
@@ -55,6 +61,25 @@ def make() -> None:
             runpy.run_path(str(HERE.parent / "examples" / "first_hour.py"))
         shutil.copy(Path("out", "first_hour.png"), STATIC)
     (STATIC / "first_hour.txt").write_text(printed.getvalue(), encoding="utf-8")
+    kept.write_text(sources, encoding="utf-8")
+
+
+def digest() -> str:
+    """Of all that the pictures and tables are made from: the package, the scripts here, pages with code."""
+    import bearingdyn
+
+    package = Path(bearingdyn.__file__).parent
+    pages = (HERE / "gallery.md", HERE / "guide", HERE.parent / "examples" / "first_hour.py")
+    files = [
+        f
+        for f in (package, *sorted(HERE.glob("*.py")), *pages)
+        for f in (sorted(f.rglob("*")) if f.is_dir() else [f])
+    ]
+    found = hashlib.sha256()
+    for file in files:
+        if file.suffix in (".py", ".so", ".pyd", ".md", ".toml", ".csv", ".json", ".css", ".js"):
+            found.update(file.read_bytes())
+    return found.hexdigest()
 
 
 def warnings_table() -> str:

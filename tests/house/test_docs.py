@@ -10,6 +10,7 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
+from urllib.parse import unquote
 
 import matplotlib
 import pytest
@@ -56,7 +57,7 @@ def test_the_snippets_of_the_guide_run_and_print_what_stands_beside_them(
 
 @pytest.mark.slow
 def test_the_documentation_builds_without_a_warning(tmp_path: Path) -> None:
-    for package in ("sphinx", "myst_nb", "furo"):
+    for package in ("sphinx", "myst_nb", "furo", "latex2mathml"):
         pytest.importorskip(package, reason=f"{package} is not installed; pip install bearingdyn[docs]")
     # what the notebooks show is tested by test_notebooks; here they are only rendered
     path = os.pathsep.join(map(os.path.abspath, sys.path))
@@ -73,3 +74,32 @@ def test_the_documentation_builds_without_a_warning(tmp_path: Path) -> None:
     assert "master_curve(dma" in re.sub(r"<[^>]+>", "", index)  # the ten lines
     assert (tmp_path / "html" / "api" / "material.html").stat().st_size > 50_000
     assert (tmp_path / "html" / "notebooks" / "03_motor.html").is_file()
+    assert "<math" in (tmp_path / "html" / "theory.html").read_text(encoding="utf-8")
+    assert not loaded_from_elsewhere(tmp_path / "html")
+    assert not dead_links(tmp_path / "html")
+
+
+def loaded_from_elsewhere(pages: Path) -> list[str]:
+    """What the pages would fetch from a network: scripts, styles and pictures."""
+    found = []
+    for page in pages.rglob("*.html"):
+        tags = re.findall(r"<(?:script|img|link|source|audio)\b[^>]*>", page.read_text(encoding="utf-8"))
+        found += [tag for tag in tags if re.search(r'(?:src|href)="(?:https?:)?//', tag)]
+    return found
+
+
+def dead_links(pages: Path) -> list[str]:
+    """Links from page to page whose file or heading is not there."""
+    known: dict[Path, set[str]] = {}
+    dead = []
+    for page in pages.rglob("*.html"):
+        for link in re.findall(r'(?:href|src)="([^"]+)"', page.read_text(encoding="utf-8")):
+            if re.match(r"[a-z]+:", link):
+                continue
+            file, _, mark = link.partition("#")
+            target = (page.parent / unquote(file.partition("?")[0])).resolve() if file else page.resolve()
+            if target.suffix == ".html" and target.is_file() and target not in known:
+                known[target] = set(re.findall(r'\bid="([^"]+)"', target.read_text(encoding="utf-8")))
+            if not target.exists() or (mark and unquote(mark) not in known.get(target, set())):
+                dead.append(f"{page.name}: {link}")
+    return dead

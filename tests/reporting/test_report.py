@@ -6,7 +6,6 @@ import base64
 import json
 import re
 import warnings
-from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from bearingdyn.notice import Notice
 from bearingdyn.reporting.chart import Chart, Curve
 from bearingdyn.reporting.of_results import everything
 from bearingdyn.reporting.shapes import first_elastic
+from report_page import curves, text_of
 
 
 @pytest.fixture(scope="module")
@@ -27,34 +27,6 @@ def mass() -> bd.Application:
     app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
     app.ground("mass.centre", stiffness=[1e6] * 6, damping=[10.0] * 6)
     return app
-
-
-def text_of(page: Path) -> str:
-    """What a reader sees, without marks."""
-    body = re.sub(
-        r"<script.*?</script>|<style.*?</style>|<svg.*?</svg>", " ", page.read_text("utf-8"), flags=re.S
-    )
-    return " ".join(unescape(re.sub(r"<[^>]+>", " ", body)).split())
-
-
-def curves(page: Path, title: str) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    """Names and numbers of a chart's curves."""
-    found = re.search(
-        rf"<figcaption>{re.escape(title)}</figcaption>.*?<script type=application/json>(.*?)</script>",
-        page.read_text("utf-8"),
-        re.S,
-    )
-    assert found is not None
-    held = json.loads(found[1])
-    grids = [np.frombuffer(base64.b64decode(x), "<f4") for x in held["grids"]]
-    return [
-        (
-            c["name"],
-            grids[c["x"]],
-            np.frombuffer(base64.b64decode(c["y"]), "<f4").astype(float) + c.get("base", 0.0),
-        )
-        for c in held["curves"]
-    ]
 
 
 def test_a_small_motion_about_a_large_level_keeps_its_digits() -> None:
