@@ -152,15 +152,18 @@ What the model can tell: where the lines stand (a loaded cage, not the catalogue
 and what stands around a line. Fitted to the inner race's record it has 13 of its 15 lines within 1.1 dB,
 the third one's 3-1 and 3+2 3 dB high. For that the sensor must feel the AXIAL force of the balls, too: it
 pushes the same way all around, the vertical one changes its sign, and so one follows the other by the turn
-of the shaft. With vertical modes alone, however fitted, sidebands at once the shaft's speed of the second
-line were 5 to 12 dB off.
+of the shaft. Without, however fitted, sidebands at once the shaft's speed of the second line were 5 to
+12 dB off.
 What it predicts, in another bearing, of the outer race's record: the ball pass line within 3 dB (-2.4), its
 second harmonic (-2.7), against the line itself also the third (-1.9).
-What it cannot: the third harmonic absolutely, 4.3 dB too low. Its pulses are a little long at the sensor,
-and all levels of the outer race's record 2.4 dB low. That is no scatter: second by second these lines
-repeat to 0.1 dB, and a line of ten seconds is as high as one of one. The holes' places across the track are
-not known, and explain it: a middle half the contact's half length beside that of the track costs 2.4 dB.
-For the same reason the level does not tell a spall's size. With the hole under the middle of the contact
+What it cannot: the third harmonic absolutely, 4.3 dB too low, and all levels, 2.4 dB low. That is no
+scatter: second by second these lines repeat to 0.1 dB, and fits to three pieces of the inner race's record
+predict -1.4 to -2.4, -2.3 to -2.7 and -4.3 to -4.7 dB. Nor is it a horizontal path to the sensor: one more
+gain for each mode fits little better (4 to 19 %) and has the third at -4.4 to -4.8. The level is where the
+holes lie across the track, which is not known: a middle half the contact's half length beside that of the
+track costs 2.4 dB. The third harmonic says that the pulses of the outer race's bearing are shorter at the
+sensor than the path fitted with the other bearing makes them.
+As the hole's place is not known, the level does not tell its size. With it under the middle of the contact
 the model has 0.25, 0.48 and 0.37 g of the inner race at 7, 14 and 21 thousandths of an inch, 0.43, 0.66 and
 0.58 g of the outer one: the longer hole's way in and way out cancel each other. With its middle under the
 end of the contact 0.04, 0.08 and 0.10 g, and 0.06, 0.10 and 0.21 g. Half or twice the thrust or the weight

@@ -71,6 +71,15 @@ def test_the_fit_is_that_of_the_record():
     assert np.abs(np.subtract(fitted.frequency, rig.frequency)).max() < 100.0
 
 
+@pytest.mark.slow
+def test_growth_with_size_is_what_the_example_says():
+    """0.25, 0.48, 0.37 g and 0.43, 0.66, 0.58 g, kurtosis 5 to 8, quoted in its text: rounded to 2 %."""
+    found = cwru.growth(cwru_rig.Rig(), 0.5)
+    for body, said in (("inner", (0.25, 0.48, 0.37)), ("outer", (0.43, 0.66, 0.58))):
+        assert [rms for rms, _ in found[body]] == pytest.approx(said, rel=0.04)
+        assert all(5 < kurtosis < 8 for _, kurtosis in found[body])
+
+
 def test_a_hole_lets_go_of_a_part_of_a_contact():
     """As much as the ellipse has over it: all of it, none, half, and as of a strip by quadrature."""
     rig = cwru_rig.Rig()
