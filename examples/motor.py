@@ -16,6 +16,7 @@ bending modes lie near the paper's 382, 1885, 2027 and 4756 Hz (the table says h
 
 from __future__ import annotations
 
+import contextlib
 import math
 import sys
 import warnings
@@ -293,22 +294,24 @@ def marched_on(eq: bd.Equilibrium, motion: xarray.Dataset) -> float:
 def sweep(eq: bd.Equilibrium, progress: Callable[[int, int], object] | None = None) -> np.ndarray:
     """Velocities (speed, channel) over SPEEDS, m/s rms, as a slow run-up meets them.
 
-    Each motion begins from that of the speed below; NaN where none was found.
+    Each motion begins from that of the speed below, where that leads to none from the equilibrium; NaN where
+    neither does.
     """
     rms = np.full((SPEEDS.size, len(VELOCITIES)), np.nan)
     motion = None
     for k, speed in enumerate(SPEEDS.tolist()):
-        try:
-            # lines beyond the band that the rubber was measured for say nothing
-            lines = min(SWEPT, int(BAND[1] / (ball_pass() * speed / SPEED)))
-            with warnings.catch_warnings():
+        # lines beyond the band that the rubber was measured for say nothing
+        lines = min(SWEPT, int(BAND[1] / (ball_pass() * speed / SPEED)))
+        before, motion = motion, None
+        for start in (None,) if before is None else (before, None):
+            with warnings.catch_warnings(), contextlib.suppress(bd.SolverError):
                 # so that those left out are left out on purpose
                 warnings.simplefilter("ignore", CutHarmonics)
                 motion = bd.steady_state(
-                    eq, speed=speed, record=VELOCITIES, harmonics=lines, start=motion, stability=False
+                    eq, speed=speed, record=VELOCITIES, harmonics=lines, start=start, stability=False
                 )
-        except bd.SolverError:
-            motion = None  # ended in a fold: the next begins from the equilibrium
+                break
+        if motion is None:
             continue
         rms[k] = np.sqrt(0.5 * (np.abs(motion["amplitude"].values[1:]) ** 2).sum(axis=0))
         if progress is not None:
