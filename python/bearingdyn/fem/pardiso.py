@@ -16,12 +16,12 @@ import scipy
 
 # its name for real symmetric positive definite matrices; its phases
 POSITIVE_DEFINITE = 2
-ANALYSE, FACTORISE, SOLVE, FREE_FACTORS, FREE = 11, 22, 33, 0, -1
+ANALYSE, FACTORISE, SOLVE, FREE = 11, 22, 33, -1
 # its settings, by the places in its manual: given by hand, order by METIS, refinement only after a disturbed
 # pivot. Its own default refines every solution twice, for three times the work, where the residual of a block
 # of 30 thousand coordinates is 3e-13 of the load without and 2e-13 with it.
 SETTINGS = {1: 1, 2: 2, 8: 0}
-KEPT, LARGEST_KEPT = 2, 4_000_000  # patterns that are kept, and their entries at most: some 50 MB of theirs
+KEPT, LARGEST_KEPT = 2, 1_500_000  # patterns that are kept, and their entries at most: some 60 MB each
 SAME_EACH_RUN = 2  # MKL_CBWR_AUTO: one order of summation on a machine, whichever thread is done first
 
 
@@ -70,6 +70,7 @@ class _Call:
 
     def __init__(self, starts: Any, columns: Any) -> None:
         self.data, self.starts, self.columns = np.ones(columns.size), starts, columns
+        self.alone = _alone()
         self.handle, self.settings = np.zeros(64, dtype=np.int64), np.zeros(64, dtype=np.int32)
         for place, value in SETTINGS.items():
             self.settings[place - 1] = value
@@ -99,7 +100,7 @@ _idle: list[_Call] = []
 
 def _analysed(starts: Any, columns: Any) -> _Call | None:
     """An idle call of this pattern, which is idle no more; None where there is none."""
-    for call in list(_idle):
+    for call in list(_idle) if _alone() else ():
         if np.array_equal(call.starts, starts) and np.array_equal(call.columns, columns):
             try:
                 _idle.remove(call)
@@ -109,11 +110,18 @@ def _analysed(starts: Any, columns: Any) -> _Call | None:
     return None
 
 
+def _alone() -> bool:
+    """Whether the library works in one thread."""
+    return int(_library().MKL_Get_Max_Threads()) == 1
+
+
 def _rest(call: _Call) -> None:
-    """Free a call's factors, and keep what was found of its pattern for the next of the same."""
-    call(FREE_FACTORS)
-    call.data = np.zeros(0)
-    if call.columns.size > LARGEST_KEPT:
+    """Keep what was found of a call's pattern, and the room of its factors, for the next of the same.
+
+    With one thread alone, as in the workers of a study: solutions take one, and where factors took several
+    the library crashes when it is to factorise once more.
+    """
+    if call.columns.size > LARGEST_KEPT or not (call.alone and _alone()):
         call(FREE)
         return
     _idle.append(call)
