@@ -56,40 +56,35 @@ class TestPardiso:
             # condition of a solid of bricks, some 1e7, times rounding
             assert np.abs(x - y).max(initial=0.0) <= 1e-9 * np.abs(y).max(initial=0.0)
 
-    @pytest.fixture
-    def one_thread(self):
-        """The library on one thread, as in a study's workers."""
+    @pytest.mark.parametrize("threads", [1, 2])
+    def test_the_next_of_a_pattern_has_the_numbers_of_the_first(self, solid, threads):
+        """Where one thread works its analysis is kept, and what comes of it is the same to the last bit."""
         library = pardiso._library()
-        before = library.MKL_Set_Num_Threads_Local(1)
-        yield
-        library.MKL_Set_Num_Threads_Local(before)
+        before = library.MKL_Get_Max_Threads()
+        library.MKL_Set_Num_Threads(threads)
+        try:
+            self.one_after_another(solid[0], kept=threads == 1)
+        finally:
+            library.MKL_Set_Num_Threads(before)
 
-    def test_one_after_another_on_all_threads(self, solid):
-        """The process ended here: a handle that had solved on one thread took no factors on several."""
-        b = np.ones(solid[0].shape[0])
-        told = {factorise(solid[0]).solve(b).tobytes() for _ in range(3)}
-        assert len(told) == 1
-
-    def test_the_next_of_a_pattern_has_the_numbers_of_the_first(self, solid, one_thread):
-        """Its analysis is kept, and what comes of it is the same to the last bit; two at once are two."""
-        K = solid[0]
+    def one_after_another(self, K, kept):
         b = np.random.default_rng(2).standard_normal((K.shape[0], 2))
         other = K.copy()
         scale = np.linspace(1.0, 1.2, K.shape[0])  # of rows and columns, so that it stays symmetric
         other.data = K.data * scale[K.indices] * np.repeat(scale, np.diff(K.indptr))
-        fresh = factorise(other)
-        wanted = fresh.solve(b)
-        one = factorise(K)
-        first = one.solve(b)
+        fresh, one = factorise(other), factorise(K)
+        wanted, first = fresh.solve(b), one.solve(b)
         del one, fresh
         gc.collect()
-        kept = len(pardiso._idle)
-        assert kept >= 1
-        again, beside = factorise(K), factorise(other)
+        assert not kept or len(pardiso._idle) > 0
+        again, beside = factorise(K), factorise(other)  # two at once are two
         assert np.array_equal(again.solve(b), first)
         assert np.array_equal(beside.solve(b), wanted)
         assert np.array_equal(again.solve(b), first)
         del again, beside
+        order = np.random.default_rng(5).permutation(K.shape[0])  # as large, and of another pattern
+        turned = factorise(K[order][:, order]).solve(b[order])
+        assert np.abs(turned - first[order]).max() <= 1e-9 * np.abs(first).max()  # as above
         for n in (7000, 6900, 6800):  # other patterns push the oldest out
             factorise(K[:n][:, :n])
             gc.collect()

@@ -16,12 +16,12 @@ import scipy
 
 # its name for real symmetric positive definite matrices; its phases
 POSITIVE_DEFINITE = 2
-ANALYSE, FACTORISE, SOLVE, FREE_FACTORS, FREE = 11, 22, 33, 0, -1
+ANALYSE, FACTORISE, SOLVE, FREE = 11, 22, 33, -1
 # its settings, by the places in its manual: given by hand, order by METIS, refinement only after a disturbed
 # pivot. Its own default refines every solution twice, for three times the work, where the residual of a block
 # of 30 thousand coordinates is 3e-13 of the load without and 2e-13 with it.
 SETTINGS = {1: 1, 2: 2, 8: 0}
-KEPT, LARGEST_KEPT = 2, 4_000_000  # patterns that are kept, and their entries at most: some 50 MB of theirs
+KEPT, LARGEST_KEPT = 2, 1_500_000  # patterns that are kept, and their entries at most: some 60 MB each
 SAME_EACH_RUN = 2  # MKL_CBWR_AUTO: one order of summation on a machine, whichever thread is done first
 
 
@@ -42,8 +42,7 @@ class Cholesky:
         if not np.array_equal(first, np.arange(A.shape[0])):  # the library asks for every diagonal entry
             raise np.linalg.LinAlgError("the matrix is not positive definite: its diagonal has gaps")
         starts, columns = (np.asarray(x + 1, dtype=np.int32) for x in (upper.indptr, upper.indices))
-        # a handle that has solved on one thread dies in factors on several: it serves again on one alone
-        known, error = _analysed(starts, columns) if _alone() else None, 0
+        known, error = _analysed(starts, columns), 0
         self._call = _Call(starts, columns) if known is None else known
         if known is None:
             error = self._call(ANALYSE)
@@ -100,14 +99,9 @@ class _Call:
 _idle: list[_Call] = []
 
 
-def _alone() -> bool:
-    """Whether the library has one thread, as in a study's workers."""
-    return bool(_library().MKL_Get_Max_Threads() == 1)
-
-
 def _analysed(starts: Any, columns: Any) -> _Call | None:
     """An idle call of this pattern, which is idle no more; None where there is none."""
-    for call in list(_idle):
+    for call in list(_idle) if _alone() else ():
         if np.array_equal(call.starts, starts) and np.array_equal(call.columns, columns):
             try:
                 _idle.remove(call)
@@ -117,10 +111,17 @@ def _analysed(starts: Any, columns: Any) -> _Call | None:
     return None
 
 
+def _alone() -> bool:
+    """Whether the library works in one thread."""
+    return int(_library().MKL_Get_Max_Threads()) == 1
+
+
 def _rest(call: _Call) -> None:
-    """Free a call's factors, and keep what was found of its pattern for the next of the same."""
-    call(FREE_FACTORS)
-    call.data = np.zeros(0)
+    """Keep what was found of a call's pattern, and the room of its factors, for the next of the same.
+
+    With one thread alone, as in the workers of a study: solutions take one, and where factors took several
+    the library crashes when it is to factorise once more.
+    """
     if call.columns.size > LARGEST_KEPT or not (call.alone and _alone()):
         call(FREE)
         return
