@@ -94,7 +94,7 @@ class _Call:
         return error.value
 
 
-# Patterns that have been analysed and whose factors are gone. The analysis is half the work of a
+# Patterns that have been analysed and whose factors nobody asks any more. The analysis is half the work of a
 # factorisation, and designs that differ in dimensions share it; its order depends on the pattern alone.
 _idle: list[_Call] = []
 
