@@ -61,12 +61,13 @@ class AtRest:
     def _without_speed(self, forces: Array) -> tuple[Array, Array]:
         """X and n X; those of the last few forces are kept, as every speed asks them anew."""
         key = forces.tobytes()
-        if key not in self.free:
+        known = self.free.get(key)
+        if known is None:
             if len(self.free) >= FORCES:
                 self.free.clear()
             X, _ = scipy.linalg.lapack.dgetrs(*self.triangles, forces)
-            self.free[key] = np.asarray(X), self.turning @ X
-        return self.free[key]
+            known = self.free[key] = np.asarray(X), self.turning @ X
+        return known
 
 
 @dataclass(frozen=True, eq=False)
