@@ -1,5 +1,7 @@
 """Layers that soften with their own amplitude, marched: against the frequency domain, and by themselves."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.analysis.test_softening import LAW, RUBBER, mass_on_layer
@@ -9,6 +11,8 @@ from bearingdyn import core
 from bearingdyn.material.amplitude import Rest
 
 PLACE, STEPS = "mass.centre.z", 100  # a period
+# a band tells how far the rest is sought; without, a second tone errs by up to three times as much
+BANDED = replace(RUBBER, band=(5.0, 7e3))
 
 
 def driven(tones, material=RUBBER, *, periods=120, kept=20, steps=STEPS, static=0.0, **more):
@@ -131,6 +135,7 @@ def test_a_linear_march_errs_by_what_the_step_makes_of_inertia(hz):
         ([(1.0, 260.0), (1.0, 390.0)], 48),
     ],
 )
+@pytest.mark.filterwarnings("ignore::bearingdyn.notice.BeyondData")  # at rest, below the band
 def test_two_tones_share_one_strain(tones, kept):
     """Each tone against the formula for several, E + 2 L iω/(iω + Ω), of the strain of both, to .2 %.
 
@@ -141,7 +146,7 @@ def test_two_tones_share_one_strain(tones, kept):
     """
     (_, slow), (_, fast) = tones
     steps = round(STEPS * fast / slow)
-    found, run = driven(tones, periods=240, kept=kept, steps=steps, memory=10 / slow)
+    found, run = driven(tones, BANDED, periods=240, kept=kept, steps=steps, memory=10 / slow)
     running = run.record.sel(channel="layer.strain").values  # it beats by half a percent
     gamma = float(np.sqrt(np.mean(running**2)))
     omega = 2 * np.pi * np.array([hz for _, hz in tones])
@@ -152,7 +157,7 @@ def test_two_tones_share_one_strain(tones, kept):
         K, density = 2e9, 1150.0
 
         def complex_modulus(self, w):
-            return RUBBER.modulus_at(w, gamma, mean)
+            return BANDED.modulus_at(w, gamma, mean)
 
     for (size, hz), z in zip(tones, found, strict=True):
         apart = mass_on_layer(Met(), mass=0.6 * stepped(hz, 1 / slow / steps))

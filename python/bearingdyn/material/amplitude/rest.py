@@ -6,10 +6,10 @@ slope would have it (Kramers and Kronig), it is rendered within a percent or so,
 What it lacks at Ω is added there, to the law's branch and to a branch so slow that it bears no lasting
 load: a spring that followed Ω would lose some of that load whenever it weakens.
 
-One tone then meets the law to round-off. Of several, those away from Ω meet what was added for Ω, and the
-rest is fitted so that this is nearly right there, too: its loss is left so short that the branch of rate Ω,
-which adds it, brings the slope of the storage as well. What stays is a tenth of a percent of the modulus at
-1.6 Ω, for −i L(γr), the same at all frequencies, is no Maxwell model's.
+One tone then meets the law to round-off. Of several, those away from Ω meet what was added for Ω. Of a model
+with a band the rest is fitted so that this is nearly right there, too: its loss is left so short that the
+branch of rate Ω, which adds it, brings the slope of the storage as well. What stays is a tenth of a percent
+of the modulus at 1.6 Ω, for −i L(γr), the same at all frequencies, is no Maxwell model's.
 """
 
 from __future__ import annotations
@@ -31,9 +31,7 @@ _FILL = 1e-4  # weight of what is left to add at Ω itself: it is added, so that
 _LOSS = 10.0  # in that, weight of the loss against the storage
 _LEAST = 0.1  # of a material's loss that may stay where the law would take more: near the ends of a band
 TABLE = 129  # frequencies of the correction, evenly in ln ω: it is linear between them
-# of a model without a band: so far beyond its times; farther out its loss falls below what the law takes,
-# and a fit that bows to that errs between the times
-_BEYOND = 3.0
+_DECADE = 10.0  # of a model without a band: so far beyond its times
 
 
 @dataclass(frozen=True)
@@ -140,12 +138,15 @@ def rest_of(material: Any) -> Rest:
         off += [there.real / size[within], there.imag / size[within]]
         aimed += [own.real / size[within, 0], own.imag / size[within, 0]]
     scale = float(np.median(linear.real))
+    # a model without a band may be asked far beyond its times, where its loss falls below what the law takes.
+    # Between the times a second tone suffers from that, and is not asked for
+    fill = _FILL if material.band is not None else 1.0 / _FILL
     errors, goals = scale * np.vstack(off), np.concatenate(aimed)
     # unknown beside the strengths: the largest of the four errors at each Ω
     largest = -np.tile(np.eye(of.size), (len(off), 1))
     limits = np.vstack([shapes.imag, shapes.real - shapes.imag])
     found = scipy.optimize.linprog(
-        np.concatenate([-_FILL * scale * left.sum(axis=0), np.ones(of.size)]),
+        np.concatenate([-fill * scale * left.sum(axis=0), np.ones(of.size)]),
         A_ub=np.block(
             [
                 [errors, largest],
@@ -192,4 +193,4 @@ def _band(material: Any) -> tuple[float, float]:
         return 2 * math.pi * material.band[0], 2 * math.pi * material.band[1]
     if not material.tau.size:
         return 1.0, 1e5
-    return 1 / (_BEYOND * float(material.tau.max())), _BEYOND / float(material.tau.min())
+    return 1 / (_DECADE * float(material.tau.max())), _DECADE / float(material.tau.min())
