@@ -45,9 +45,11 @@ def test_table_is_within_two_per_cent_of_new_solutions(M: float, L: float, D: fl
 @pytest.mark.parametrize("M", [24.0, 35.27, 43.09, 52.64])
 def test_about_the_turn_the_table_is_within_two_per_cent_of_new_solutions(M: float) -> None:
     """Where C0 halves (1.00 at M = 24, .51 at 43): a hump of c over the load is the film's own."""
-    solved, found = ehl.steady(M, 14.8, 0.031, accuracy=0.02), ehl.lookup(M, 14.8, 0.031).figures
-    assert found.C0 == pytest.approx(solved.C0, rel=0.02)
-    assert found.K0 == pytest.approx(solved.K0, abs=0.01)
+    # C0 of one solution jumps by a per cent either way with its grid: .998, 1.012 and 1.002 at M = 24
+    solved = [ehl.steady(M, 14.8, 0.031, accuracy=accuracy) for accuracy in (0.02, 0.014, 0.01)]
+    found = ehl.lookup(M, 14.8, 0.031).figures
+    assert found.C0 == pytest.approx(np.mean([s.C0 for s in solved]), rel=0.02)
+    assert found.K0 == pytest.approx(solved[0].K0, abs=0.01)
 
 
 @pytest.mark.parametrize("case", bearing_contacts(), ids=lambda case: case[0])

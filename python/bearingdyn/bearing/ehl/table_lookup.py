@@ -31,7 +31,7 @@ from bearingdyn.types import Array, Complex
 OMEGA = (0.25, 0.5, 1.0, 2.0, 4.0)
 """Frequencies ωa/um at which the table has K and C."""
 
-_LOADS = 80  # places on the load axis to which the lines of one L and D are brought before they are joined
+_LOADS = 140  # places on the load axis to which the lines of one L and D are brought before they are joined
 _SLACK = 1e-4  # of the ends: the table has four digits of M
 _NO_PIEZO = 1e-6  # L at which the formula of the film is that of an isoviscous oil
 
