@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+import pytest
 
 import bearingdyn as bd
 
@@ -67,3 +68,36 @@ def refuses(
                     isinstance(value, str) or getattr(value, "dtype", np.dtype(float)).kind == "U"
                 )
                 assert text or not odd, f"{key}={value!r} passes"
+
+
+@pytest.fixture(autouse=True)
+def nowhere(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a module imports it, its tests run in an empty folder: a hostile path may be written to."""
+    monkeypatch.chdir(tmp_path)
+
+
+def doors(
+    cases: Mapping[str, tuple[Callable[..., Any], Mapping[str, Any]]],
+    texts: Collection[str],
+    takes_any: Collection[tuple[str, str]],
+) -> Callable[[str], None]:
+    """The test of a table of calls, a case for each of its names.
+
+    Parameters
+    ----------
+    cases
+        name -> function, and arguments that it takes.
+    texts
+        Arguments that any text may be given.
+    takes_any
+        Names and arguments that nothing is judged of.
+    """
+
+    @pytest.mark.filterwarnings("ignore")
+    @pytest.mark.parametrize("name", cases)
+    def test(name: str) -> None:
+        """No AttributeError, KeyError and their like from within, and no NaN or text for a number."""
+        call, good = cases[name]
+        refuses(call, good, texts=texts, anything={key for case, key in takes_any if case == name})
+
+    return test

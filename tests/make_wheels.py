@@ -54,6 +54,9 @@ def build(python: str, source: Path, folder: Path, machine: str) -> Path:
     path = f"{venv / 'bin'}{os.pathsep}{os.environ['PATH']}"
     wheels = folder / "raw"
     settings, more = foreign(own, folder, machine) if machine != platform.machine() else ([], {})
+    if run(own, "-c", "import sysconfig; print(sysconfig.get_path('include'))").startswith("/usr/include"):
+        # Debian's pyconfig.h names another below /usr/include, where a compiler for an old glibc looks not
+        more["CFLAGS"] = "-idirafter /usr/include"
     run(
         own, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", wheels,
         *settings, source, CC=f"{compiler} cc -target {target}", AR=f"{compiler} ar", PATH=path, **more,

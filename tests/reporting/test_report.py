@@ -48,6 +48,10 @@ def test_an_equilibrium_gets_a_page(tmp_path: Path) -> None:
         assert said in told, said
 
 
+def test_a_page_without_a_title_has_the_name_of_its_file(mass: bd.Application, tmp_path: Path) -> None:
+    assert "<h1>my rotor</h1>" in bd.report(mass, tmp_path / "my rotor.html").read_text(encoding="utf-8")
+
+
 def test_a_material_with_a_dashpot_shows_it() -> None:
     """It raises G″ at high frequency, which no other row explains."""
     with_it = bd.Maxwell(G0=1e6, G=[1e6], tau=[1e-3], eta0=12.0, K=2e9, density=1150.0)

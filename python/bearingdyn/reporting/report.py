@@ -122,6 +122,7 @@ def report(
         if results is None:
             machine = _machine("what", what, page)
         _fill(page, machine, results, tell, at_rest)
+    page.title = page.title or Path(path).stem
     for each in caught:
         if issubclass(each.category, UserWarning):
             page.doubts.setdefault(" ".join(str(each.message).split()), _remedy(each.category))
