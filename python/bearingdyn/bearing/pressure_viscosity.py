@@ -11,8 +11,9 @@ _ROELANDS_LOG_VISCOSITY = 9.67  # −ln(6.31e-5 Pa s)
 
 
 def wooster(eta0: float) -> float:
-    """α of a mineral oil, 1/Pa: (0.6 + 0.965 lg η0)·1e-8, η0 in mPa s (Wooster; in A. Cameron 1966).
+    """α of a mineral oil, 1/Pa: (0.6 + 0.965 lg η0)·1e-8, η0 in mPa s (Wooster).
 
+    Stachowiak and Batchelor, Engineering Tribology (chapter on lubricants), give it so, η0 in cP.
     At 40 °C 1.98e-8 for VG 32, at 70 °C 1.54e-8. Synthetic oils lie lower, naphthenic ones higher.
 
     Parameters
