@@ -101,10 +101,12 @@ def assemble_elastic(
 
     Parameters
     ----------
-    mesh, elements, incompressible
+    mesh, elements
         As for `assemble_solid`.
     material
         Of these elements.
+    incompressible
+        As for `assemble_solid`.
 
     Returns
     -------
