@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -54,9 +54,9 @@ def assemble(app: Application) -> System:
     terms: list[PartTerm] = []
     outputs: dict[str, Array] = {}
     for part, element in plan.parts.items():
-        own = (element.M, element.C, element.G, element.K, element.N)
+        add, own = _placing(index[part]), (element.M, element.C, element.G, element.K, element.N)
         for total, A in zip((M, C, G, K, N), own, strict=True):
-            _place(total, np.asarray(A), index[part])
+            add(total, np.asarray(A))
         R = plan.rigid_shapes(part)
         rigid = np.full((element.n, 6), np.nan) if R is None else R
         inertia += select[part].T @ (element.M @ rigid[:, :3])
@@ -67,7 +67,7 @@ def assemble(app: Application) -> System:
         relaxed = [getattr(term.material, "G0", 0.0) for term in element.viscoelastic]
         if all(relaxed):
             deviatoric = (2.0 * G0 * t.H for G0, t in zip(relaxed, element.viscoelastic, strict=True))
-            _place(firm, sum(deviatoric, np.asarray(element.K)), index[part])
+            add(firm, sum(deviatoric, np.asarray(element.K)))
         for name in (*element.interfaces, *element.outputs):
             outputs[str(Place(part, name))] = element.rows(name) @ select[part]
 
@@ -136,14 +136,21 @@ def assemble(app: Application) -> System:
     return noted(system, app)
 
 
-def _place(total: Array, A: Array, place: Index) -> None:
-    """Add a part's matrix to the system's, at the places of its coordinates; -1 are held by the ground."""
+def _placing(place: Index) -> Callable[[Array, Array], None]:
+    """What adds a part's matrix to the system's at the places of its coordinates; the ground holds those of -1."""
     moving = np.flatnonzero(place >= 0)
-    inside, own = np.ix_(place[moving], place[moving]), A[np.ix_(moving, moving)]
-    if np.unique(place[moving]).size == moving.size:
-        total[inside] += own
-    else:  # two interfaces of a part that are joined to each other share their places
-        np.add.at(total, inside, own)
+    inside, own = np.ix_(place[moving], place[moving]), np.ix_(moving, moving)
+    alone = np.unique(place[moving]).size == moving.size
+
+    def add(total: Array, A: Array) -> None:
+        if not A.any():
+            return
+        if alone:
+            total[inside] += A[own]
+        else:  # two interfaces of a part that are joined to each other share their places
+            np.add.at(total, inside, A[own])
+
+    return add
 
 
 def _between(ends: Mapping[str, Array], outputs: Mapping[str, Array]) -> Array:
