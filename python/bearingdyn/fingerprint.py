@@ -46,7 +46,12 @@ LONGEST = 60_000
 
 
 def describe(
-    value: Any, *, strict: bool = True, within: tuple[Any, ...] = (), forgetful: bool = False
+    value: Any,
+    *,
+    strict: bool = True,
+    within: tuple[Any, ...] = (),
+    forgetful: bool = False,
+    known: dict[int, tuple[Any, Any]] | None = None,
 ) -> Any:
     """A value as JSON's own types, from which its fingerprint is taken: the same for equal values anywhere.
 
@@ -68,6 +73,9 @@ def describe(
     forgetful
         Tell global dicts, lists and sets into which functions write themselves, as a memory of what they have
         computed, as empty: as they stand before the first call.
+    known
+        Of dataclasses already described, by their id, themselves and what they are: a part that stands in two
+        places of a machine is then described once. None: each where it stands.
 
     Raises
     ------
@@ -77,7 +85,7 @@ def describe(
     """
 
     def told(part: Any) -> Any:
-        return describe(part, strict=strict, within=(*within, value), forgetful=forgetful)
+        return describe(part, strict=strict, within=(*within, value), forgetful=forgetful, known=known)
 
     if isinstance(value, np.generic):
         value = value.item()
@@ -107,12 +115,16 @@ def describe(
         return _function(value, told, forgetful)
     if isinstance(value, type) and not _installed(value.__module__):
         return _class(value, told)
-    return _object(value, told, strict)
+    if known is None or not dataclasses.is_dataclass(value):
+        return _object(value, told, strict)
+    if id(value) not in known:
+        known[id(value)] = value, _object(value, told, strict)
+    return known[id(value)][1]
 
 
 def text(value: Any) -> str:
     """What a fingerprint is taken from, as one line of JSON, not strict; long entries as their hashes."""
-    described = describe(value, strict=False)
+    described = describe(value, strict=False, known={})
     written = json.dumps(described, sort_keys=True)
     if len(written) > LONGEST and isinstance(described, dict):
         share = LONGEST // (2 * len(described))

@@ -137,7 +137,7 @@ def assemble(app: Application) -> System:
 
 
 def _placing(place: Index) -> Callable[[Array, Array], None]:
-    """What adds a part's matrix to the system's at the places of its coordinates; the ground holds those of -1."""
+    """What adds a part's matrix to the system's at its coordinates' places; the ground holds those of -1."""
     moving = np.flatnonzero(place >= 0)
     inside, own = np.ix_(place[moving], place[moving]), np.ix_(moving, moving)
     alone = np.unique(place[moving]).size == moving.size

@@ -43,8 +43,7 @@ def check_held(system: System, firm: Array) -> None:
     sites = [(name, rows) for name, rows in system.outputs.items() if rows.shape[0] == 6]
     moving = np.vstack([rows[:5] @ free for _, rows in sites])
     spin = np.vstack([rows[5] @ free for _, rows in sites])
-    strengths = np.linalg.svd(moving, compute_uv=False)
-    directions = np.linalg.svd(moving)[2]
+    _, strengths, directions = np.linalg.svd(moving, full_matrices=False)
     if strengths[0] > 1e-6 * max(float(np.abs(spin).max()), strengths[0] * 1e-3):
         motion = free @ directions[0]
         name, component = max(
