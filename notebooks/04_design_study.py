@@ -88,7 +88,7 @@ def design(case):
 # case is kept under the hash of its inputs, and an interrupted study goes on where it stopped.
 
 # %%
-grid = study.grid(thickness=[0.004, 0.006, 0.008, 0.011], loss_factor=[0.3, 0.45, 0.6])
+grid = study.grid(thickness=[0.003, 0.004, 0.006, 0.008, 0.011], loss_factor=[0.3, 0.45, 0.6])
 units = {"thickness": "m", "isolation": "dB", "peak": "m/N", "sag": "m"}
 with ThreadPoolExecutor(2) as threads:
     cases = study.sweep(design, grid, threads, progress=False)
