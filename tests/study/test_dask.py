@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import os
 import signal
+import threading
 import time
 
 import pytest
@@ -78,3 +80,39 @@ def test_case_that_kills_every_worker_fails_alone(client):
     found = study.sweep(always_dies, study.grid(x=[0.0, 1.0, 2.0]), client.get_executor())
     assert [c.values.get("y") for c in found] == [0.0, None, 2.0]
     assert "KilledWorker" in found[1].error
+
+
+class Counting:
+    """An executor of a cluster of four processors that counts the chunks of several cases on their way."""
+
+    def __init__(self) -> None:
+        self._client, self.away, self.most, self.lock = self, 0, 0, threading.Lock()
+
+    def ncores(self):
+        return {"one": 2, "other": 2}
+
+    def submit(self, function, *arguments):
+        future, counts = concurrent.futures.Future(), len(arguments[1]) > 1
+        with self.lock:
+            self.away += counts
+            self.most = max(self.most, self.away)
+
+        def finish():
+            with self.lock:
+                self.away -= counts
+            future.set_result(function(*arguments))
+
+        threading.Timer(0.02, finish).start()
+        return future
+
+
+def test_a_cluster_is_handed_what_its_processors_need():
+    """What more is on its way lies with its workers, and is made anew where one dies."""
+    pool = Counting()
+    found = study.sweep(square, study.grid(x=[float(x) for x in range(5000)]), pool, progress=False)
+    assert [case.values["y"] for case in found] == [float(x) ** 2 for x in range(5000)]
+    assert 0 < pool.most <= 12  # three for each of four
+
+
+def square(case):
+    return {"y": case["x"] ** 2}

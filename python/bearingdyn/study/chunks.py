@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 import os
 import time
 from collections import deque
@@ -24,6 +25,10 @@ Study: TypeAlias = Callable[[dict[str, Any]], Mapping[str, float]]
 WORKER_ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 # chunks at once: what a cluster of some five hundred workers does while it waits for more; fewer at first
 WINDOW, PROBE = 1024, 64
+# of a cluster that tells of its processors: for each of them, and at least. What its workers hold is made
+# anew where one dies, also what has been taken in, until the scheduler has heard of that: with all chunks on
+# their way one death made 4000 of 100 thousand stored cases anew, with these none
+EACH, LEAST_WINDOW = 3, 6
 PATIENCE = 2.0  # s without a finished chunk after which a cluster is asked whether it is still there
 # s of work in a chunk, some fifty times what a cluster takes to hand it over, and the most cases in it
 CHUNK_SECONDS, LONGEST_CHUNK = 0.1, 200
@@ -176,6 +181,7 @@ class _Traffic:
         self.away = 0  # chunks handed out, and not taken in again
         self.ended: BaseException | None = None
         self.seconds, self.cases = 0.0, 0
+        self.asked, self.processors = -math.inf, 0
         self.meant = Meant.here(function)
 
     def submit(self) -> bool:
@@ -209,8 +215,15 @@ class _Traffic:
 
     @property
     def window(self) -> int:
-        """Chunks on their way at once: few until it is known how many cases belong in one."""
-        return WINDOW if self.cases else PROBE
+        """Chunks on their way at once: few until one knows how many cases belong in each, and on clusters."""
+        if not self.cases:
+            return PROBE
+        client = getattr(self.pool, "_client", None)
+        if client is None:
+            return WINDOW
+        if time.monotonic() > self.asked + PATIENCE:
+            self.asked, self.processors = time.monotonic(), sum(client.ncores().values())
+        return max(LEAST_WINDOW, EACH * self.processors)
 
     def chunk(self) -> int:
         """Cases in the next chunk: one until some are back, and few enough that every worker has several."""
