@@ -119,37 +119,37 @@ typedef struct elimination {
     size_t stride; /* of a row */
 } elimination;
 
-/* Row i of U and, unless it is that of U over the pivot, column i of L, before anything is taken from them. */
+/* Entries from column `from` on of a block's row i, or of its column i (`down`), and the first `beside` of the columns
+ * beside it: as they are before anything is taken from them. */
+BD_INLINE void form_row(const elimination *e, int i, bool down, int from, int beside, double *row)
+{
+    const bd_receptance *block = e->block;
+    const int n = block->n;
+    const size_t entries = 3 + (size_t)block->n_layers;
+    const double *columns = block->beside + (size_t)i * (size_t)block->n_beside;
+    for (int j = from; j < n; j++) {
+        const size_t at =
+            down ? (size_t)j * (size_t)n + (size_t)i : (size_t)i * (size_t)n + (size_t)j;
+        lanes re, im;
+        entry(block, &e->at, e->moduli, block->pencil + at * entries, &re, &im);
+        LANES_AT(row + j * PAIR) = re;
+        LANES_AT(row + j * PAIR + BD_WIDTH) = im;
+    }
+    for (int c = 0; c < beside; c++) {
+        LANES_AT(row + (n + c) * PAIR) = columns[c] + (lanes){0};
+        LANES_AT(row + (n + c) * PAIR + BD_WIDTH) = (lanes){0};
+    }
+}
+
+/* Row i of U and, unless it is that of U over the pivot, column i of L. */
 BD_INLINE void form(const elimination *e, int i)
 {
     const bd_receptance *block = e->block;
-    const int n = block->n, beside = block->n_beside, n_left = block->n_left;
-    const size_t entries = 3 + (size_t)block->n_layers;
-    double *u = e->U + (size_t)i * e->stride, *l = e->L + (size_t)i * e->stride;
-    const double *columns = block->beside + (size_t)i * (size_t)beside;
-    lanes re, im;
-    for (int j = i; j < n; j++) { /* nothing to the left of the diagonal is kept */
-        entry(block, &e->at, e->moduli,
-              block->pencil + ((size_t)i * (size_t)n + (size_t)j) * entries, &re, &im);
-        LANES_AT(u + j * PAIR) = re;
-        LANES_AT(u + j * PAIR + BD_WIDTH) = im;
-    }
-    for (int c = 0; c < beside; c++) {
-        LANES_AT(u + (n + c) * PAIR) = columns[c] + (lanes){0};
-        LANES_AT(u + (n + c) * PAIR + BD_WIDTH) = (lanes){0};
-    }
-    if (block->symmetric)
-        return;
-    for (int j = i + 1; j < n; j++) {
-        entry(block, &e->at, e->moduli,
-              block->pencil + ((size_t)j * (size_t)n + (size_t)i) * entries, &re, &im);
-        LANES_AT(l + j * PAIR) = re;
-        LANES_AT(l + j * PAIR + BD_WIDTH) = im;
-    }
-    for (int c = 0; c < n_left; c++) {
-        LANES_AT(l + (n + c) * PAIR) = columns[c] + (lanes){0};
-        LANES_AT(l + (n + c) * PAIR + BD_WIDTH) = (lanes){0};
-    }
+    const size_t row = (size_t)i * e->stride;
+    form_row(e, i, false, i, block->n_beside,
+             e->U + row); /* nothing left of the diagonal is kept */
+    if (!block->symmetric)
+        form_row(e, i, true, i + 1, block->n_left, e->L + row);
 }
 
 /* Rows i and, where `pair`, i + 1 minus what the `count` rows from k on take from them. */

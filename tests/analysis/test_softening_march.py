@@ -9,6 +9,7 @@ from tests.analysis.test_softening import LAW, RUBBER, mass_on_layer
 import bearingdyn as bd
 from bearingdyn import core
 from bearingdyn.material.amplitude import Rest
+from two_tones import PAIRS, AtOneAmplitude, inertia_of_a_step
 
 PLACE, STEPS = "mass.centre.z", 100  # a period
 # a band tells how far the rest is sought; without, a second tone errs by up to three times as much
@@ -99,42 +100,19 @@ def test_a_small_vibration_meets_the_unbroken_rubber():
     assert abs(small) == pytest.approx(abs(expected), rel=1e-3)
 
 
-def stepped(hz, dt):
-    """What the average acceleration makes of inertia in a vibration, over a march without a step.
-
-    x'' of samples x e^(iωnΔt) is −(2/Δt tan ωΔt/2)² x instead of −ω² x; rubber's own error is far smaller.
-    """
-    half = np.pi * hz * dt
-    return (np.tan(half) / half) ** 2
-
-
 @pytest.mark.parametrize("hz", [260.0, 320.0])
 def test_a_linear_march_errs_by_what_the_step_makes_of_inertia(hz):
     """The closed form of Newmark's error, on both flanks of the layer without its law: .14 and −.31 %."""
     (z,), run = driven([(6.0, hz)], RUBBER.with_payne(None))
     dt = float(run.time[1] - run.time[0])
-    apart = mass_on_layer(RUBBER.with_payne(None), mass=0.6 * stepped(hz, dt))
+    apart = mass_on_layer(RUBBER.with_payne(None), mass=0.6 * inertia_of_a_step(hz, dt))
     meant = bd.frequency_response(apart, [hz], [PLACE], [PLACE]).response.values[0, 0, 0]
     # branches take the strain as linear between samples, which is (ωΔt)²/12 of what relaxes in a step
     assert abs(z) == pytest.approx(6.0 * abs(meant), rel=3e-5)
     assert abs(abs(z) / abs(answered([hz], 6.0, RUBBER.with_payne(None))[0]) - 1) > 1e-3
 
 
-@pytest.mark.parametrize(
-    ("tones", "kept"),
-    [
-        ([(6.0, 150.0), (6.0, 230.0)], 45),
-        # on both flanks, where .1 % of stiffness is .2 % of motion
-        ([(6.0, 200.0), (6.0, 320.0)], 40),
-        ([(40.0, 100.0), (40.0, 160.0)], 40),
-        ([(20.0, 330.0), (20.0, 400.0)], 66),
-        ([(6.0, 230.0), (6.0, 260.0)], 46),
-        # one of them far stronger
-        ([(30.0, 200.0), (10.0, 300.0)], 40),
-        ([(3.0, 240.0), (12.0, 280.0)], 48),
-        ([(1.0, 260.0), (1.0, 390.0)], 48),
-    ],
-)
+@pytest.mark.parametrize(("tones", "kept"), PAIRS)
 @pytest.mark.filterwarnings("ignore::bearingdyn.notice.BeyondData")  # at rest, below the band
 def test_two_tones_share_one_strain(tones, kept):
     """Each tone against the formula for several, E + 2 L iω/(iω + Ω), of the strain of both, to .2 %.
@@ -149,18 +127,9 @@ def test_two_tones_share_one_strain(tones, kept):
     found, run = driven(tones, BANDED, periods=240, kept=kept, steps=steps, memory=10 / slow)
     running = run.record.sel(channel="layer.strain").values  # it beats by half a percent
     gamma = float(np.sqrt(np.mean(running**2)))
-    omega = 2 * np.pi * np.array([hz for _, hz in tones])
-    weight = np.abs(found) ** 2
-    mean = float(np.sqrt(np.sum(weight * omega**2) / np.sum(weight)))
-
-    class Met:
-        K, density = 2e9, 1150.0
-
-        def complex_modulus(self, w):
-            return BANDED.modulus_at(w, gamma, mean)
-
+    met = AtOneAmplitude.of(BANDED, gamma, [hz for _, hz in tones], np.array(found))
     for (size, hz), z in zip(tones, found, strict=True):
-        apart = mass_on_layer(Met(), mass=0.6 * stepped(hz, 1 / slow / steps))
+        apart = mass_on_layer(met, mass=0.6 * inertia_of_a_step(hz, 1 / slow / steps))
         meant = bd.frequency_response(apart, [hz], [PLACE], [PLACE]).response.values[0, 0, 0]
         assert abs(z) == pytest.approx(size * abs(meant), rel=2e-3)
 

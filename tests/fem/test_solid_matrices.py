@@ -539,3 +539,15 @@ def test_meshes_of_one_topology_share_their_pattern_and_others_do_not():
     again = assemble_solid(longer).stiffness(STEEL)
     assert (K != again).nnz == 0  # what is kept is not written into
     assert abs(K - K0).max() > 0.1 * abs(K).max()
+
+
+def test_a_matrix_that_is_changed_in_place_changes_no_other():
+    """Patterns are kept: zeros eliminated from one matrix once moved the entries of all others."""
+    mesh = box_mesh(*[np.linspace(0, 1, 3)] * 3)
+    parts = assemble_solid(mesh)
+    for made in (lambda: assemble_elastic(mesh, None, STEEL)[1], lambda: parts.stiffness(STEEL)):
+        before, spoilt = parts.volumetric.copy(), made()
+        spoilt.data[::3] = 0.0
+        spoilt.eliminate_zeros()
+        assert abs(parts.volumetric - before).max() == 0.0
+        assert abs(assemble_solid(mesh).volumetric - before).max() == 0.0

@@ -18,14 +18,6 @@ Y = "mass.centre.y"
 
 
 @pytest.fixture(scope="module")
-def mass() -> bd.Application:
-    app = bd.Application()
-    app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
-    app.ground("mass.centre", stiffness=[1e6] * 6, damping=[10.0] * 6)
-    return app
-
-
-@pytest.fixture(scope="module")
 def run(mass: bd.Application) -> Any:
     return bd.transient(bd.equilibrium(mass), speed=100.0, dt=1e-4, steps=4096, record=[Y])
 

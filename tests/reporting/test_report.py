@@ -21,14 +21,6 @@ from bearingdyn.reporting.shapes import first_elastic
 from report_page import curves, text_of
 
 
-@pytest.fixture(scope="module")
-def mass() -> bd.Application:
-    app = bd.Application()
-    app.add("mass", bd.RigidBody(mass=2.0, inertia=(1e-3, 1e-3, 1e-3)))
-    app.ground("mass.centre", stiffness=[1e6] * 6, damping=[10.0] * 6)
-    return app
-
-
 def test_a_small_motion_about_a_large_level_keeps_its_digits() -> None:
     """32-bit floats have seven digits; a shaft that sags 137 µm and moves by picometres needs nine."""
     x = np.linspace(0.0, 1.0, 50)

@@ -7,12 +7,12 @@ import warnings
 
 import numpy as np
 import shaker
-from numpy.typing import NDArray
 
 import bearingdyn as bd
 import softened_field
 from bearingdyn.notice import BeyondData
 from measured import DATA
+from two_tones import PAIRS, AtOneAmplitude, inertia_of_a_step
 from verified.row import INDEPENDENT, Row, rows, to_the_digit
 
 SECTION = "amplitude, 1"
@@ -42,7 +42,9 @@ RUBBER = bd.Maxwell(
 )
 
 
-def _pulled(*tones: tuple[float, float], rubber: _Met | None = None, mass: float = 0.6) -> bd.Application:
+def _pulled(
+    *tones: tuple[float, float], rubber: AtOneAmplitude | None = None, mass: float = 0.6
+) -> bd.Application:
     """A mass, kg, on a ring under forces (N, Hz) along its axis; its shapes are those of RUBBER."""
     made = bd.Application()
     made.add("mass", bd.RigidBody(mass=mass, inertia=(1e-3, 1e-3, 1e-3)))
@@ -87,22 +89,12 @@ def _marched() -> list[Row]:
     (.42 %).
     """
     cases = []
-    for tones, periods in (
-        ([(6.0, 200.0), (6.0, 320.0)], 40),
-        ([(6.0, 150.0), (6.0, 230.0)], 45),
-        ([(40.0, 100.0), (40.0, 160.0)], 40),
-        ([(20.0, 330.0), (20.0, 400.0)], 66),
-        ([(6.0, 230.0), (6.0, 260.0)], 46),
-        ([(30.0, 200.0), (10.0, 300.0)], 40),
-        ([(3.0, 240.0), (12.0, 280.0)], 48),
-        ([(1.0, 260.0), (1.0, 390.0)], 48),
-    ):
+    for tones, periods in PAIRS:
         balanced = bd.steady_state(_pulled(*tones), speed=100.0, record=[PLACE], stability=False)
         lines = [int(abs(balanced["frequency"].values - hertz).argmin()) for _, hertz in tones]
         motion = abs(balanced["amplitude"].values[lines, 0])
-        omega = 2 * np.pi * np.array([hertz for _, hertz in tones])
-        rubber = _Met(
-            float(balanced["strain"][0]), float(np.sqrt(((motion * omega) ** 2).sum() / (motion**2).sum()))
+        rubber = AtOneAmplitude.of(
+            RUBBER, float(balanced["strain"][0]), [hertz for _, hertz in tones], motion
         )
         base = tones[0][1]
         steps = round(100 * tones[1][1] / base)
@@ -118,8 +110,7 @@ def _marched() -> list[Row]:
         )
         z, t = run.record.values[:, 0], run.time.values
         for size, hertz in tones:
-            half = np.pi * hertz / base / steps
-            stepped = _pulled(rubber=rubber, mass=0.6 * (np.tan(half) / half) ** 2)
+            stepped = _pulled(rubber=rubber, mass=0.6 * inertia_of_a_step(hertz, 1 / base / steps))
             wanted = bd.frequency_response(stepped, [hertz], [PLACE], [PLACE])
             name = (
                 f"mass on a ring, {tones[0][0]:g} N at {base:g} and {tones[1][0]:g} N at {tones[1][1]:g} Hz, "
@@ -131,20 +122,6 @@ def _marched() -> list[Row]:
     return rows(
         SECTION, 2e-3, "asked for; the step's error, which a linear march has too, is known", source, cases
     )
-
-
-@dataclasses.dataclass(frozen=True)
-class _Met:
-    """The rubber as it is met at a strain, in a vibration of this mean frequency, rad/s."""
-
-    strain: float
-    mean: float
-    K: float = RUBBER.K
-    density: float = RUBBER.density
-
-    def complex_modulus(self, omega: NDArray[np.float64]) -> NDArray[np.complex128]:
-        """G*, Pa."""
-        return RUBBER.modulus_at(omega, self.strain, self.mean)
 
 
 def _one_number() -> list[Row]:

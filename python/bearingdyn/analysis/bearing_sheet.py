@@ -375,10 +375,9 @@ def _row(
     if Q[heaviest] > 0:
         gamma = bearing.Dw / bearing.Dpw * math.cos(alpha)
         us = bearing.Dpw / 2 * abs(relative) * (1 - gamma**2)
+        row["alpha"] = oil.pressure_coefficient(T)
         for race, contact in contacts.items():
-            film = film_by_formula(
-                contact, float(Q[heaviest]), us, oil.viscosity(T), oil.pressure_coefficient(T)
-            )
+            film = film_by_formula(contact, float(Q[heaviest]), us, oil.viscosity(T), row["alpha"])
             row[f"film_{race}"] = film
             if sigma > 0:
                 row[f"lambda_{race}"] = film / sigma

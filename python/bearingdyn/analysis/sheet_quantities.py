@@ -46,6 +46,7 @@ ROWS: dict[str, dict[str, tuple[str, str, float, str]]] = {
     "Film and friction": {
         "temperature": ("°C", "temperature of the oil", 1, "°C"),
         "viscosity": ("m²/s", "kinematic viscosity", 1e6, "mm²/s"),
+        "alpha": ("1/Pa", "α of the oil; by Wooster's rule where it is not given", 1e8, "· 1e-8/Pa"),
         "film_inner": ("m", "central film, inner race", 1e6, "µm"),
         "film_outer": ("m", "central film, outer race", 1e6, "µm"),
         "lambda_inner": ("1", "film over roughness, inner race", 1, ""),

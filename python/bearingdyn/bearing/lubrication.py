@@ -42,6 +42,10 @@ class Lubrication:
     """Sum of the surface speeds in each contact, m/s."""
     viscosity: float
     """Dynamic viscosity at ambient pressure, Pa s."""
+    alpha: float
+    """Pressure–viscosity coefficient that films and damping are taken with, 1/Pa."""
+    alpha_by_rule: bool
+    """Whether that is Wooster's of mineral oils, since the oil has none."""
     film_inner: float
     """Central film of the inner contact."""
     film_outer: float
@@ -68,11 +72,11 @@ class Lubrication:
     """That damping over the load; None outside of the table."""
 
     def __repr__(self) -> str:
-        """One line: films, damping, and how both hang on α."""
-        known = ""
+        """One line: films, damping, α and where it comes from, and how both hang on it."""
+        known = f"; α {self.alpha:.3g} 1/Pa" + (" by Wooster's rule, not known" if self.alpha_by_rule else "")
         if math.isfinite(self.alpha_damping):
             film, c = self.alpha_film, self.alpha_damping
-            known = f"; with α of the oil the film goes as α^{film:.2f}, c as α^{c:.2f}"
+            known += f": the film goes as α^{film:.2f}, c as α^{c:.2f}"
         return (
             f"<Lubrication under {self.Q:.4g} N: films {1e6 * self.film_inner:.3f} and "
             f"{1e6 * self.film_outer:.3f} µm, c {self.damping:.1f} N s/m of a ball{known}>"
@@ -238,6 +242,8 @@ def lubricated(
         Q=Q,
         us=us,
         viscosity=eta0,
+        alpha=alpha,
+        alpha_by_rule=oil.alpha is None,
         film_inner=share * centre[0],
         film_outer=share * centre[1],
         h0_inner=share * h0[0],

@@ -76,8 +76,9 @@ class NodePairs:
     def matrix(self, sums: Array) -> scipy.sparse.csr_matrix:
         """The matrix (3n, 3n) of sums (3, 3, size); coordinate 3 i + a is node i along axis a."""
         indices, indptr, place = self._rows
-        # its indices are shared: who changes one in place takes a copy first
-        return scipy.sparse.csr_matrix((sums.ravel()[place], indices, indptr), shape=(3 * self.nodes,) * 2)
+        # of its own: else `eliminate_zeros` of one matrix moves the entries of every other of the pattern
+        own = (sums.ravel()[place], indices.copy(), indptr.copy())
+        return scipy.sparse.csr_matrix(own, shape=(3 * self.nodes,) * 2)
 
     def alike(self, sums: Array) -> scipy.sparse.csr_matrix:
         """The matrix (3n, 3n) of sums (size,) that are alike along all axes, without what is zero."""

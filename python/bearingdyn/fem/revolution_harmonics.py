@@ -71,9 +71,10 @@ class Harmonic:
         return int(self.pattern.indptr.size - 1)
 
     def matrix(self, data: Any) -> Any:
-        """Sparse (n, n) matrix with the shared pattern."""
+        """Sparse (n, n) matrix of the shared pattern, with indices of its own: it may be changed in place."""
         of = self.pattern
-        return scipy.sparse.csc_matrix((data, of.indices, of.indptr), shape=(self.n, self.n))
+        own = (data, of.indices.copy(), of.indptr.copy())
+        return scipy.sparse.csc_matrix(own, shape=(self.n, self.n))
 
     def stiffness(self, bulk: ArrayLike, shear: ArrayLike) -> Any:
         """K = Σ bulk·volumetric + 2·shear·deviatoric over the regions, N/m, sparse; shear may be complex."""

@@ -59,7 +59,7 @@ class SolidMatrices:
         """Stiffness of an elastic material, (3n, 3n), N/m."""
         K, G = self.volumetric, self.deviatoric
         data = material.K * K.data + 2.0 * material.G * G.data  # both have the pattern of the node pairs
-        return scipy.sparse.csr_matrix((data, K.indices, K.indptr), shape=K.shape)
+        return scipy.sparse.csr_matrix((data, K.indices.copy(), K.indptr.copy()), shape=K.shape)
 
 
 def assemble_solid(

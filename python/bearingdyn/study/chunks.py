@@ -9,7 +9,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from numbers import Real
 from queue import Empty, SimpleQueue
 from typing import Any, NamedTuple, TypeAlias
@@ -222,7 +222,9 @@ class _Traffic:
         if client is None:
             return WINDOW
         if time.monotonic() > self.asked + PATIENCE:
-            self.asked, self.processors = time.monotonic(), sum(client.ncores().values())
+            self.asked = time.monotonic()
+            with suppress(OSError):  # that its scheduler is gone the futures will tell
+                self.processors = sum(client.ncores().values())
         return max(LEAST_WINDOW, EACH * self.processors)
 
     def chunk(self) -> int:
