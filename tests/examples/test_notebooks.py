@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import math
 import os
 import re
@@ -23,11 +25,11 @@ ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.py"))
 
 
-def run(name: str, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """The names a notebook leaves behind; it runs in its own folder, as Jupyter has it."""
+def run(name: str, monkeypatch: pytest.MonkeyPatch, folder: Path | None = None) -> dict[str, Any]:
+    """The names a notebook leaves behind; it runs in its own folder, as Jupyter has it, or in another."""
     import matplotlib.pyplot as plt
 
-    monkeypatch.chdir(ROOT / "notebooks")
+    monkeypatch.chdir(folder or ROOT / "notebooks")
     monkeypatch.setattr(sys, "path", list(sys.path))
     path = next(path for path in NOTEBOOKS if path.name.startswith(name))
     names: dict[str, Any] = {"__name__": "notebook"}
@@ -36,6 +38,15 @@ def run(name: str, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
     plt.close("all")
     return names
+
+
+def run_and_read(name: str, monkeypatch: pytest.MonkeyPatch, folder: Path) -> str:
+    """What a notebook prints in a folder that has nothing beside it."""
+    place = folder / "project" / "notebooks"
+    place.mkdir(parents=True)
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        run(name, monkeypatch, place)
+    return printed.getvalue()
 
 
 def test_each_notebook_opens_with_a_question_and_ends_with_a_decision() -> None:
@@ -53,6 +64,15 @@ def test_each_notebook_opens_with_a_question_and_ends_with_a_decision() -> None:
         assert title.endswith("?"), path.name
         assert any(cell.startswith(" [markdown]\n# ## Decision") for cell in cells[-3:]), path.name
         assert "print(" in cells[-1], path.name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [p.stem[:2] for p in NOTEBOOKS if "shared" in p.read_text(encoding="utf-8")])
+def test_a_notebook_runs_where_the_measured_data_are_not(
+    name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """On the shipped sample, as a stranger has it: two of them once stopped there, unseen beside the data."""
+    assert "shipped sample" in run_and_read(name, monkeypatch, tmp_path)
 
 
 def test_the_rubber_of_notebook_1_is_as_stiff_as_the_raw_table_says(monkeypatch: pytest.MonkeyPatch) -> None:
